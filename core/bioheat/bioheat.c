@@ -174,8 +174,8 @@ static double longest_part_s(cau_bioheat *bioheat)
 	return stable_share * longest;
 }
 
-// A cell with water is at 100 degC and has taken up `over_j` beyond. It boils its water, and warms up
-// once it is dry.
+// A cell with water is at 100 degC and has taken up `over_j` beyond. It boils its water, and warms
+// up once it is dry.
 static void boil(cau_bioheat *bioheat, int32_t cell, double over_j)
 {
 	double *wet = &bioheat->water[cell], mass = water_mass(bioheat, cell);

@@ -8,8 +8,9 @@
 #include "cautery/assert.h"
 
 enum {
-	SUBPOINTS = 3,   // along each axis of a cell: its fill is counted in 27ths
-	BOUND_CELLS = 2, // the middle of an element's cell is less than one outside; stretch may double it
+	SUBPOINTS = 3, // along each axis of a cell: its fill is counted in 27ths
+	BOUND_CELLS =
+		2, // the middle of an element's cell is less than one outside; stretch may double it
 };
 
 // Places of subpoints are shifted by so much of a cell, so that none lies on a face of a regular
@@ -35,21 +36,38 @@ static const cau_bioheat_material fat_tissue = {.conductivity_w_mk = 0.21,
                                                 .damage_log_rate = 91.8,
                                                 .damage_energy_j_mol = 2.577e5};
 
+// A strand of connective tissue. Its current spreads with that of what it joins.
+static const cau_bioheat_material strand_tissue = {.conductivity_w_mk = 0.49,
+                                                   .density_kg_m3 = 1090,
+                                                   .specific_heat_j_kgk = 3421,
+                                                   .water = 0.75,
+                                                   .electric_s_m = 0.4,
+                                                   .perfusion_w_m3k = 12960,
+                                                   .damage_log_rate = 91.8,
+                                                   .damage_energy_j_mol = 2.577e5};
+
 static const double surface_w_m2k = 20; // still gas, with radiation
 
 // ---- elements at rest
 
 typedef struct element_corners {
-	int count; // 3 or 4
+	int count; // 2: a link, 3: a triangle, 4: a tetrahedron
 	const int32_t *vertex;
 } element_corners;
+
+static int32_t first_link(const cau_tissue *tissue)
+{
+	return tissue->triangle_count + tissue->tetrahedron_count;
+}
 
 static element_corners corners_of(const cau_tissue *tissue, int32_t element)
 {
 	if (element < tissue->triangle_count)
 		return (element_corners){3, tissue->triangle + 3 * (size_t)element};
-	size_t tetrahedron = (size_t)(element - tissue->triangle_count);
-	return (element_corners){4, tissue->tetrahedron + 4 * tetrahedron};
+	if (element < first_link(tissue))
+		return (element_corners){4, tissue->tetrahedron +
+		                                4 * (size_t)(element - tissue->triangle_count)};
+	return (element_corners){2, tissue->link + 2 * (size_t)(element - first_link(tissue))};
 }
 
 static cau_vec3 normal_of(const cau_vec3 corner[3])
@@ -58,7 +76,19 @@ static cau_vec3 normal_of(const cau_vec3 corner[3])
 	return cau_unit_or(normal, (cau_vec3){0, 0, 1});
 }
 
-// The edges from the first corner; a triangle's third one is its normal.
+// Of length 1, and square to `axis`. Like axes have like ones, but where two of their entries
+// change places as the least: a link's cells turn around its axis there.
+static cau_vec3 square_to(cau_vec3 axis)
+{
+	double x = fabs(axis.x), y = fabs(axis.y), z = fabs(axis.z);
+	cau_vec3 least = x <= y && x <= z ? (cau_vec3){1, 0, 0}
+	                 : y <= z         ? (cau_vec3){0, 1, 0}
+	                                  : (cau_vec3){0, 0, 1};
+	return cau_unit_or(cau_cross(axis, least), (cau_vec3){0, 0, 1});
+}
+
+// The edges from the first corner. A triangle's third one is its normal. A link's second and third
+// have length 1 and are square to it.
 static void edges_of(const element_corners *corners, const double *position, cau_vec3 *first,
                      cau_vec3 edge[3])
 {
@@ -67,6 +97,11 @@ static void edges_of(const element_corners *corners, const double *position, cau
 		at[i] = cau_vec3_of(position + 3 * (size_t)corners->vertex[i]);
 	*first = at[0];
 	edge[0] = cau_sub(at[1], at[0]);
+	if (corners->count == 2) {
+		edge[1] = square_to(edge[0]);
+		edge[2] = cau_unit_or(cau_cross(edge[0], edge[1]), (cau_vec3){0, 0, 1});
+		return;
+	}
 	edge[1] = cau_sub(at[2], at[0]);
 	edge[2] = corners->count == 4 ? cau_sub(at[3], at[0]) : normal_of(at);
 }
@@ -85,9 +120,18 @@ typedef struct element_shape {
 	cau_vec3 first, edge[3]; // at rest
 	cau_vec3 row[3];         // of the inverse of the edges: a point's coordinates along them
 	cau_vec3 reach;          // from a cell's middle to its corners, in such coordinates
-	double half_m;           // of a sheet's thickness
+	double half_m;           // of a sheet's thickness; a link's radius
 	double reach_m;
 } element_shape;
+
+static double half_of(const cau_tissue_cells *cells, int32_t element)
+{
+	const cau_tissue *tissue = cells->tissue;
+	if (element < tissue->triangle_count)
+		return cells->half_m[element];
+	int32_t link = element - first_link(tissue);
+	return link >= 0 ? cells->half_m[tissue->triangle_count + link] : 0;
+}
 
 static element_shape shape_of(const cau_tissue_cells *cells, int32_t element)
 {
@@ -98,16 +142,17 @@ static element_shape shape_of(const cau_tissue_cells *cells, int32_t element)
 	shape.reach = (cau_vec3){shape.reach_m * cau_length(shape.row[0]),
 	                         shape.reach_m * cau_length(shape.row[1]),
 	                         shape.reach_m * cau_length(shape.row[2])};
-	if (shape.corners.count == 3)
-		shape.half_m = cells->half_m[element];
+	shape.half_m = half_of(cells, element);
 	return shape;
 }
 
-static uint8_t layer_of(const cau_tissue *tissue, int32_t element)
+int32_t cau_tissue_cells_layer(const cau_tissue *tissue, int32_t element)
 {
-	int32_t tetrahedron = element - tissue->triangle_count;
-	return (uint8_t)(tetrahedron < 0 ? tissue->triangle_layer[element]
-	                                 : tissue->tetrahedron_layer[tetrahedron]);
+	if (element < tissue->triangle_count)
+		return tissue->triangle_layer[element];
+	if (element < first_link(tissue))
+		return tissue->tetrahedron_layer[element - tissue->triangle_count];
+	return tissue->link_layer[element - first_link(tissue)];
 }
 
 // Coordinates of a point along the edges.
@@ -123,10 +168,12 @@ static cau_vec3 corner_at_rest(const element_shape *shape, int corner)
 	return corner ? cau_add(shape->first, shape->edge[corner - 1]) : shape->first;
 }
 
-// `margin_m`: by which a sheet counts as thicker on each side.
+// `margin_m`: by which a sheet counts as thicker on each side, and a link's radius as longer.
 static bool is_inside(const element_shape *shape, cau_vec3 point, double margin_m)
 {
 	cau_vec3 at = coordinates(shape, point);
+	if (shape->corners.count == 2)
+		return at.x >= 0 && at.x <= 1 && hypot(at.y, at.z) <= shape->half_m + margin_m;
 	if (at.x < 0 || at.y < 0)
 		return false;
 	if (shape->corners.count == 3)
@@ -176,6 +223,30 @@ static const double in_the_middle[] = {0.5, 0.5, 0.5};
 
 // ---- filling
 
+static cau_bioheat_material material_of_kind(cau_layer_kind kind)
+{
+	return kind == CAU_LAYER_FAT     ? fat_tissue
+	       : kind == CAU_LAYER_LINKS ? strand_tissue
+	                                 : sheet_tissue;
+}
+
+static size_t half_count(const cau_tissue *tissue)
+{
+	return (size_t)tissue->triangle_count + (size_t)tissue->link_count;
+}
+
+static void measure_halves(cau_tissue_cells *cells)
+{
+	static const double pi = 3.14159265358979323846;
+	const cau_tissue *tissue = cells->tissue;
+	for (int32_t t = 0; t < tissue->triangle_count; t++)
+		cells->half_m[t] = cau_triangle_material(tissue, t)->thickness_m / 2;
+	for (int32_t l = 0; l < tissue->link_count; l++) {
+		double area_m2 = tissue->layer[tissue->link_layer[l]].def.link.area_m2;
+		cells->half_m[tissue->triangle_count + l] = sqrt(area_m2 / pi);
+	}
+}
+
 cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *tissue, double side_m,
                                    int32_t capacity, double ambient_c, cau_arena *arena,
                                    cau_error *error)
@@ -183,7 +254,7 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	size_t most = (size_t)capacity;
 	*cells = (cau_tissue_cells){.tissue = tissue};
 	for (int32_t i = 0; i < tissue->layer_count; i++)
-		cells->material[i] = tissue->layer[i].def.kind == CAU_LAYER_FAT ? fat_tissue : sheet_tissue;
+		cells->material[i] = material_of_kind(tissue->layer[i].def.kind);
 	cau_status status = cau_bioheat_create(&cells->bioheat, side_m, capacity, cells->material,
 	                                       tissue->layer_count, ambient_c, arena, error);
 	if (!status)
@@ -191,7 +262,7 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	if (status)
 		return status;
 	size_t elements = (size_t)cau_tissue_cells_elements(cells);
-	cells->half_m = cau_arena_array(arena, (size_t)tissue->triangle_count, sizeof(double));
+	cells->half_m = cau_arena_array(arena, half_count(tissue), sizeof(double));
 	cells->filled = cau_arena_array(arena, elements, sizeof(int32_t));
 	cells->is_filled = cau_arena_array(arena, elements, 1);
 	cells->is_near = cau_arena_array(arena, elements, 1);
@@ -199,12 +270,11 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	cells->local = cau_arena_array(arena, 3 * most, sizeof(float));
 	cells->member = cau_arena_array(arena, most, sizeof(int32_t));
 	cells->stamp = cau_arena_array(arena, most, sizeof(int32_t));
-	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->is_near || !cells->owner || !cells->local ||
-	    !cells->member || !cells->stamp)
+	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->is_near || !cells->owner ||
+	    !cells->local || !cells->member || !cells->stamp)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
 	cells->bioheat.surface_w_m2k = surface_w_m2k;
-	for (int32_t t = 0; t < tissue->triangle_count; t++)
-		cells->half_m[t] = cau_triangle_material(tissue, t)->thickness_m / 2;
+	measure_halves(cells);
 	return CAU_OK;
 }
 
@@ -216,14 +286,30 @@ cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissu
 		cau_tissue_cells_create(cells, other->tissue, bioheat->cells.side_m,
 	                            bioheat->cells.capacity, bioheat->ambient_c, arena, error);
 	if (!status)
-		memcpy(cells->half_m, other->half_m,
-		       (size_t)other->tissue->triangle_count * sizeof *cells->half_m);
+		memcpy(cells->half_m, other->half_m, half_count(other->tissue) * sizeof *cells->half_m);
 	return status;
 }
 
 int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells)
 {
-	return cells->tissue->triangle_count + cells->tissue->tetrahedron_count;
+	return first_link(cells->tissue) + cells->tissue->link_count;
+}
+
+int32_t cau_tissue_cells_element(const cau_tissue *tissue, int kind, int32_t index)
+{
+	CAU_ASSERT(kind <= CAU_ELEMENT_LINK, "elements of kind %d have no cells", kind);
+	return index + (kind == CAU_ELEMENT_TRIANGLE      ? 0
+	                : kind == CAU_ELEMENT_TETRAHEDRON ? tissue->triangle_count
+	                                                  : first_link(tissue));
+}
+
+int cau_tissue_cells_kind(const cau_tissue *tissue, int32_t element, int32_t *index)
+{
+	int kind = element < tissue->triangle_count ? CAU_ELEMENT_TRIANGLE
+	           : element < first_link(tissue)   ? CAU_ELEMENT_TETRAHEDRON
+	                                            : CAU_ELEMENT_LINK;
+	*index = element - cau_tissue_cells_element(tissue, kind, 0);
+	return kind;
 }
 
 // Whether all of a cell lies in the element: its middle is farther in than its corners are away.
@@ -231,11 +317,13 @@ static bool holds_all(const element_shape *shape, const int32_t place[3], double
 {
 	cau_vec3 at = coordinates(shape, point_in(place, side_m, in_the_middle));
 	cau_vec3 reach = shape->reach;
+	if (shape->corners.count == 2)
+		return at.x >= reach.x && at.x <= 1 - reach.x &&
+		       hypot(at.y, at.z) <= shape->half_m - shape->reach_m;
 	if (at.x < reach.x || at.y < reach.y)
 		return false;
 	if (shape->corners.count == 3)
-		return fabs(at.z) <= shape->half_m - shape->reach_m &&
-		       at.x + at.y <= 1 - reach.x - reach.y;
+		return fabs(at.z) <= shape->half_m - shape->reach_m && at.x + at.y <= 1 - reach.x - reach.y;
 	return at.z >= reach.z && at.x + at.y + at.z <= 1 - reach.x - reach.y - reach.z;
 }
 
@@ -261,12 +349,26 @@ static bool may_meet(const element_shape *shape, const int32_t place[3], double 
 {
 	cau_vec3 at = coordinates(shape, point_in(place, side_m, in_the_middle));
 	cau_vec3 reach = shape->reach;
+	if (shape->corners.count == 2)
+		return at.x >= -reach.x && at.x <= 1 + reach.x &&
+		       hypot(at.y, at.z) <= shape->half_m + shape->reach_m;
 	if (at.x < -reach.x || at.y < -reach.y)
 		return false;
 	if (shape->corners.count == 3)
-		return fabs(at.z) <= shape->half_m + shape->reach_m &&
-		       at.x + at.y <= 1 + reach.x + reach.y;
+		return fabs(at.z) <= shape->half_m + shape->reach_m && at.x + at.y <= 1 + reach.x + reach.y;
 	return at.z >= -reach.z && at.x + at.y + at.z <= 1 + reach.x + reach.y + reach.z;
+}
+
+// What is added is at ambient temperature and mixes with what is there. Tissue that has lost water
+// takes nothing in.
+static void fill_further(cau_bioheat *bioheat, int32_t cell, float share)
+{
+	if (bioheat->cells.severed[cell] || bioheat->water[cell] < 1)
+		return;
+	float *fill = &bioheat->cells.fill[cell], before = *fill;
+	*fill = fminf(before + share, 1);
+	bioheat->temperature[cell] =
+		bioheat->ambient_c + (bioheat->temperature[cell] - bioheat->ambient_c) * before / *fill;
 }
 
 static void fill_cell(cau_tissue_cells *cells, int32_t element, const element_shape *shape,
@@ -275,11 +377,11 @@ static void fill_cell(cau_tissue_cells *cells, int32_t element, const element_sh
 	cau_cells *grid = &cells->bioheat.cells;
 	int32_t cell = cau_cells_find(grid, place);
 	if (cell >= 0) {
-		if (!grid->severed[cell] && cells->bioheat.water[cell] >= 1)
-			grid->fill[cell] = fminf(grid->fill[cell] + share, 1);
+		fill_further(&cells->bioheat, cell, share);
 		return;
 	}
-	cell = cau_bioheat_add(&cells->bioheat, place, layer_of(cells->tissue, element), share);
+	cell = cau_bioheat_add(&cells->bioheat, place,
+	                       (uint8_t)cau_tissue_cells_layer(cells->tissue, element), share);
 	CAU_ASSERT(cell >= 0, "no room for a cell of element %d", element);
 	cau_vec3 at = coordinates(shape, point_in(place, grid->side_m, in_the_middle));
 	cells->owner[cell] = element;
@@ -343,16 +445,15 @@ void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, cons
 	element_corners corners = corners_of(cells->tissue, element);
 	*middle = (cau_vec3){0};
 	for (int i = 0; i < corners.count; i++)
-		*middle = cau_add(*middle, cau_scale(1.0 / corners.count,
-		                                     cau_vec3_of(position + 3 * (size_t)corners.vertex[i])));
+		*middle =
+			cau_add(*middle, cau_scale(1.0 / corners.count,
+		                               cau_vec3_of(position + 3 * (size_t)corners.vertex[i])));
 	*radius_m = 0;
 	for (int i = 0; i < corners.count; i++) {
 		cau_vec3 corner = cau_vec3_of(position + 3 * (size_t)corners.vertex[i]);
 		*radius_m = fmax(*radius_m, cau_length(cau_sub(corner, *middle)));
 	}
-	*radius_m += BOUND_CELLS * cells->bioheat.cells.side_m;
-	if (corners.count == 3)
-		*radius_m += cells->half_m[element];
+	*radius_m += BOUND_CELLS * cells->bioheat.cells.side_m + half_of(cells, element);
 }
 
 // F takes an edge at rest to the edge in the world, so row `axis` of F^-1 is the sum of the rest
@@ -486,8 +587,10 @@ void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element)
 		return;
 	element_shape shape = shape_of(cells, element);
 	int32_t count = list_members(cells, &shape);
+	bool link = shape.corners.count == 2; // its ends are in what it joins
 	for (int32_t i = 0; i < count; i++)
-		cau_bioheat_take_out(&cells->bioheat, cells->member[i]);
+		if (!link || cells->owner[cells->member[i]] == element)
+			cau_bioheat_take_out(&cells->bioheat, cells->member[i]);
 }
 
 // ---- snapshots

@@ -14,7 +14,7 @@ typedef struct cau_tissue_cells {
 	cau_bioheat_material material[CAU_MAX_LAYERS];
 	double *half_m; // (triangle_count): half of a sheet's thickness as the cells were created
 	int32_t filled_count;
-	int32_t *filled;    // elements in the order of filling: triangles, then tetrahedra
+	int32_t *filled;    // elements in the order of filling
 	uint8_t *is_filled; // (elements)
 	int32_t *owner;     // (capacity): the element that a cell moves with
 	float *local;       // (capacity x 3): its middle in the owner, by cau_tissue_cells_at
@@ -35,11 +35,20 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissue_cells *other,
                                         cau_arena *arena, cau_error *error);
 
-// Elements that may have cells: triangles, and after them tetrahedra.
+// Elements that may have cells: triangles, after them tetrahedra, and after them links.
 int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells);
+
+// The element's number among all, from its kind (cau_element_kind) and its number in that.
+int32_t cau_tissue_cells_element(const cau_tissue *tissue, int kind, int32_t index);
+
+// Returns its kind, and its number in that.
+int cau_tissue_cells_kind(const cau_tissue *tissue, int32_t element, int32_t *index);
 
 // Places that filling an element looks at, by which it takes its time.
 int32_t cau_tissue_cells_places(const cau_tissue_cells *cells, int32_t element);
+
+// Its layer.
+int32_t cau_tissue_cells_layer(const cau_tissue *tissue, int32_t element);
 
 // Makes the cells of an element, at ambient temperature. Cells that it shares with elements that
 // were filled before are filled further. Nothing happens if it is filled already. Returns false if

@@ -225,7 +225,14 @@ void cau_dissection_part(cau_dissection *dissection, uint32_t *layers)
 void cau_dissection_lose_element(cau_dissection *dissection, int primitive, int32_t index)
 {
 	CAU_ASSERT(dissection->doses.dose != NULL, "an element parts where edges do");
-	cau_doses_lose(dissection, primitive, index);
+	if (primitive != CAU_PRIMITIVE_LINK) {
+		cau_doses_lose(dissection, primitive, index);
+		return;
+	}
+	const cau_tissue *tissue = dissection->tissue;
+	const int32_t *end = tissue->link + 2 * (size_t)index;
+	cau_dissection_lose_edge(dissection, cau_edge_table_find(&tissue->edges, end[0], end[1]),
+	                         (uint16_t)(1u << tissue->link_layer[index]));
 }
 
 // Of the primitives of a kind that share the edge, the first one's material; NULL: there is none.

@@ -89,7 +89,8 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 // something.
 void cau_dissection_part(cau_dissection *dissection, uint32_t *layers);
 
-// Removes one living triangle or tetrahedron. Only where elements part (CAU_PARTING_ELEMENTS).
+// Removes one living triangle, tetrahedron or link. Only where elements part
+// (CAU_PARTING_ELEMENTS).
 void cau_dissection_lose_element(cau_dissection *dissection, int primitive, int32_t index);
 
 // Raises an edge's exposure so that cau_dissection_heated is at least `share` (0 to 1) there.

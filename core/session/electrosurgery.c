@@ -113,8 +113,8 @@ static double touch_m(const cau_session *session, const cau_tool *tool)
 // Edges near a tool's hot part are visited: their elements get cells.
 typedef struct edge_visit {
 	cau_session *session;
-	int32_t left; // places that may still be looked at to fill elements that are not urgent
-	bool full;    // there is no room for more cells
+	int32_t left;         // places that may still be looked at to fill elements that are not urgent
+	bool full;            // there is no room for more cells
 	cau_vec3 least, most; // box at rest around the ends
 } edge_visit;
 
@@ -126,16 +126,22 @@ static void grow(edge_visit *visit, cau_vec3 at)
 		(cau_vec3){fmax(visit->most.x, at.x), fmax(visit->most.y, at.y), fmax(visit->most.z, at.z)};
 }
 
+static const int kind_of[CAU_PRIMITIVE_KINDS] = {
+	[CAU_PRIMITIVE_TRIANGLE] = CAU_ELEMENT_TRIANGLE,
+	[CAU_PRIMITIVE_TETRAHEDRON] = CAU_ELEMENT_TETRAHEDRON,
+	[CAU_PRIMITIVE_LINK] = CAU_ELEMENT_LINK,
+};
+
 // `urgent`: heat or sparks may reach them in the next ticks.
 static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 {
 	const cau_tissue *tissue = &visit->session->tissue;
 	const cau_edge_table *edges = &tissue->edges;
-	for (int p = CAU_PRIMITIVE_TRIANGLE; p <= CAU_PRIMITIVE_TETRAHEDRON; p++)
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
-			int kind = p == CAU_PRIMITIVE_TRIANGLE ? CAU_ELEMENT_TRIANGLE : CAU_ELEMENT_TETRAHEDRON;
-			int32_t element = p == CAU_PRIMITIVE_TRIANGLE ? index : tissue->triangle_count + index;
+			int kind = kind_of[p];
+			int32_t element = cau_tissue_cells_element(tissue, kind, index);
 			if (!visit->session->dissection.alive.element[kind][index] ||
 			    visit->session->cells->is_filled[element] || visit->full ||
 			    (visit->left <= 0 && !urgent))
@@ -255,9 +261,8 @@ static void mark_near(cau_session *session, const cau_tool *tool)
 	for (int32_t k = 0; k < cells->filled_count; k++) {
 		int32_t element = cells->filled[k];
 		cau_tissue_cells_bound(cells, element, session->position, &middle, &radius);
-		cells->is_near[element] =
-			cau_length(cau_sub(middle, center)) <= around + radius + reach &&
-			hot_distance(tool, middle) <= radius + reach;
+		cells->is_near[element] = cau_length(cau_sub(middle, center)) <= around + radius + reach &&
+		                          hot_distance(tool, middle) <= radius + reach;
 	}
 }
 
@@ -349,22 +354,27 @@ static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
 	return any;
 }
 
+static int primitive_of(int kind)
+{
+	int p = 0;
+	while (kind_of[p] != kind)
+		p++;
+	return p;
+}
+
 static void lose_element(cau_session *session, int32_t element, uint32_t *layers)
 {
-	const cau_tissue *tissue = &session->tissue;
-	bool triangle = element < tissue->triangle_count;
-	int32_t index = triangle ? element : element - tissue->triangle_count;
-	int primitive = triangle ? CAU_PRIMITIVE_TRIANGLE : CAU_PRIMITIVE_TETRAHEDRON;
-	*layers |= 1u << (triangle ? tissue->triangle_layer[index] : tissue->tetrahedron_layer[index]);
-	cau_dissection_lose_element(&session->dissection, primitive, index);
+	int32_t index;
+	int kind = cau_tissue_cells_kind(&session->tissue, element, &index);
+	*layers |= 1u << cau_tissue_cells_layer(&session->tissue, element);
+	cau_dissection_lose_element(&session->dissection, primitive_of(kind), index);
 }
 
 static bool lives(const cau_session *session, int32_t element)
 {
-	const cau_alive *alive = &session->dissection.alive;
-	int32_t triangles = session->tissue.triangle_count;
-	return element < triangles ? alive->element[CAU_ELEMENT_TRIANGLE][element]
-	                           : alive->element[CAU_ELEMENT_TETRAHEDRON][element - triangles];
+	int32_t index;
+	int kind = cau_tissue_cells_kind(&session->tissue, element, &index);
+	return session->dissection.alive.element[kind][index];
 }
 
 // Removes the elements with cells in the box that are separated now.
@@ -385,11 +395,10 @@ static void remove_cells(cau_session *session)
 {
 	for (int32_t k = 0; k < session->dissection.removed_count; k++) {
 		const cau_removed *removed = &session->dissection.removed[k];
-		if (removed->kind == CAU_ELEMENT_TRIANGLE)
-			cau_tissue_cells_remove(session->cells, removed->element);
-		else if (removed->kind == CAU_ELEMENT_TETRAHEDRON)
-			cau_tissue_cells_remove(session->cells,
-			                        session->tissue.triangle_count + removed->element);
+		if (removed->kind <= CAU_ELEMENT_LINK)
+			cau_tissue_cells_remove(
+				session->cells,
+				cau_tissue_cells_element(&session->tissue, (int)removed->kind, removed->element));
 	}
 }
 

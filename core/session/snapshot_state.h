@@ -15,7 +15,7 @@ enum {
 	// 11: a tool's generator and blade; cells of tissue. No release wrote earlier versions, and
 	// none
 	// is read.
-	CAU_SNAPSHOT_VERSION = 11,
+	CAU_SNAPSHOT_VERSION = 12,
 	CAU_SNAPSHOT_HASH_BYTES = 8, // the last
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };

@@ -143,6 +143,86 @@ static void a_slit_separates_an_element(void **state)
 	rig_finish(&r);
 }
 
+// Two sheets, 2 mm apart, and links between their corners.
+static rig tied_sheets(void)
+{
+	static const double below[] = {0, 0, 0, 4e-3, 0, 0, 0, 4e-3, 0};
+	static const double above[] = {0, 0, 2e-3, 4e-3, 0, 2e-3, 0, 4e-3, 2e-3};
+	static const int32_t triangle[] = {0, 1, 2};
+	rig r;
+	rig_begin(&r);
+	rig_add_triangles(&r, 3, below, 1, triangle);
+	rig_add_triangles(&r, 3, above, 1, triangle);
+	rig_add_links(&r, 1, 0, 2.5e-3);
+	rig_build(&r, NULL, 1);
+	return r;
+}
+
+// Cells in the plane half way between the sheets.
+static int32_t take_out_half_way(cau_tissue_cells *cells)
+{
+	int32_t found = 0;
+	for (int32_t i = 0; i < cells->bioheat.cells.count; i++)
+		if (cells->bioheat.cells.place[3 * i + 2] == 4 && ++found)
+			cau_bioheat_take_out(&cells->bioheat, i);
+	return found;
+}
+
+// A link has its section times its length of tissue, and goes when its cells are interrupted. What
+// it ties keeps its own cells.
+static void a_link_is_of_cells(void **state)
+{
+	(void)state;
+	rig r = tied_sheets();
+	assert_int_equal(r.tissue.link_count, 3);
+	cau_tissue_cells cells, alone;
+	assert_int_equal(cau_tissue_cells_create(&alone, &r.tissue, SIDE_M, 4000, 37, &r.arena, NULL),
+	                 CAU_OK);
+	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_ELEMENT_LINK, 0), index;
+	assert_int_equal(cau_tissue_cells_kind(&r.tissue, link, &index), CAU_ELEMENT_LINK);
+	assert_int_equal(index, 0);
+	assert_true(cau_tissue_cells_fill(&alone, link));
+	double exact = r.tissue.layer[2].def.link.area_m2 * r.tissue.link_length[0];
+	assert_near(volume_of(&alone), exact, 0.05 * exact);
+
+	fill_all(&cells, &r, SIDE_M, 4000);
+	for (int32_t l = 0; l < 3; l++)
+		assert_false(cau_tissue_cells_separated(&cells, link + l));
+	assert_true(take_out_half_way(&cells) > 3);
+	for (int32_t l = 0; l < 3; l++)
+		assert_true(cau_tissue_cells_separated(&cells, link + l));
+	cau_tissue_cells_remove(&cells, link);
+	for (int32_t t = 0; t < 2; t++)
+		assert_false(cau_tissue_cells_separated(&cells, t));
+	rig_finish(&r);
+}
+
+// Its cells lie around it wherever its ends are, and conduct along it as far as it is long.
+static void a_link_s_cells_move_with_its_ends(void **state)
+{
+	(void)state;
+	rig r = tied_sheets();
+	cau_tissue_cells cells;
+	assert_int_equal(cau_tissue_cells_create(&cells, &r.tissue, SIDE_M, 4000, 37, &r.arena, NULL),
+	                 CAU_OK);
+	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_ELEMENT_LINK, 0);
+	assert_true(cau_tissue_cells_fill(&cells, link));
+	double x[18];
+	for (int i = 0; i < 18; i += 3) { // pulled to twice its length, and turned
+		const double *rest = r.tissue.rest + i;
+		memcpy(x + i, (double[]){2 * rest[2] + 0.1, rest[1], rest[0]}, 3 * sizeof *x);
+	}
+	double radius = sqrt(r.tissue.layer[2].def.link.area_m2 / 3.14159265358979);
+	cau_vec3 a = cau_vec3_of(x + 3 * (size_t)r.tissue.link[0]);
+	for (int32_t i = 0; i < cells.bioheat.cells.count; i++) {
+		cau_vec3 off = cau_sub(cau_tissue_cells_at(&cells, i, x), a);
+		assert_true(hypot(off.y, off.z) < radius + SIDE_M);
+		cau_tissue_cells_stretch(&cells, i, x);
+		assert_near(cells.bioheat.cells.pull[3 * i + 2], 0.5, 1e-5); // it lies along z at rest
+	}
+	rig_finish(&r);
+}
+
 static void there_may_be_no_room(void **state)
 {
 	(void)state;
@@ -162,6 +242,8 @@ int main(void)
 		cmocka_unit_test(cells_move_with_the_tissue),
 		cmocka_unit_test(conductivity_is_pulled_back),
 		cmocka_unit_test(a_slit_separates_an_element),
+		cmocka_unit_test(a_link_is_of_cells),
+		cmocka_unit_test(a_link_s_cells_move_with_its_ends),
 		cmocka_unit_test(there_may_be_no_room),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

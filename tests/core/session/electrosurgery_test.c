@@ -221,6 +221,59 @@ static void a_rubbing_blade_heats_tissue(void **state)
 	cau_session_destroy(session);
 }
 
+static int32_t living_links(const cau_session *session)
+{
+	int32_t count = 0;
+	for (int32_t l = 0; l < session->tissue.link_count; l++)
+		count += session->dissection.alive.element[CAU_ELEMENT_LINK][l];
+	return count;
+}
+
+// Links of the middle row lean to vertices 3 mm beside it.
+static const double half_way_m = -1.5e-3;
+
+static void draw_between_layers(cau_session *session, int first, int end)
+{
+	for (int tick = first; tick < end; tick++) {
+		stage_move(session, "hook", before_m + tick * speed_m_s / 60, half_way_m, 1e-3);
+		stage_step(session, 1);
+	}
+}
+
+// A ball that is drawn between fascia and fat: current goes through the links, and they part. Their
+// cells are state.
+static void power_parts_links(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = stage_layered();
+	scene->energy = CAU_ENERGY_TISSUE;
+	scene->parting = CAU_PARTING_ELEMENTS;
+	scene->cell_m = 5e-4; // elements of the fat are 6 mm large: they would take all cells
+	scene->tools[0].shape = CAU_TOOL_SPHERE;
+	scene->tools[0].hot_radius_m = scene->tools[0].grid_step_m = 4e-4;
+	scene->tools[0].power_w = 30;
+	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 2);
+	int32_t links = living_links(session);
+	stage_move(session, "hook", before_m, half_way_m, 1e-3);
+	stage_step(session, 30);
+	stage_energize(session, "hook", 1);
+	draw_between_layers(session, 0, 60);
+	stage_bytes bytes = stage_snapshot(session);
+	assert_int_equal(cau_session_restore(other, bytes.bytes, bytes.count, NULL, NULL), CAU_OK);
+	free(bytes.bytes);
+	draw_between_layers(session, 60, 200);
+	draw_between_layers(other, 60, 200);
+	assert_true(cau_session_hash(session) == cau_session_hash(other));
+	assert_in_range(living_links(session), 1, links - 3);
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(session, &ledger);
+	assert_true(ledger.far_j > 0);
+	assert_ledger_closes(session);
+	cau_session_destroy(session);
+	cau_session_destroy(other);
+	free(scene);
+}
+
 static void edges_cannot_part_by_power(void **state)
 {
 	(void)state;
@@ -243,6 +296,7 @@ int main(void)
 		cmocka_unit_test(a_changed_thickness_is_restored),
 		cmocka_unit_test(bipolar_jaws_heat_what_lies_between),
 		cmocka_unit_test(a_rubbing_blade_heats_tissue),
+		cmocka_unit_test(power_parts_links),
 		cmocka_unit_test(edges_cannot_part_by_power),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
