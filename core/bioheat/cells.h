@@ -13,9 +13,10 @@ enum {
 	CAU_CELL_MATERIALS = 256,
 };
 
-// A pull-back is between its inverse and this. Jaws compress to a fifth; beyond that an element
-// counts as no flatter.
-#define CAU_PULL_MOST 25.0
+// A pull-back is between its inverse and this. Jaws compress to a fifth, which is 25; beyond this
+// an element counts as no flatter. A power of two: as a float it and its inverse are exact, so that
+// snapshots can ask for them.
+#define CAU_PULL_MOST 32.0
 
 typedef struct cau_cells {
 	double side_m;

@@ -354,20 +354,18 @@ static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
 	return any;
 }
 
-static int primitive_of(int kind)
-{
-	int p = 0;
-	while (kind_of[p] != kind)
-		p++;
-	return p;
-}
+static const int primitive_of[CAU_ELEMENT_LINK + 1] = {
+	[CAU_ELEMENT_TRIANGLE] = CAU_PRIMITIVE_TRIANGLE,
+	[CAU_ELEMENT_TETRAHEDRON] = CAU_PRIMITIVE_TETRAHEDRON,
+	[CAU_ELEMENT_LINK] = CAU_PRIMITIVE_LINK,
+};
 
 static void lose_element(cau_session *session, int32_t element, uint32_t *layers)
 {
 	int32_t index;
 	int kind = cau_tissue_cells_kind(&session->tissue, element, &index);
 	*layers |= 1u << cau_tissue_cells_layer(&session->tissue, element);
-	cau_dissection_lose_element(&session->dissection, primitive_of(kind), index);
+	cau_dissection_lose_element(&session->dissection, primitive_of[kind], index);
 }
 
 static bool lives(const cau_session *session, int32_t element)

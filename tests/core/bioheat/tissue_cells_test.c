@@ -118,6 +118,24 @@ static void conductivity_is_pulled_back(void **state)
 	rig_finish(&sheet);
 }
 
+// However flat or long an element is: a snapshot has the value as a float, and asks for the bounds.
+static void a_pull_back_has_bounds(void **state)
+{
+	(void)state;
+	rig slab = small_slab();
+	cau_tissue_cells cells;
+	fill_all(&cells, &slab, SIDE_M, 4000);
+	double x[15];
+	for (int i = 0; i < 15; i++)
+		x[i] = (i % 3 ? 0.01 : 100) * slab.tissue.rest[i];
+	cau_tissue_cells_stretch(&cells, 0, x);
+	for (int axis = 0; axis < 3; axis++) {
+		double pull = cells.bioheat.cells.pull[axis];
+		assert_true(pull == (axis ? CAU_PULL_MOST : 1 / CAU_PULL_MOST));
+	}
+	rig_finish(&slab);
+}
+
 // A slit of cells: an element holds until it goes all the way through.
 static void a_slit_separates_an_element(void **state)
 {
@@ -241,6 +259,7 @@ int main(void)
 		cmocka_unit_test(cells_have_the_tissue_s_volume),
 		cmocka_unit_test(cells_move_with_the_tissue),
 		cmocka_unit_test(conductivity_is_pulled_back),
+		cmocka_unit_test(a_pull_back_has_bounds),
 		cmocka_unit_test(a_slit_separates_an_element),
 		cmocka_unit_test(a_link_is_of_cells),
 		cmocka_unit_test(a_link_s_cells_move_with_its_ends),
