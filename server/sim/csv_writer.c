@@ -8,7 +8,7 @@
 // All but the last columns, the stages' times, depend on scene and commands alone: two runs have
 // the same bytes there.
 
-// column, format, value of `frame`, `s`, its statistics, and `balance`
+// column, format, value of `frame`, `s`, its statistics, `balance` and `ledger`
 #define COLUMNS(X)                                                                                 \
 	X("tick", PRIu64, frame->tick)                                                                 \
 	X("time_s", ".9g", frame->time_s)                                                              \
@@ -35,7 +35,15 @@
 	X("tip_temperature_max_c", ".6g", hottest_tip(frame))                                          \
 	X("kinetic_j", ".9g", balance->kinetic_j)                                                      \
 	X("elastic_j", ".9g", balance->elastic_j)                                                      \
-	X("gravitational_j", ".9g", balance->gravitational_j)
+	X("gravitational_j", ".9g", balance->gravitational_j)                                          \
+	X("delivered_j", ".9g", ledger->delivered_j)                                                   \
+	X("far_j", ".9g", ledger->far_j)                                                               \
+	X("blade_j", ".9g", ledger->blade_j)                                                           \
+	X("stored_j", ".9g", ledger->stored_j)                                                         \
+	X("boiled_j", ".9g", ledger->boiled_j)                                                         \
+	X("perfused_j", ".9g", ledger->perfused_j)                                                     \
+	X("ambient_j", ".9g", ledger->ambient_j)                                                       \
+	X("shed_j", ".9g", ledger->shed_j)
 
 // suffix of a tool's column, value of `tool`
 #define TOOL_COLUMNS(X)                                                                            \
@@ -46,7 +54,9 @@
 	X("torque_y_nm", tool->raw_torque_nm[1])                                                       \
 	X("torque_z_nm", tool->raw_torque_nm[2])                                                       \
 	X("temperature_c", tool->tip_temperature_c)                                                    \
-	X("energy_j", tool->energy_j)
+	X("energy_j", tool->energy_j)                                                                  \
+	X("delivered_w", tool->delivered_w)                                                            \
+	X("load_ohm", tool->load_ohm)
 
 static double largest_force(const cau_frame *frame)
 {
@@ -106,7 +116,7 @@ static void write_tool(FILE *file, const cau_tool_state *tool)
 }
 
 void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
-                  const cau_balance *balance)
+                  const cau_balance *balance, const cau_energy_ledger *ledger)
 {
 	const cau_statistics *s = &frame->statistics;
 	const char *comma = "";

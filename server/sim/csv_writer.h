@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every tick as comma-separated values: statistics, energies, force, torque, temperature and heat
-// of each tool that the scene has, and last the time that each stage took. README.md has the
-// columns.
+// Every tick as comma-separated values: statistics, energies, the ledger of instruments' energy,
+// what each tool that the scene has bears and gives, and last the time that each stage took.
+// README.md has the columns.
 #pragma once
 
 #include <stdio.h>
@@ -14,4 +14,4 @@ void sim_csv_begin(FILE *file, const cau_scene_def *scene);
 // Stage times are the machine's, and 0 unless the session has a clock. Cells of a tool that is gone
 // are empty.
 void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
-                  const cau_balance *balance);
+                  const cau_balance *balance, const cau_energy_ledger *ledger);

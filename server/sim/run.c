@@ -122,7 +122,9 @@ static cau_status write_outputs(run *r, const cau_frame *frame)
 		cau_status status = cau_session_balance(r->session, &balance);
 		if (status)
 			return cau_fail(r->error, status, NULL, "no memory for a tick's energies");
-		sim_csv_tick(r->csv, r->scene, frame, &balance);
+		cau_energy_ledger ledger;
+		cau_session_read_ledger(r->session, &ledger);
+		sim_csv_tick(r->csv, r->scene, frame, &balance, &ledger);
 	}
 	if (r->vtu_open && frame->tick % (uint64_t)r->options->vtu_every == 0)
 		return sim_vtu_write(&r->vtu, r->session, r->error);

@@ -590,6 +590,12 @@ cau_status cau_session_balance(cau_session *s, cau_balance *balance)
 	return CAU_OK;
 }
 
+void cau_session_read_ledger(const cau_session *s, cau_energy_ledger *ledger)
+{
+	(void)s;
+	*ledger = (cau_energy_ledger){0};
+}
+
 cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_mesh_report *report,
                           cau_error *error)
 {

@@ -112,6 +112,30 @@ static void ticks_tell_energies_and_times(void **state)
 	free(text);
 }
 
+// A needle that cuts by power: what it delivered is found again, and the generator's 30 W are met.
+static void ticks_tell_the_ledger(void **state)
+{
+	(void)state;
+	size_t bytes;
+	expect_files_change_nothing("fascia-power");
+	char *text = fixture_read(fixture_path("ticks.csv"), &bytes);
+	const char *last = strstr(text, "\n120,");
+	assert_non_null(last);
+	double in =
+		cell_of(last, column_of(text, "delivered_j")) + cell_of(last, column_of(text, "blade_j"));
+	double out = 0;
+	for (const char *const *column = (const char *const[]){"stored_j", "boiled_j", "perfused_j",
+	                                                       "ambient_j", "shed_j", NULL};
+	     *column; column++)
+		out += cell_of(last, column_of(text, *column));
+	assert_true(in > 1);
+	assert_true(fabs(in - out) < 1e-6 * in);
+	double watts = cell_of(last, column_of(text, "needle_delivered_w"));
+	assert_true(watts > 0 && watts <= 30);
+	assert_true(cell_of(last, column_of(text, "needle_load_ohm")) > 0);
+	free(text);
+}
+
 // A cold hook presses taut fascia, which pushes it up.
 static void ticks_tell_forces(void **state)
 {
@@ -195,6 +219,7 @@ int main(int argument_count, char **arguments)
 		cmocka_unit_test(print_cut_prints_commands_of_the_scenes_tool),
 		cmocka_unit_test(files_change_nothing),
 		cmocka_unit_test(ticks_tell_energies_and_times),
+		cmocka_unit_test(ticks_tell_the_ledger),
 		cmocka_unit_test(ticks_tell_forces),
 		cmocka_unit_test(ticks_are_the_same_but_for_their_times),
 		cmocka_unit_test(the_cut_parts_tissue),
