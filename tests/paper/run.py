@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the paper's figures and tables and the validation of the method, and writes README.md and validation.md here.
+"""Makes the paper's figures and tables and the validation of the method, and writes README.md, validation.md and energy.md
+here.
 
-Usage: tests/paper/run.py [--programs build/bin]          all of it, and both pages with their pictures
+Usage: tests/paper/run.py [--programs build/bin]          all of it, and all pages with their pictures
        tests/paper/run.py --quick [--programs build/bin]  a small form of each, against expected.json;
                                                           writes nothing, fails where a figure is off
-       tests/paper/run.py --only NAME...                  these parts alone; writes their pictures and
-                                                          prints their sections
+       tests/paper/run.py --only NAME...                  these parts alone; writes their pictures, pages that
+                                                          they are all of, and prints their sections
        tests/paper/run.py --keep FILE                     all of it, but what FILE has from a run that was
                                                           interrupted; each part is kept there when made
 
@@ -29,6 +30,7 @@ import costs  # noqa: E402
 import cuts  # noqa: E402
 import dissection  # noqa: E402
 import elements  # noqa: E402
+import energy  # noqa: E402
 import errors  # noqa: E402
 import heat  # noqa: E402
 import held  # noqa: E402
@@ -46,7 +48,8 @@ PAPER = {"strain_limits": strain_limits, "patterns": patterns, "parting": partin
          "dissection": dissection, "viewer": viewer, "ignition": ignition, "remeshing": remeshing, "costs": costs}
 VALIDATION = {"elements": elements, "heat": heat, "conservation": conservation, "loads": loads, "contact": contact,
               "errors": errors, "cuts": cuts}
-PARTS = PAPER | VALIDATION
+ENERGY = {"energy": energy}
+PARTS = PAPER | VALIDATION | ENERGY
 NOT_QUICK = {"viewer"}  # the browser's own tests hold the viewer; what is cut in its pictures, figure 7's figures
 
 PAPER_HEAD = """# The paper, reproduced
@@ -67,6 +70,12 @@ VALIDATION_HEAD = """# The method, validated
 This page has the method's errors where an answer is known, and shows on what its results depend. `tests/paper/run.py` writes
 it, with [the paper's page](README.md). Each section names the command that makes its numbers. The test `paper_quick` checks
 some of each in a small form (`expected.json`).
+"""
+
+ENERGY_HEAD = """# Energy, validated
+
+This page holds energy `tissue` ([core/bioheat](../../core/bioheat/README.md)) against its own ledger, and shows on what a cut
+by power depends. `tests/paper/run.py --only energy` writes it. The test `paper_quick` checks some of it (`expected.json`).
 """
 
 
@@ -173,10 +182,13 @@ def made_line(seconds, load_before, failed):
 
 
 def write_pages(sections, last):
+    """Each page of which all parts are there."""
     for file_name, head, parts, tail in (("README.md", PAPER_HEAD, PAPER, []),
-                                         ("validation.md", VALIDATION_HEAD, VALIDATION, [held.table()])):
-        with open(os.path.join(FOLDER, file_name), "w", encoding="utf-8") as file:
-            file.write("\n".join([head, last, *(sections[name] for name in parts), *tail]))
+                                         ("validation.md", VALIDATION_HEAD, VALIDATION, [held.table]),
+                                         ("energy.md", ENERGY_HEAD, ENERGY, [])):
+        if parts.keys() <= sections.keys():
+            with open(os.path.join(FOLDER, file_name), "w", encoding="utf-8") as file:
+                file.write("\n".join([head, last, *(sections[name] for name in parts), *(make() for make in tail)]))
 
 
 def main():
@@ -188,7 +200,7 @@ def main():
     status = check(figures, names) if given.quick else 0
     if given.only and not given.quick:
         print("\n".join(sections.values()))
-    elif not given.quick:
+    if not given.quick:
         write_pages(sections, made_line(took, load_before, failed))
     say(f"{len(names) - len(failed)} of {len(names)} parts in {duration(took)}")
     return 1 if failed else status

@@ -68,7 +68,7 @@ class Parts(unittest.TestCase):
         with open(os.path.join(run.FOLDER, "expected.json"), encoding="utf-8") as file:
             expected = run.json.load(file)
         self.assertEqual(set(expected), set(run.PARTS) - run.NOT_QUICK)
-        self.assertEqual(set(run.PARTS), set(run.PAPER) | set(run.VALIDATION))
+        self.assertEqual(set(run.PARTS), set(run.PAPER) | set(run.VALIDATION) | set(run.ENERGY))
 
     def test_jobs_come_back_in_their_order(self):
         self.assertEqual(sim.at_once([lambda k=k: k for k in range(9)]), list(range(9)))
