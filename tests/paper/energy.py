@@ -16,9 +16,9 @@ CELLS_MM = (0.5, 0.35, 0.25, 0.2)
 MESHES = ((20, 15), (40, 30), (80, 60))
 
 ROWS = [
-    ("1, 2: regime and width at 10, 25 and 50 W", "no", "liver has no material of its own in a scene yet, and the paper's abstract does not tell the blade's speed"),
-    ("3: heat capacity near 100 degC", "no", "with boiling at one temperature it depends on the window, which the abstract does not tell"),
-    ("4 to 6: necrosis beside a cut", "no", "clamp force, jaw width and times are needed first; a session does not tell damage as a length yet"),
+    ("1, 2: regime and width at 10, 25 and 50 W", "no", "liver has no material of its own in a scene yet, and the paper's abstract does not name the blade's speed"),
+    ("3: heat capacity near 100 degC", "no", "with boiling at one temperature it depends on the window, which the abstract does not name"),
+    ("4 to 6: necrosis beside a cut", "no", "clamp force, jaw width and times are needed first; a session does not report damage as a length yet"),
     ("9 to 11: jaws and shears", "no", "blades' heat capacity and cooling are assumed here, so they can confirm nothing"),
     ("12, 13: tips after use, by rank", "no", "the same"),
     ("14 to 17: vessels", "no", "there are no vessels yet"),
@@ -98,7 +98,7 @@ def verdict(runs, what):
 def page(details):
     every = [m for runs in details.values() for _, m in runs]
     worst = max(m["gap"] for m in every)
-    rows = ["| row | compared | why |", "|---|---|---|"] + [f"| {row} | {told} | {why} |" for row, told, why in ROWS]
+    rows = ["| quantity | compared | why |", "|---|---|---|"] + [f"| {row} | {told} | {why} |" for row, told, why in ROWS]
     return f"""## What was run
 
 The scene `fascia-power`: a needle of 1 mm is drawn through {LENGTH_MM} mm of taut fascia of 0.5 mm, with 30 W, 1,150 V, 7 mm/s
