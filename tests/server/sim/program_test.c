@@ -3,6 +3,8 @@
 // the program.
 #include "program_run.h"
 
+#include <math.h>
+
 static void exit_codes_are_as_documented(void **state)
 {
 	(void)state;
@@ -130,9 +132,13 @@ static void ticks_tell_the_ledger(void **state)
 		out += cell_of(last, column_of(text, *column));
 	assert_true(in > 1);
 	assert_true(fabs(in - out) < 1e-6 * in);
-	double watts = cell_of(last, column_of(text, "needle_delivered_w"));
-	assert_true(watts > 0 && watts <= 30);
-	assert_true(cell_of(last, column_of(text, "needle_load_ohm")) > 0);
+	double watts = 0, ohm = 0; // in some ticks nothing is within reach
+	for (const char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
+		watts = fmax(watts, cell_of(line, column_of(text, "needle_delivered_w")));
+		ohm = fmax(ohm, cell_of(line, column_of(text, "needle_load_ohm")));
+	}
+	assert_true(watts > 10 && watts <= 30);
+	assert_true(ohm > 100);
 	free(text);
 }
 
