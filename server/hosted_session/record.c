@@ -7,9 +7,10 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/resend.h"
 
-// Of the store for each tick that a paused session is stepped, besides what the log takes: one that
-// is stepped for long has a checkpoint from time to time, and a restart does not replay all of it.
-enum { REACHED_BYTES = 4096 };
+// Of checkpoints for each tick that a paused session is stepped: one that is stepped for long has a
+// checkpoint from time to time, and a restart does not replay all of it. The disk takes each byte
+// twice, in the write-ahead log and in the file. So a tick stays below 16 KiB with its log entries.
+enum { REACHED_BYTES = 2048 };
 
 cau_store_batch *cau_record_batch(cau_hosted *h)
 {

@@ -32,11 +32,13 @@ static bool is_own_fault(cau_status status)
 static cau_status write_batch(struct cau_store *store, struct cau_store_batch *batch,
                               int64_t now_ms, cau_error *error)
 {
+	struct cau_store_uncounted before = store->writer.uncounted;
 	cau_status status = cau_store_execute(store->writing, "SAVEPOINT batch", "writing", error);
 	for (const struct record *record = batch->first; record && !status; record = record->next)
 		status = cau_store_writer_apply(&store->writer, record, now_ms, error);
 	if (is_own_fault(status)) {
 		batch->error = *error;
+		store->writer.uncounted = before;
 		status = cau_store_execute(store->writing, "ROLLBACK TO batch", "writing", error);
 	}
 	if (!status)
@@ -44,8 +46,9 @@ static cau_status write_batch(struct cau_store *store, struct cau_store_batch *b
 	return status;
 }
 
-static void roll_back(struct cau_store *store)
+static void roll_back(struct cau_store *store, const struct cau_store_uncounted *before)
 {
+	store->writer.uncounted = *before;
 	// SQLite has done so itself after some failures.
 	if (!sqlite3_get_autocommit(store->writing))
 		sqlite3_exec(store->writing, "ROLLBACK", NULL, NULL, NULL);
@@ -58,6 +61,7 @@ static cau_status write_group(struct cau_store *store, cau_error *error)
 	CAU_ASSERT(store->committing != NULL, "nothing to write, in state %d", (int)store->state);
 	int64_t now_ms = store->config.wall_clock_ms();
 	int count = 0;
+	struct cau_store_uncounted before = store->writer.uncounted;
 	cau_status status = cau_store_execute(store->writing, "BEGIN IMMEDIATE", "writing", error);
 	for (struct cau_store_batch *batch = store->committing; batch && !status; batch = batch->next) {
 		status = write_batch(store, batch, now_ms, error);
@@ -68,7 +72,7 @@ static cau_status write_group(struct cau_store *store, cau_error *error)
 	if (!status)
 		status = cau_store_execute(store->writing, "COMMIT", "writing", error);
 	if (status)
-		roll_back(store);
+		roll_back(store, &before);
 	else
 		cau_store_count_commit(store, count, cau_store_monotonic_s() - start_s);
 	store->unseen_bytes += status ? 0 : bytes;

@@ -38,7 +38,7 @@ static cau_status shrink_branch(sqlite3 *database, int64_t session, int64_t bran
 	char sql[256];
 	struct cau_store_outcome done;
 	snprintf(sql, sizeof sql,
-	         "UPDATE branches SET bytes = bytes - ?3, end_tick = min(end_tick, %lld)"
+	         "UPDATE branches SET bytes = max(bytes - ?3, 0), end_tick = min(end_tick, %lld)"
 	         " WHERE session = ?1 AND branch = ?2",
 	         (long long)end_tick);
 	return cau_store_run(database, sql, (const int64_t[]){session, branch, bytes}, &done, error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "write.h"
 
+#include "cautery/assert.h"
 #include "fault.h"
 #include "import.h"
 
@@ -53,7 +54,10 @@ static const char *const statement_sql[] = {
 #undef X
 };
 
-enum { ROW_BYTES = 64 }; // a row's cost beside its payload, roughly
+enum {
+	ROW_BYTES = 64,         // a row's cost beside its payload, roughly
+	UNCOUNTED_BYTES = 4096, // of a branch, at most: a page of the log
+};
 
 cau_status cau_store_writer_init(struct cau_store_writer *writer, sqlite3 *database,
                                  cau_error *error)
@@ -157,6 +161,73 @@ static cau_status grow_branch(struct cau_store_writer *writer, int64_t key, int6
 	if (!status && sqlite3_changes(writer->database) == 0)
 		return cau_fail(error, CAU_NOT_FOUND, "branch", "no branch %lld", (long long)branch);
 	return status;
+}
+
+static cau_status check_branch(struct cau_store_writer *writer, int64_t key, int64_t branch,
+                               cau_error *error)
+{
+	bool found;
+	int64_t value[3];
+	sqlite3_bind_int64(writer->statement[FIND_BRANCH], 1, key);
+	sqlite3_bind_int64(writer->statement[FIND_BRANCH], 2, branch);
+	cau_status status = look(writer, FIND_BRANCH, &found, value, error);
+	if (!status && !found)
+		return cau_fail(error, CAU_NOT_FOUND, "branch", "no branch %lld", (long long)branch);
+	return status;
+}
+
+// Counts a slot to its branch. Retention may have removed that meanwhile.
+static cau_status count_slot(struct cau_store_writer *writer, int index, cau_error *error)
+{
+	int64_t key = writer->uncounted.slot[index].key;
+	int64_t branch = writer->uncounted.slot[index].branch;
+	cau_status status =
+		grow_branch(writer, key, branch, writer->uncounted.slot[index].bytes, error);
+	if (status && status != CAU_NOT_FOUND)
+		return status;
+	writer->uncounted.slot[index].bytes = 0;
+	return CAU_OK;
+}
+
+// The branch's slot, or else a free one; where all are in use, the fullest is counted first.
+static cau_status find_slot(struct cau_store_writer *writer, int64_t key, int64_t branch,
+                            int *index, cau_error *error)
+{
+	struct cau_store_uncounted *all = &writer->uncounted;
+	int unused = -1, fullest = 0;
+	for (int i = 0; i < CAU_STORE_UNCOUNTED_SLOTS; i++) {
+		*index = i;
+		if (all->slot[i].bytes == 0)
+			unused = i;
+		else if (all->slot[i].key == key && all->slot[i].branch == branch)
+			return CAU_OK;
+		if (all->slot[i].bytes > all->slot[fullest].bytes)
+			fullest = i;
+	}
+	*index = unused < 0 ? fullest : unused;
+	cau_status status = unused < 0 ? count_slot(writer, fullest, error) : CAU_OK;
+	if (!status) {
+		all->slot[*index].key = key;
+		all->slot[*index].branch = branch;
+	}
+	return status;
+}
+
+// Bytes of a command, counted with others of the same branch. The branch must be there.
+static cau_status count_later(struct cau_store_writer *writer, int64_t key, int64_t branch,
+                              int64_t bytes, cau_error *error)
+{
+	int index;
+	CAU_ASSERT(bytes > 0, "a command of %lld bytes", (long long)bytes);
+	cau_status status = check_branch(writer, key, branch, error);
+	if (!status)
+		status = find_slot(writer, key, branch, &index, error);
+	if (status)
+		return status;
+	writer->uncounted.slot[index].bytes += bytes;
+	if (writer->uncounted.slot[index].bytes < UNCOUNTED_BYTES)
+		return CAU_OK;
+	return count_slot(writer, index, error);
 }
 
 // ---- records --------------------------------------------------------------------------
@@ -271,7 +342,7 @@ static cau_status apply_command(struct cau_store_writer *writer, const cau_store
 	if (!status)
 		status = take_place(writer, key, command, &taken, error);
 	if (!status && !taken)
-		status = grow_branch(writer, key, command->branch,
+		status = count_later(writer, key, command->branch,
 		                     (int64_t)command->payload.bytes + ROW_BYTES, error);
 	if (status)
 		return status;

@@ -6,11 +6,24 @@
 
 #include "batch.h"
 
-enum { CAU_STORE_STATEMENTS = 20 };
+enum {
+	CAU_STORE_STATEMENTS = 20,
+	CAU_STORE_UNCOUNTED_SLOTS = 16, // branches that are written to at a time, more or less
+};
+
+// Bytes of commands that branches.bytes does not count yet. Counting with each command would write
+// the page of branches with each commit. A crash loses what is in here: less than a page a branch.
+struct cau_store_uncounted {
+	struct {
+		int64_t key, branch, bytes; // bytes 0: the slot is free
+	} slot[CAU_STORE_UNCOUNTED_SLOTS];
+};
 
 struct cau_store_writer {
 	sqlite3 *database; // borrowed
 	sqlite3_stmt *statement[CAU_STORE_STATEMENTS];
+	// Whoever rolls records back puts this back to what it was before them.
+	struct cau_store_uncounted uncounted;
 };
 
 // Compiles every statement, which also finds out whether the tables are as this build expects.

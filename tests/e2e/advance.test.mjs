@@ -8,7 +8,7 @@ import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallScene, smallSession } from './wire/scene.mjs';
 
-const STEPS = 300, CUT_STEPS = 100;
+const STEPS = 300, CUT_STEPS = 100, LONG_STEPS = 2500;
 const DEADLINE_TICKS = 15; // of 1/60 s, in the deadline of 250 ms
 const EPISODES = Number(process.env.E2E_EPISODES ?? 10), LOAD = Number(process.env.E2E_LOAD ?? 4);
 
@@ -234,13 +234,7 @@ test('an ephemeral session writes nothing; all of a stored one is there after ki
 	const definition = await smallScene(client, [60, 50]);
 	const { summary: { session: disk } } = await client.call('session.create', { name: 'disk', definition, paused: true });
 	await client.call('tool.take_over', hook(disk));
-	await sleep(1000);
-	before = writtenBytes(own);
-	for (let i = 0; i < STEPS; i++)
-		await drive(disk, i);
-	const each = (writtenBytes(own) - before) / STEPS;
-	console.log(`a stored step that moves a tool writes ${each.toFixed(0)} bytes`);
-	for (let i = STEPS; i < STEPS + CUT_STEPS; i++)
+	for (let i = 0; i < STEPS + CUT_STEPS; i++)
 		await drive(disk, i);
 	await own.kill();
 	const next = await Daemon.start({ folder: own.folder });
@@ -253,6 +247,23 @@ test('an ephemeral session writes nothing; all of a stored one is there after ki
 	assert.equal(simulated(next.folder, definition, await again.file('session.log', { session: disk })), hash);
 	await again.close();
 	await next.end();
+});
+
+// Long enough that checkpoints, the folding of the log into the file, and thinning are in the mean.
+test('a stored step that moves a tool writes at most 16 KiB', async () => {
+	const own = await Daemon.start({ settings: { browser_deadline_s: 0.25 } });
+	const client = await own.connect();
+	const session = await smallSession(client, 'long', { paused: true });
+	await client.call('tool.take_over', hook(session));
+	await sleep(1000); // what was written before is on the disk
+	const before = writtenBytes(own);
+	for (let i = 0; i < LONG_STEPS; i++)
+		assert.equal((await advance(client, session, [move(-0.02 + 0.04 * i / LONG_STEPS, 0.02)])).tick, i + 1);
+	const each = (writtenBytes(own) - before) / LONG_STEPS;
+	console.log(`a stored step that moves a tool writes ${each.toFixed(0)} bytes`);
+	assert.ok(each <= 16384);
+	await client.close();
+	await own.end();
 });
 
 test('equal episodes, to the last bit, on a busy machine', async () => {

@@ -248,6 +248,72 @@ static void an_untouched_weekend_is_small(void **state)
 	cau_store_close(store);
 }
 
+// The bytes of a session's first branch that are counted, and those of its log.
+static void read_count(sqlite3 *database, int session, int64_t *counted, int64_t *logged)
+{
+	char sql[200];
+	snprintf(sql, sizeof sql,
+	         "SELECT bytes FROM branches JOIN sessions ON session = key WHERE id = 's%d'", session);
+	assert_int_equal(cau_store_integer(database, sql, counted, NULL), CAU_OK);
+	snprintf(sql, sizeof sql,
+	         "SELECT sum(length(payload) + 64) FROM commands JOIN sessions ON session = key"
+	         " WHERE id = 's%d'",
+	         session);
+	assert_int_equal(cau_store_integer(database, sql, logged, NULL), CAU_OK);
+}
+
+// One tick of each session's log, and after every third one a batch that fails: what it would have
+// written first is not counted.
+static void write_logs(cau_store *store, int sessions, uint64_t ticks)
+{
+	char id[16];
+	for (uint64_t tick = 0; tick < ticks; tick++)
+		for (int i = 0; i < sessions; i++) {
+			snprintf(id, sizeof id, "s%d", i);
+			assert_int_equal(write_batch(store, command_batch(id, 0, tick), NULL), CAU_OK);
+			if (tick % 3)
+				continue;
+			cau_store_batch *failing = command_batch(id, 0, tick + 1);
+			put_tick_command(failing, id, 0, tick);
+			assert_int_equal(write_batch(store, failing, NULL), CAU_ALREADY_EXISTS);
+		}
+}
+
+// More sessions than are counted apart, and few enough.
+static void a_log_is_counted_but_for_its_newest_page(void **state)
+{
+	enum { MANY = 20, TICKS = 60 }; // of 72 bytes each
+	for (int sessions = 1; sessions <= MANY; sessions += MANY - 1) {
+		struct fixture *fixture = *state;
+		char id[16];
+		sqlite3 *database;
+		snprintf(fixture->path, sizeof fixture->path, "%s/%d.db", fixture->folder, sessions);
+		cau_store *store = open_store(&fixture->config);
+		for (int i = 0; i < sessions; i++) {
+			snprintf(id, sizeof id, "s%d", i);
+			assert_int_equal(write_batch(store, session_batch(id), NULL), CAU_OK);
+		}
+		write_logs(store, sessions, TICKS);
+		assert_int_equal(cau_store_file_open(fixture->path, 1 << 20, &database, NULL), CAU_OK);
+		for (int i = 0; i < sessions; i++) {
+			int64_t counted, logged;
+			read_count(database, i, &counted, &logged);
+			assert_int_equal(logged, TICKS * (64 + (int)sizeof(uint64_t)));
+			assert_in_range(logged - counted, 0, 4095);
+		}
+		sqlite3_close(database);
+		cau_store_close(store);
+	}
+}
+
+static void a_command_of_no_branch_fails(void **state)
+{
+	cau_store *store = retention_open(*state);
+	assert_int_equal(write_batch(store, command_batch("knee", 0, 0), NULL), CAU_OK);
+	assert_int_equal(write_batch(store, command_batch("knee", 3, 0), NULL), CAU_NOT_FOUND);
+	cau_store_close(store);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -258,6 +324,8 @@ int main(void)
 		TEST(a_log_beyond_the_limit_goes_as_a_gap_that_is_told),
 		TEST(what_could_not_be_stored_is_a_gap),
 		TEST(an_untouched_weekend_is_small),
+		TEST(a_log_is_counted_but_for_its_newest_page),
+		TEST(a_command_of_no_branch_fails),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
