@@ -81,6 +81,7 @@ static cau_status take_description(cau_client_slot *slot, const cau_rpc_message 
 	def->face_count = (int32_t)d.face_count;
 	memcpy(def->origin_m, d.origin_m, sizeof d.origin_m);
 	def->step_m = d.step_m;
+	def->plain = d.has_plain && d.plain;
 	def->stress_step_pa = d.stress_step_pa;
 	slot->stream.ended = false;
 	slot->gap_s = cau_client_now(); // a key frame is awaited

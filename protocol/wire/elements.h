@@ -34,6 +34,7 @@ typedef struct elements_source {
 	uint32_t components; // 1, 3 or 6
 	elements_reference reference;
 	bool all;
+	bool plain; // never in meshoptimizer's codec
 } elements_source;
 
 // Bounds for an array of `count` elements.

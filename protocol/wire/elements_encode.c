@@ -181,8 +181,10 @@ static size_t write_data(const elements_source *source, uint8_t *scratch, size_t
 	size_t bytes = count * stride;
 	memset(scratch + bytes, 0, round_up_4(bytes) - bytes);
 	size_t plain_bytes = round_up_4(count * element_bytes);
-	size_t length = try_meshopt(scratch, round_up_4(bytes), source->components == 1 ? 4 : stride,
-	                            plain_bytes, out);
+	size_t length = 0;
+	if (!source->plain)
+		length = try_meshopt(scratch, round_up_4(bytes), source->components == 1 ? 4 : stride,
+		                     plain_bytes, out);
 	*coding = length ? ELEMENTS_MESHOPT : ELEMENTS_PLAIN;
 	if (length)
 		return length;

@@ -259,7 +259,8 @@ static void write_array(const cau_frame_encoder *encoder, int channel, frame_par
 	                          .count = shape.count,
 	                          .components = shape.components,
 	                          .reference = ELEMENTS_HELD,
-	                          .all = key && positions};
+	                          .all = key && positions,
+	                          .plain = encoder->def.plain};
 	if (key || mask)
 		source.reference = key && positions ? ELEMENTS_PREVIOUS : ELEMENTS_NONE;
 	size_t written;

@@ -71,6 +71,7 @@ typedef struct topology_writer {
 	uint8_t *at;
 	uint8_t *scratch; // of the coding
 	uint16_t section_count;
+	bool plain;
 } topology_writer;
 
 static void write_section(topology_writer *writer, cau_section type, const uint32_t *values,
@@ -80,7 +81,8 @@ static void write_section(topology_writer *writer, cau_section type, const uint3
 	                          .count = count,
 	                          .components = components,
 	                          .reference = reference,
-	                          .all = count > 0};
+	                          .all = count > 0,
+	                          .plain = writer->plain};
 	size_t bytes =
 		cau_elements_encode(&source, writer->scratch, writer->at + CAU_FRAME_SECTION_BYTES, NULL);
 	CAU_RULE(bytes % 4 == 0 && bytes <= cau_elements_bytes_max(count, components),
@@ -146,7 +148,7 @@ static cau_status encode(const cau_stream_def *def, uint64_t epoch, const cau_to
 {
 	uint32_t *values = scratch;
 	topology_writer writer = {(uint8_t *)bytes + CAU_FRAME_HEADER_BYTES,
-	                          coding_scratch(def, scratch), 0};
+	                          coding_scratch(def, scratch), 0, def->plain};
 	cau_status status = cau_stream_def_check(def, error);
 	if (!status && capacity < cau_topology_bytes_max(def))
 		status = cau_fail(error, CAU_LIMIT, NULL, "topology may need %zu bytes",

@@ -23,6 +23,7 @@ static cau_stream_def define(const cau_hosted *h, const cau_order *order)
 	def.vertex_count = h->info.vertex_count;
 	def.face_count = h->info.face_count;
 	def.step_m = order->as.frame_at.step_m;
+	def.plain = order->as.frame_at.plain;
 	return def;
 }
 

@@ -90,6 +90,7 @@ static cau_status join(cau_hosted *h, const cau_order *order, const cau_stream *
 	bool woken = false;
 	cau_stream_wish wish = {.rate_hz = order->as.join.rate_hz,
 	                        .step_m = order->as.join.step_m,
+	                        .plain = order->as.join.plain,
 	                        .channels = order->as.join.channels};
 	cau_stream_shape shape = cau_frames_shape(&h->info);
 	cau_status status = cau_streams_join(&h->streams, &wish, &shape, stream, &woken, error);
@@ -114,7 +115,9 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 	                                      .vertex_count = stream->def.vertex_count,
 	                                      .face_count = stream->def.face_count,
 	                                      .step_m = stream->def.step_m,
-	                                      .stress_step_pa = stream->def.stress_step_pa};
+	                                      .stress_step_pa = stream->def.stress_step_pa,
+	                                      .has_plain = true,
+	                                      .plain = stream->def.plain};
 	memcpy(result.session, h->id, sizeof result.session);
 	memcpy(result.origin_m, stream->def.origin_m, sizeof result.origin_m);
 	cau_outcome outcome = {.joined = h, .stream = stream->def.profile};

@@ -83,11 +83,13 @@ typedef struct cau_order {
 		} log;
 		struct {
 			double rate_hz, step_m;
+			bool plain;
 			uint32_t channels;
 		} join;
 		struct {
 			uint64_t tick;
 			double step_m;
+			bool plain;
 			uint32_t channels;
 			int64_t branch; // the rest is filled in when it is served
 			uint64_t epoch;

@@ -322,6 +322,7 @@ void cau_call_session_frame_at(cau_call *call)
 	cau_order *order = cau_call_order_with(call, CAU_ORDER_FRAME_AT, &params);
 	if (order) {
 		order->as.frame_at.tick = (uint64_t)params.tick;
+		order->as.frame_at.plain = params.has_plain && params.plain;
 		order->as.frame_at.step_m = params.has_step_m ? params.step_m : defaults.step_m;
 		order->as.frame_at.channels = params.has_channels ? params.channels : defaults.channels;
 	}

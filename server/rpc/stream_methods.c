@@ -32,6 +32,7 @@ void cau_call_session_join(cau_call *call)
 		return;
 	order->as.join.rate_hz = params.has_rate_hz ? params.rate_hz : 60;
 	order->as.join.step_m = params.has_step_m ? params.step_m : defaults.step_m;
+	order->as.join.plain = params.has_plain && params.plain;
 	order->as.join.channels = params.has_channels ? params.channels : defaults.channels;
 	cau_call_submit(call, order);
 }

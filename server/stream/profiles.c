@@ -47,14 +47,24 @@ uint32_t cau_streams_watched(cau_streams *streams)
 }
 
 // ---- finding
+// What every reader of the wish can read. A reader of meshoptimizer's codec reads plain numbers
+// too.
+static bool is_readable(const cau_stream *stream, const cau_stream_wish *wish)
+{
+	return stream->used && (stream->def.plain || !wish->plain);
+}
+
+// NULL: one is to be opened, or, where no slot is free, none can be read.
 static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish)
 {
-	cau_stream *nearest = NULL;
+	cau_stream *nearest = NULL, *any = NULL;
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++) {
 		cau_stream *stream = &streams->stream[i];
-		if (!stream->used)
+		if (!is_readable(stream, wish))
 			continue;
-		bool fits = stream->def.channels == wish->channels && stream->def.step_m <= wish->step_m;
+		any = any ? any : stream;
+		bool fits = stream->def.channels == wish->channels && stream->def.step_m <= wish->step_m &&
+		            stream->def.plain == wish->plain;
 		if (fits && stream->rate_hz == wish->rate_hz)
 			return stream;
 		bool nearer = !nearest || fabs(stream->rate_hz - wish->rate_hz) <
@@ -65,7 +75,7 @@ static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		if (!streams->stream[i].used || streams->stream[i].subscribers == 0)
 			return NULL; // a slot is free
-	return nearest ? nearest : &streams->stream[0];
+	return nearest ? nearest : any;
 }
 
 // Nothing was published while nobody watched: what the ring still holds is of another time.
@@ -126,7 +136,7 @@ static cau_status encode_topology(cau_streams *streams, const cau_stream_def *de
 	                         .face_layer = layers,
 	                         .texture = shape->texture,
 	                         .rest_position = shape->rest_position};
-	if (streams->topology) {
+	if (streams->topology && !def->plain) { // what is kept is not plain
 		topology.known = cau_buffer_bytes(streams->topology);
 		topology.known_bytes = streams->topology->byte_count;
 	}
@@ -173,6 +183,7 @@ static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_w
 	made.def.vertex_count = shape->vertex_count;
 	made.def.face_count = shape->face_count;
 	made.def.step_m = wish->step_m;
+	made.def.plain = wish->plain;
 	size_t bytes = cau_frame_encoder_bytes(&made.def);
 	made.scratch_bytes = cau_frame_bytes_max(&made.def);
 	cau_status status = cau_stream_def_check(&made.def, error);
@@ -191,7 +202,8 @@ static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_w
 		close_stream(&made);
 		return status;
 	}
-	keep_topology(streams, cau_buffer_share(made.topology));
+	if (!wish->plain)
+		keep_topology(streams, cau_buffer_share(made.topology));
 	pthread_mutex_lock(&streams->mutex);
 	close_stream(&streams->stream[slot]);
 	streams->stream[slot] = made;
@@ -216,7 +228,8 @@ static cau_stream *take_stream(cau_streams *streams, const cau_stream_wish *wish
 	if (stream)
 		stream->subscribers++;
 	else
-		while (streams->stream[*slot].used && streams->stream[*slot].subscribers)
+		while (*slot < CAU_STREAM_PROFILES_MAX && streams->stream[*slot].used &&
+		       streams->stream[*slot].subscribers)
 			++*slot;
 	pthread_mutex_unlock(&streams->mutex);
 	return stream;
@@ -240,6 +253,9 @@ cau_status cau_streams_join(cau_streams *streams, const cau_stream_wish *wish,
 	*joined = stream;
 	if (stream)
 		return CAU_OK;
+	if (slot == CAU_STREAM_PROFILES_MAX)
+		return cau_fail(error, CAU_LIMIT, "params.plain",
+		                "all %d profiles of the session are in use, and none is plain", slot);
 	cau_status status = open_stream(streams, slot, wish, shape, error);
 	*joined = &streams->stream[slot];
 	if (!status) {

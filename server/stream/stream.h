@@ -91,6 +91,7 @@ void cau_streams_finish(cau_streams *streams);
 typedef struct cau_stream_wish {
 	double rate_hz, step_m;
 	uint32_t channels;
+	bool plain; // a stream that never uses meshoptimizer's codec, or none
 } cau_stream_wish;
 
 // What is the same for a session's whole life.

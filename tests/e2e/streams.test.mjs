@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
-import { header } from './wire/decoder.mjs';
-import { AT_REST, cutMiddle, smallScene, smallSession } from './wire/scene.mjs';
+import { header, sections } from './wire/decoder.mjs';
+import { AT_REST, cutMiddle, picture, smallScene, smallSession } from './wire/scene.mjs';
 
 const slow = process.env.E2E_SLOW === '1'; // a sanitizer's build
 let daemon;
@@ -192,6 +192,46 @@ test('profiles: rate, channels and step are what was asked for', async () => {
 	assert.equal(coarse.tools.length, 0);
 	assert.equal(fine.tools[0].name, 'hook');
 	await Promise.all([client.close(), other.close()]);
+});
+
+// The codings of a frame's element sections: 0 plain, 1 meshoptimizer's. Names, tools and statistics have no elements.
+const codings = (bytes) => [...sections(bytes, header(bytes))].filter(([type]) => ![6, 7, 8, 32, 33].includes(type)).map(([, payload]) => payload[2]);
+
+test('plain where it is asked for: no codec in any frame, and the same picture', async () => {
+	const client = await daemon.connect(), plain = await daemon.connect();
+	const session = await smallSession(client, 'plain', { paused: true });
+	const seen = { plain: new Set(), coded: new Set() };
+	client.onFrame = (stream, kind, bytes) => codings(bytes).forEach((coding) => seen.coded.add(`${kind} ${coding}`));
+	plain.onFrame = (stream, kind, bytes) => codings(bytes).forEach((coding) => seen.plain.add(`${kind} ${coding}`));
+	const coded = await client.join(session, { rate_hz: 1000 });
+	const other = await plain.join(session, { rate_hz: 1000, plain: true });
+	assert.deepEqual([coded.description.plain, other.description.plain], [false, true]);
+	assert.notEqual(coded.description.profile, other.description.profile);
+	const { tick } = await cutMiddle(client, session, 60);
+	await client.until(() => coded.tick === tick, 'the last frame');
+	await plain.until(() => other.tick === tick, 'the last plain frame');
+	assert.deepEqual(picture(other), picture(coded));
+	assert.deepEqual([...other.faces], [...coded.faces]);
+	assert.ok(other.counts.delta > 20);
+	assert.deepEqual([...seen.plain].sort(), ['delta 0', 'key 0', 'topology 0']);
+	for (const kind of ['delta', 'key', 'topology'])
+		assert.ok(seen.coded.has(`${kind} 1`), kind);
+	const { bytes } = await plain.announced('session.frame_at', { session, tick, plain: true });
+	assert.deepEqual(new Set(codings(bytes)), new Set([0]));
+	await Promise.all([client.close(), plain.close()]);
+});
+
+test('plain is never answered with a codec: where all profiles are taken it is refused', async () => {
+	const clients = await Promise.all([1, 2, 3, 4, 5].map(() => daemon.connect()));
+	const session = await smallSession(clients[0], 'taken', { paused: true });
+	for (const [i, client] of clients.slice(0, 4).entries())
+		await client.join(session, { rate_hz: 10 + i });
+	await assert.rejects(clients[4].call('session.join', { session, plain: true }),
+		(error) => error.data.status === 'limit' && error.data.path === 'params.plain');
+	assert.equal((await clients[4].join(session, { rate_hz: 40 })).description.plain, false); // the nearest
+	await clients[0].close();
+	assert.equal((await clients[4].join(session, { plain: true })).description.plain, true);
+	await Promise.all(clients.slice(1).map((client) => client.close()));
 });
 
 const celsius = (stream, vertex) => stream.temperature[vertex] / 4 - 20;

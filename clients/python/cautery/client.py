@@ -105,10 +105,10 @@ class Client(Calls):
 
     # ---- streams
     def join(self, session: str, *, rate_hz: float | None = None, channels: Sequence[str] | None = None,
-             step_m: float | None = None) -> Stream:
+             step_m: float | None = None, plain: bool | None = None) -> Stream:
         """Joins a session. The stream is there with its first frame: faces, rest and a state."""
-        description = self.call(
-            "session.join", {"session": session, "rate_hz": rate_hz, "channels": channels, "step_m": step_m})
+        description = self.call("session.join", {"session": session, "rate_hz": rate_hz, "channels": channels,
+                                                 "step_m": step_m, "plain": plain})
         stream = self._streams[description["session_number"]]
         stream.wait(timeout_s=self.timeout_s)
         return stream

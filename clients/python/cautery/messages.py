@@ -923,6 +923,9 @@ class SessionFrameAt(TypedDict):
     # quantisation; 5e-5 by default (1e-07 to 0.001 m)
     step_m: NotRequired[float]
 
+    # no section of the frame is in meshoptimizer's codec; false by default
+    plain: NotRequired[bool]
+
 
 class PastFrame(TypedDict):
     """one key frame that follows in binary chunks, and what a decoder needs beside the session's topology; its tools have no drivers"""
@@ -1229,6 +1232,9 @@ class SessionJoin(TypedDict):
     # quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m)
     step_m: NotRequired[float]
 
+    # no section of the frames is in meshoptimizer's codec; false by default
+    plain: NotRequired[bool]
+
 
 class StreamDescription(TypedDict):
     """what a decoder needs; a topology frame and a key frame follow"""
@@ -1265,6 +1271,9 @@ class StreamDescription(TypedDict):
 
     # one step of the stress channel (0.001 to 1000000000 Pa)
     stress_step_pa: float
+
+    # no section of its frames is in meshoptimizer's codec; absent from older servers
+    plain: NotRequired[bool]
 
 
 class StreamAck(TypedDict):
@@ -3068,6 +3077,7 @@ class Calls:
         rate_hz: float | None = None,
         channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]] | None = None,
         step_m: float | None = None,
+        plain: bool | None = None,
     ) -> StreamDescription:
         """`session.join`: asks for frames; again to change the profile
 
@@ -3075,12 +3085,14 @@ class Calls:
         rate_hz: frames a wall second at most; 60 by default (0.1 to 1000 1/s)
         channels: by default those that the table of channels marks
         step_m: quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m)
+        plain: no section of the frames is in meshoptimizer's codec; false by default
         """
         return self.call("session.join", {
             "session": session,
             "rate_hz": rate_hz,
             "channels": channels,
             "step_m": step_m,
+            "plain": plain,
         })
 
     def session_leave(
@@ -3376,6 +3388,7 @@ class Calls:
         tick: int,
         channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]] | None = None,
         step_m: float | None = None,
+        plain: bool | None = None,
     ) -> PastFrame:
         """`session.frame_at`: the key frame of a past tick; nothing is rewound; binary chunks follow. A second request of a client cancels its first
 
@@ -3383,12 +3396,14 @@ class Calls:
         tick: on the present line, from oldest_tick to the present (0 to 9007199254740991)
         channels: by default those that the table of channels marks
         step_m: quantisation; 5e-5 by default (1e-07 to 0.001 m)
+        plain: no section of the frame is in meshoptimizer's codec; false by default
         """
         return self.call("session.frame_at", {
             "session": session,
             "tick": tick,
             "channels": channels,
             "step_m": step_m,
+            "plain": plain,
         })
 
     def session_frame_cancel(

@@ -53,6 +53,7 @@ typedef struct cau_stream_def {
 	double origin_m[3];    // position = origin_m + step_m * quantised
 	double step_m;         // 1e-7 to 1e-2
 	double stress_step_pa; // 1e-3 to 1e9; stress saturates at 65535 steps
+	bool plain;            // the encoder never uses meshoptimizer's codec; decoders do not look
 } cau_stream_def;
 
 // CAU_CHANNELS_BY_DEFAULT, 0.05 mm, 10 Pa, origin 0; counts and numbers zero.

@@ -34,7 +34,7 @@ export function header(bytes) {
 	};
 }
 
-function* sections(bytes, head) {
+export function* sections(bytes, head) {
 	let at = 72;
 	for (let i = 0; i < head.sections; i++) {
 		const length = head.view.getUint32(at + 4, true);

@@ -262,6 +262,47 @@ static void test_a_stream_carries_its_channels_alone(void **unused)
 	}
 }
 
+// Whether positions or mask, the first sections, are in the codec (byte 2 of their elements).
+static bool any_coded(const uint8_t *frame, size_t byte_count)
+{
+	bool coded = false;
+	const uint8_t *at = frame + CAU_FRAME_HEADER_BYTES;
+	while (at < frame + byte_count && at[0] <= CAU_SECTION_MASK) {
+		uint32_t payload_bytes;
+		memcpy(&payload_bytes, at + 4, sizeof payload_bytes);
+		at += CAU_FRAME_SECTION_BYTES;
+		coded |= at[2] != 0;
+		at += payload_bytes;
+	}
+	return coded;
+}
+
+// The same chain, in numbers that need no codec.
+static void test_a_plain_stream_has_no_codec(void **unused)
+{
+	(void)unused;
+	chain coded, plain;
+	chain_init(&coded, 30, 30);
+	chain_init(&plain, 30, 30);
+	plain.def.plain = true;
+	size_t bytes = cau_frame_encoder_bytes(&plain.def);
+	assert_int_equal(
+		cau_frame_encoder_init(plain.encoder, bytes, &plain.def, CHAIN_EPOCH, &plain.encoder, NULL),
+		CAU_OK);
+	for (int32_t tick = 0; tick < ROUND_FRAMES; tick++) {
+		tissue_move(&coded.tissue, tick, 0.2);
+		tissue_move(&plain.tissue, tick, 0.2);
+		chain_pass(&coded);
+		chain_pass(&plain);
+		assert_true(any_coded(coded.bytes, coded.byte_count));
+		assert_false(any_coded(plain.bytes, plain.byte_count));
+		assert_true(plain.byte_count > coded.byte_count);
+		chain_assert_same(coded.decoder, plain.decoder);
+	}
+	chain_finish(&coded);
+	chain_finish(&plain);
+}
+
 // What the rows of cautery/channels.h must keep to, and the preprocessor does not see.
 static void test_rows_fit_together(void **unused)
 {
@@ -286,6 +327,7 @@ static void test_rows_fit_together(void **unused)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_a_plain_stream_has_no_codec),
 		cmocka_unit_test(test_rows_fit_together),
 		cmocka_unit_test(test_deltas_follow_the_tissue),
 		cmocka_unit_test(test_hidden_vertices_wait_until_they_are_seen),

@@ -572,6 +572,8 @@ export interface SessionFrameAt {
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
   /** quantisation; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
+  /** no section of the frame is in meshoptimizer's codec; false by default */
+  plain?: boolean;
 }
 
 /** one key frame that follows in binary chunks, and what a decoder needs beside the session's topology; its tools have no drivers */
@@ -804,6 +806,8 @@ export interface SessionJoin {
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
   /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
+  /** no section of the frames is in meshoptimizer's codec; false by default */
+  plain?: boolean;
 }
 
 /** what a decoder needs; a topology frame and a key frame follow */
@@ -830,6 +834,8 @@ export interface StreamDescription {
   step_m: number;
   /** one step of the stress channel (0.001 to 1000000000 Pa) */
   stress_step_pa: number;
+  /** no section of its frames is in meshoptimizer's codec; absent from older servers */
+  plain?: boolean;
 }
 
 /** how far the client has decoded; bounds what is in flight, shows delays */
