@@ -254,7 +254,7 @@ class Client(Calls):
             return
         try:
             kind = stream.take(message)
-        except (BadFrame, IndexError, ValueError, KeyError) as error:
+        except BadFrame as error:
             raise BadFrame(f"a frame of {stream.description['session']} could not be read: {error}") from error
         self._follow(stream, kind)
 

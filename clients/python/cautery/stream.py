@@ -209,24 +209,15 @@ class Stream:
 
     # ---- for the client
     def take(self, frame: bytes) -> str:
-        """Decodes a frame. "key", "delta", "topology", or "skipped": it does not build on what is held."""
-        header, sections = _sections(frame)
+        """Decodes a frame. "key", "delta", "topology", or "skipped": it does not build on what is held.
+
+        Raises BadFrame; then nothing is held until the next key frame.
+        """
         with self._changed:
-            if not self._applies(header):
-                self.skipped += header.kind == FRAME_KIND["delta"]
-                return "skipped"
-            if header.kind == FRAME_KIND["topology"]:
-                self._take_topology(dict(sections))
-                return "topology"
-            if header.kind == FRAME_KIND["key"]:
-                for held in self._held.values():
-                    held.fill(0)
-                self._names = []
-            for number, payload in sections:
-                self._take_section(number, payload)
-            self._header = header
-            self._changed.notify_all()
-            return "key" if header.kind == FRAME_KIND["key"] else "delta"
+            try:
+                return self._take(frame)
+            except (IndexError, KeyError, ValueError, struct.error) as error:
+                raise BadFrame(str(error)) from error
 
     def end(self, reason: Exception) -> None:
         """There are no more frames."""
@@ -240,13 +231,33 @@ class Stream:
             return (f"{self._header.epoch:016x}", self._header.sequence) if self._header else None
 
     # ---- inside
+    def _take(self, frame: bytes) -> str:
+        header, sections = _sections(frame)
+        if not self._applies(header):
+            self.skipped += header.kind == FRAME_KIND["delta"]
+            return "skipped"
+        if header.kind == FRAME_KIND["topology"]:
+            self._take_topology(dict(sections))
+            return "topology"
+        self._header = None
+        if header.kind == FRAME_KIND["key"]:
+            for held in self._held.values():
+                held.fill(0)
+            self._names = []
+        for number, payload in sections:
+            self._take_section(number, payload)
+        self._header = header
+        self._changed.notify_all()
+        return "key" if header.kind == FRAME_KIND["key"] else "delta"
+
     def _applies(self, header: _Header) -> bool:
         if header.session != self.description["session_number"] or header.profile != self.description["profile"]:
             return False
-        if header.kind != FRAME_KIND["delta"]:
-            return True
         held = self._header
-        return held is not None and (held.epoch, held.sequence) == (header.epoch, header.base)
+        if header.kind == FRAME_KIND["delta"]:
+            return held is not None and (held.epoch, held.sequence) == (header.epoch, header.base)
+        older = held is not None and held.epoch == header.epoch and header.sequence <= held.sequence
+        return header.kind == FRAME_KIND["topology"] or not older
 
     def _metres(self, quantised: npt.NDArray[np.int32]) -> Floats:
         return np.asarray(self.description["origin_m"]) + self.description["step_m"] * quantised

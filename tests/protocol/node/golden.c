@@ -157,10 +157,11 @@ static size_t encode(recording *of, int32_t tick, double speed_m_s)
 	return count;
 }
 
-static void open_recording(recording *of)
+static void open_recording(recording *of, bool plain)
 {
 	tissue_init(&of->tissue, COLUMNS, ROWS);
 	of->def = tissue_stream_def(&of->tissue);
+	of->def.plain = plain;
 	of->def.origin_m[0] = -0.125;
 	of->def.step_m = 2.5e-5;
 	size_t encoder_bytes = cau_frame_encoder_bytes(&of->def);
@@ -177,12 +178,12 @@ static void open_recording(recording *of)
 
 // A key frame and deltas; a frame of another epoch, a repeated one and a late key frame to refuse;
 // a restart with another epoch; a damaged frame, and the key frame that mends it.
-static void record_stream(FILE *manifest, int number, double speed_m_s)
+static void record_stream(FILE *manifest, int number, double speed_m_s, bool plain)
 {
 	recording of = {.manifest = manifest, .number = number};
 	uint8_t *late;
 	size_t count, late_count = 0;
-	open_recording(&of);
+	open_recording(&of, plain);
 	late = malloc(of.capacity);
 	for (int32_t tick = 0; tick < FRAMES; tick++) {
 		if (tick == RESTART_AT) {
@@ -225,9 +226,9 @@ static void write_streams(void)
 	        "{\"session\":3,\"profile\":1,\"vertexCount\":%d,\"faceCount\":%d,\"streams\":[",
 	        of.vertex_count, of.face_count);
 	tissue_finish(&of);
-	for (int i = 0; i < 4; i++) {
-		fprintf(manifest, "%s\n{\"frames\":[", i ? "," : "");
-		record_stream(manifest, i, speeds[i]);
+	for (int i = 0; i < 8; i++) {
+		fprintf(manifest, "%s\n{\"plain\":%s,\"frames\":[", i ? "," : "", i < 4 ? "false" : "true");
+		record_stream(manifest, i, speeds[i % 4], i >= 4);
 		fputs("]}", manifest);
 	}
 	fputs("]}\n", manifest);
