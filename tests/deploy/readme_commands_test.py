@@ -55,6 +55,7 @@ AS_SAID = 0.2  # numbers that a tutorial prints, relative: processors of another
 SIMULATION = "tests/simulation/CMakeLists.txt"
 FIRST_HOUR, INSTALL = "tests/deploy/first_hour_test.py", "tests/deploy/install_test.py"
 VIEWER, SECURITY = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs"
+CONFORMANCE = "tests/conformance/suite_test.py"
 ELSEWHERE = {  # command: (file, words in it...)
     "ninja -C build cautery_simulation": (SIMULATION, "add_executable(cautery_simulation"),
     "build/tests/cautery_simulation --seconds 60": (SIMULATION, 'simulation_test(minute "e2e;full" 180 --seconds 60)'),
@@ -81,6 +82,12 @@ ELSEWHERE = {  # command: (file, words in it...)
         (SECURITY, "'--dds-security', enclave('daemon')"),
     "CYCLONEDDS_URI=file://$PWD/deploy/dds/network.xml,file://$PWD/keys/enclaves/knee-robot/cyclonedds.xml "
     "cautery-robot d1-knee hook": (SECURITY, "CYCLONEDDS_URI: identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml`"),  # its own controller
+    "(cd clients/javascript && npm pack)": ("tests/clients/javascript/package_test.py", '"npm", "pack"'),
+    "build/bin/cautery_golden GOLDEN_FOLDER": (CONFORMANCE, 'os.environ["GOLDEN"], cls.golden'),
+    "export PYTHONPATH=clients/python": ("tests/conformance/CMakeLists.txt", "PYTHONPATH=${PROJECT_SOURCE_DIR}/clients/python"),
+    "tests/conformance/client.py --golden GOLDEN_FOLDER -- ADAPTER": (CONFORMANCE, '"client.py"), "--golden"'),
+    "tests/conformance/client.py --golden GOLDEN_FOLDER --url ws://127.0.0.1:8740 -- ADAPTER": (CONFORMANCE, '"--url", self.daemon.url'),
+    "tests/conformance/server.py ws://127.0.0.1:8740": (CONFORMANCE, '"server.py"), self.daemon.url'),
     "tests/bench/page.py": ("tests/bench/page_test.py", 'os.path.join(FOLDER, "page.py"), "--compare"'),  # of runs kept
     "tests/paper/run.py": ("tests/paper/CMakeLists.txt", "run.py\" --quick"),
 }
