@@ -46,17 +46,15 @@ static const char *odd_member(const cau_wire_advance_command *from)
 	return NULL;
 }
 
-// The same tolerance as of tool.move's own.
 static bool read_rotation(const double from[4], double to[4])
 {
-	static const double tolerance = 1e-3;
 	double square = 0;
 	for (int i = 0; i < 4; i++)
 		square += from[i] * from[i];
 	double length = sqrt(square);
 	for (int i = 0; i < 4; i++)
 		to[i] = from[i] / length;
-	return fabs(length - 1) <= tolerance;
+	return fabs(length - 1) <= CAU_UNIT_TOLERANCE;
 }
 
 static cau_status read_move(const cau_wire_advance_command *from, int32_t index, cau_command *to,
