@@ -50,6 +50,7 @@ uniform sampler2D colourMap;
 uniform int mapChannel;   // -1: as tissue; else the channel of burn shown as colour
 uniform vec3 light;       // the lamp, world
 uniform float ambient;
+uniform vec2 scope;       // 1: the lamp is at the camera, and its light falls off; how far what is looked at is
 uniform vec4 clip;        // what is beyond this plane is cut away from the picture
 uniform int capsuleCount;
 uniform vec4 capsuleFrom[8]; // xyz and radius: parts of instruments that cast shadow
@@ -115,16 +116,23 @@ vec3 shade(Surface s, vec3 view) {
   float wrapped = clamp((turned + 0.3) / 1.3, 0.0, 1.0);
   // Light that went through flesh comes out redder.
   vec3 through = vec3(0.20, 0.05, 0.03) * smoothstep(-0.6, 0.4, turned) * (1.0 - wrapped);
-  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 + through);
+  float away = length(light - vWorld) / scope.y;
+  float reaching = mix(1.0, min(1.30 / (0.40 + 0.60 * away * away), 1.7), scope.x);
+  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 * reaching + through);
+  // In a closed body light comes back from red tissue all around.
+  colour = max(mix(vec3(dot(colour, vec3(0.3, 0.5, 0.2))), colour, 1.0 + 0.22 * scope.x) * mix(vec3(1.0), vec3(1.06, 0.97, 0.93), scope.x), 0.0);
   vec3 halfway = normalize(toLight + view);
-  float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
+  // A film is uneven more steeply than what it wets: with the light at the camera its slopes are all that mirrors.
+  vec3 smooth_ = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
+  vec3 film = normalize(s.normal + 2.0 * scope.x * (s.normal - smooth_));
+  float shine = pow(max(dot(film, halfway), 0.0), s.gloss * (1.0 - 0.35 * scope.x)) * (1.0 + 5.0 * scope.x);
   // A wet film mirrors the room: a lamp across the table with a wide bright frame, and some light from everywhere.
   float mirrored = max(dot(reflect(-view, s.normal), FAR_LAMP), 0.0);
   float m2 = mirrored * mirrored, m8 = m2 * m2 * m2 * m2, m24 = m8 * m8 * m8, m64 = m24 * m24 * m8 * m8;
-  float across = (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
+  float across = (1.0 - scope.x) * (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
   float grazing = 1.0 - max(dot(s.normal, view), 0.0);
   float rim = grazing * grazing * grazing * grazing;
-  colour += s.wet * (shadow * shine + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
+  colour += s.wet * (shadow * shine * reaching + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
   for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
     if (glow[i].w <= 0.0) continue;
     vec3 away = vWorld - glow[i].xyz;
