@@ -43,7 +43,7 @@ describe('the field', () => {
     await viewer.live('d1-layers');
   });
 
-  it('is seen through a trocar: round, with tissue up to the edge from every side, and dark outside', async () => {
+  it('is seen through a trocar: round, with tissue up to the edge from every side, and black outside', async () => {
     for (const side of ['Home', 'From above', 'Along', 'From the left']) {
       await viewer.page.getByRole('button', { name: side }).click();
       await viewer.drawn();
@@ -56,7 +56,7 @@ describe('the field', () => {
     await viewer.page.getByRole('button', { name: 'Home' }).click();
   });
 
-  it('is neither pointed at nor cut where it is dark', async () => {
+  it('is neither pointed at nor cut where it is black', async () => {
     const box = (await viewer.page.locator('#picture').boundingBox())!;
     await viewer.page.getByRole('region', { name: 'Camera' }).getByRole('button', { name: 'Nearer' }).click({ clickCount: 4 });
     await viewer.drawn();
