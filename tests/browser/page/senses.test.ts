@@ -38,7 +38,6 @@ describe('smoke and sound', () => {
     expect(viewer.complaints).toEqual([]);
     await viewer.close();
   });
-
 });
 
 describe('smoke and sound of a page that loses its daemon', () => {

@@ -56,6 +56,8 @@ export class Sounds {
   private voices: Voices | null = null;
   private readonly on: Record<Sound, boolean> = { tone: true, sizzle: true, alarm: true };
   private before: readonly ToolState[] = [];
+  /** the instrument that this page drove at the last frame: without a connection it drives none */
+  private led: string | null = null;
   private faces: number | null = null;
   private framedAt = 0;
 
@@ -66,7 +68,7 @@ export class Sounds {
     model.on('joined', () => this.silence());
     model.on('link', ({ state }) => {
       if (state === 'online') return;
-      if (model.driving && this.before.some(({ name, energized }) => energized && name === model.selectedTool)) this.alarm();
+      if (this.before.some(({ name, energized }) => energized && name === this.led)) this.alarm();
       this.silence();
     });
     setInterval(() => {
@@ -93,6 +95,7 @@ export class Sounds {
     const removed = Math.max((this.faces ?? faces) - faces, 0);
     if (heartbeatLost(this.before, frame.tools)) this.alarm();
     this.before = frame.tools;
+    this.led = this.model.driving ? this.model.selectedTool : null;
     this.faces = faces;
     this.make(frame.paused ? { toneHz: 0, sizzle: 0 } : heardOf(tools, frame.tools, removed));
   }
