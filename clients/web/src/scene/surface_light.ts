@@ -120,7 +120,7 @@ vec3 shade(Surface s, vec3 view) {
   float reaching = mix(1.0, min(1.30 / (0.40 + 0.60 * away * away), 1.7), scope.x);
   vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 * reaching + through);
   // In a closed body light comes back from red tissue all around.
-  colour = max(mix(vec3(dot(colour, vec3(0.3, 0.5, 0.2))), colour, 1.0 + 0.22 * scope.x) * mix(vec3(1.0), vec3(1.06, 0.97, 0.93), scope.x), 0.0);
+  colour = max(mix(vec3(dot(colour, vec3(0.3, 0.5, 0.2))), colour, 1.0 + 0.08 * scope.x) * mix(vec3(1.0), vec3(1.05, 0.97, 0.96), scope.x), 0.0);
   vec3 halfway = normalize(toLight + view);
   // A film is uneven more steeply than what it wets: with the light at the camera its slopes are all that mirrors.
   vec3 smooth_ = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
@@ -157,7 +157,7 @@ void burnt(inout Surface s, vec3 pale, vec3 browned, float blotch) {
   s.colour = mix(s.colour, browned * vec3(0.62, 0.52, 0.46), 0.85 * smoothstep(0.18, 0.60, c));
   s.colour = mix(s.colour, browned * vec3(0.20, 0.17, 0.16), 0.85 * smoothstep(0.55, 1.00, c));
   s.colour = mix(s.colour, vec3(0.030, 0.019, 0.014), 0.85 * smoothstep(0.95, 1.25, c));
-  s.wet *= 1.0 - 0.45 * smoothstep(0.3, 0.9, e);
+  s.wet *= 1.0 - 0.75 * smoothstep(0.3, 0.9, e); // dried
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
 }
 

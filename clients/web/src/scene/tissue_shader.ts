@@ -163,7 +163,7 @@ void main() {
   s.colour = mix(vec3(0.62, 0.30, 0.10), vec3(0.90, 0.65, 0.26), dome) * (0.92 + 0.16 * n(vMaterial * 120.0));
   s.alpha = 1.0;
   s.gloss = 50.0;
-  s.wet = 0.5;
+  s.wet = 0.3;
   burnt(s, STRAW, vec3(0.47, 0.24, 0.075), 0.55 * (1.0 - dome) + 0.45 * patchy);
   float blood = smoothstep(0.54, 0.68, n(vMaterial * 24.0 + 0.23)) * (1.0 - 0.6 * dome);
   s.colour = mix(s.colour, vec3(0.33, 0.045, 0.03), 0.45 * blood);
