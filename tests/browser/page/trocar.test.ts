@@ -7,6 +7,7 @@ import type { Colour, ViewerPage } from './viewer_page';
 const DARK = 12; // of 255
 const RED_LEAST = 40; // of flesh in the least light
 const INSIDE = 0.93; // of the circle's radius
+const WIDTH_SHARE = 0.93; // of the picture's shorter side, as in scene/scope.ts
 const PLACES = 24;
 
 interface Round {
@@ -20,7 +21,7 @@ async function look(viewer: ViewerPage): Promise<Round> {
   await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
   await viewer.page.evaluate(() => document.querySelectorAll<HTMLElement>('#cue, #handles').forEach((one) => (one.style.visibility = 'hidden')));
   const box = (await viewer.page.locator('#picture').boundingBox())!;
-  const radius = Math.min(box.width, box.height) / 2;
+  const radius = (WIDTH_SHARE * Math.min(box.width, box.height)) / 2;
   const around = Array.from({ length: PLACES }, (_, i) => (2 * Math.PI * i) / PLACES)
     .map((angle) => ({ x: box.width / 2 + INSIDE * radius * Math.cos(angle), y: box.height / 2 + INSIDE * radius * Math.sin(angle) }))
     .filter(({ x, y }) => x > 4 && x < box.width - 4 && y > 4 && y < box.height - 4);
