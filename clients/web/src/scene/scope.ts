@@ -3,25 +3,30 @@
 // shaded, since it is hidden before all else is drawn.
 import { BufferGeometry, Float32BufferAttribute, GLSL3, Group, Mesh, ShaderMaterial, Vector3, type IUniform } from 'three';
 
-const CORNERS = [-1, -1, 1, -1, 1, 1, -1, 1] as const;
 const AROUND = 96; // sides of the hole: less than a pixel off a circle in a picture of 1000
+
+/** In radii of the circle: where it begins to get dimmer, and where what covers it ends. */
+const DIM_FROM = 0.45;
+const DIM_TO = 1.02;
 
 const HOLE_VERTEX = /* glsl */ `
 uniform vec3 circle;
 uniform vec2 size;
-void main() {
+void main() { // from the circle outwards beyond the picture
   vec2 at = position.z > 0.5 ? position.xy * 4.0 : position.xy * 1.01 * circle.z / size * 2.0;
   gl_Position = vec4(at, -1.0, 1.0);
 }`;
 const COVER_VERTEX = /* glsl */ `
-void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }`;
+uniform vec3 circle;
+uniform vec2 size;
+void main() { gl_Position = vec4(position.xy * position.z * circle.z / size * 2.0, 0.0, 1.0); }`;
 const FRAGMENT = /* glsl */ `
 precision highp float;
 out vec4 fragment;
 uniform vec3 circle;   // middle and radius, pixels
 void main() {
   float out_ = length(gl_FragCoord.xy - circle.xy) / circle.z;
-  float dim = 0.5 * smoothstep(0.45, 1.0, out_) * out_ * out_;
+  float dim = 0.5 * smoothstep(${DIM_FROM}, 1.0, out_) * out_ * out_;
   float dark = smoothstep(circle.z - 1.5, circle.z + 1.0, out_ * circle.z);
   fragment = vec4(vec3(0.004), max(dim, dark));
 }`;
@@ -53,8 +58,8 @@ export class Scope {
       mesh.renderOrder = last ? 100 : -100;
       this.group.add(mesh);
     };
-    add(hole(), HOLE_VERTEX, false);
-    add(geometryOf(CORNERS.flatMap((_, i) => (i % 2 === 0 ? [CORNERS[i], CORNERS[i + 1], 0] : [])), [0, 1, 2, 0, 2, 3]), COVER_VERTEX, true);
+    add(ring(0, 1), HOLE_VERTEX, false);
+    add(ring(DIM_FROM, DIM_TO), COVER_VERTEX, true); // no more than that: blending a whole picture takes long in software
   }
 
   /** In pixels of the drawing. */
@@ -64,22 +69,18 @@ export class Scope {
   }
 }
 
-function geometryOf(position: number[], index: number[]): BufferGeometry {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new Float32BufferAttribute(position, 3));
-  geometry.setIndex(index);
-  return geometry;
-}
-
-/** A ring from the circle outwards beyond the picture. */
-function hole(): BufferGeometry {
+/** Directions from the middle, with `inner` and `outer` in turn as their third coordinate. */
+function ring(inner: number, outer: number): BufferGeometry {
   const position: number[] = [];
   const index: number[] = [];
   for (let i = 0; i < AROUND; i++) {
     const [x, y] = [Math.cos((2 * Math.PI * i) / AROUND), Math.sin((2 * Math.PI * i) / AROUND)];
-    position.push(x, y, 0, x, y, 1);
+    position.push(x, y, inner, x, y, outer);
     const [a, b] = [2 * i, 2 * ((i + 1) % AROUND)];
     index.push(a, a + 1, b + 1, a, b + 1, b);
   }
-  return geometryOf(position, index);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new Float32BufferAttribute(position, 3));
+  geometry.setIndex(index);
+  return geometry;
 }
