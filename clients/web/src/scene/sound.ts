@@ -15,6 +15,7 @@ const FADE_S = 0.012; // on and off without a click
 const NOISE_S = 2;
 const SIZZLE_HZ = 5200;
 const SILENT_MS = 400; // without a frame energy is not known to be on
+const REST_MS = 5000; // of silence, after which the browser computes no sound
 
 interface Voices {
   context: AudioContext;
@@ -60,6 +61,7 @@ export class Sounds {
   private led: string | null = null;
   private faces: number | null = null;
   private framedAt = 0;
+  private soundedAt = 0;
 
   constructor(private readonly model: Model) {
     const begin = (): void => this.begin();
@@ -73,6 +75,7 @@ export class Sounds {
     });
     setInterval(() => {
       if (performance.now() - this.framedAt > SILENT_MS) this.make({ toneHz: 0, sizzle: 0 });
+      if (performance.now() - this.soundedAt > REST_MS) void this.voices?.context.suspend();
     }, SILENT_MS / 2);
   }
 
@@ -84,7 +87,12 @@ export class Sounds {
   private begin(): void {
     if (typeof AudioContext === 'undefined') return;
     this.voices ??= makeVoices();
-    if (this.voices.context.state === 'suspended') void this.voices.context.resume();
+    this.wake(this.voices.context);
+  }
+
+  private wake(context: AudioContext): void {
+    this.soundedAt = performance.now();
+    if (context.state === 'suspended') void context.resume();
   }
 
   private listen(): void {
@@ -109,7 +117,9 @@ export class Sounds {
   private make({ toneHz, sizzle }: Heard): void {
     this.heard = { toneHz: this.on.tone ? toneHz : 0, sizzle: this.on.sizzle ? sizzle : 0 };
     if (!this.voices) return;
-    const { context: { currentTime: now }, tone, toneGain, sizzleGain } = this.voices;
+    const { context, tone, toneGain, sizzleGain } = this.voices;
+    const now = context.currentTime;
+    if (this.heard.toneHz > 0 || this.heard.sizzle > 0) this.wake(context);
     if (this.heard.toneHz > 0) tone.frequency.setValueAtTime(this.heard.toneHz, now);
     toneGain.gain.setTargetAtTime(this.heard.toneHz > 0 ? TONE_GAIN : 0, now, FADE_S);
     sizzleGain.gain.setTargetAtTime(SIZZLE_GAIN * this.heard.sizzle, now, 4 * FADE_S);
@@ -120,6 +130,7 @@ export class Sounds {
     this.alarms++;
     if (!this.voices) return;
     const { context } = this.voices;
+    this.wake(context);
     ALARM_HZ.forEach((frequency, i) => {
       const beep = new OscillatorNode(context, { type: 'square', frequency });
       const at = context.currentTime + i * BEEP_S;
