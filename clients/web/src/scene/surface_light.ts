@@ -50,7 +50,6 @@ uniform sampler2D colourMap;
 uniform int mapChannel;   // -1: as tissue; else the channel of burn shown as colour
 uniform vec3 light;       // the lamp, world
 uniform float ambient;
-uniform vec2 scope;       // 1: the lamp is at the camera, and its light falls off; how far what is looked at is
 uniform vec4 clip;        // what is beyond this plane is cut away from the picture
 uniform int capsuleCount;
 uniform vec4 capsuleFrom[8]; // xyz and radius: parts of instruments that cast shadow
@@ -116,23 +115,16 @@ vec3 shade(Surface s, vec3 view) {
   float wrapped = clamp((turned + 0.3) / 1.3, 0.0, 1.0);
   // Light that went through flesh comes out redder.
   vec3 through = vec3(0.20, 0.05, 0.03) * smoothstep(-0.6, 0.4, turned) * (1.0 - wrapped);
-  float away = length(light - vWorld) / scope.y;
-  float reaching = mix(1.0, min(1.30 / (0.40 + 0.60 * away * away), 1.7), scope.x);
-  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 * reaching + through);
-  // In a closed body light comes back from red tissue all around.
-  colour = max(mix(vec3(dot(colour, vec3(0.3, 0.5, 0.2))), colour, 1.0 + 0.08 * scope.x) * mix(vec3(1.0), vec3(1.05, 0.97, 0.96), scope.x), 0.0);
+  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 + through);
   vec3 halfway = normalize(toLight + view);
-  // A film is uneven more steeply than what it wets: with the light at the camera its slopes are all that mirrors.
-  vec3 smooth_ = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
-  vec3 film = normalize(s.normal + 2.0 * scope.x * (s.normal - smooth_));
-  float shine = pow(max(dot(film, halfway), 0.0), s.gloss * (1.0 - 0.35 * scope.x)) * (1.0 + 5.0 * scope.x);
+  float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
   // A wet film mirrors the room: a lamp across the table with a wide bright frame, and some light from everywhere.
   float mirrored = max(dot(reflect(-view, s.normal), FAR_LAMP), 0.0);
   float m2 = mirrored * mirrored, m8 = m2 * m2 * m2 * m2, m24 = m8 * m8 * m8, m64 = m24 * m24 * m8 * m8;
-  float across = (1.0 - scope.x) * (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
+  float across = (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
   float grazing = 1.0 - max(dot(s.normal, view), 0.0);
   float rim = grazing * grazing * grazing * grazing;
-  colour += s.wet * (shadow * shine * reaching + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
+  colour += s.wet * (shadow * shine + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
   for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
     if (glow[i].w <= 0.0) continue;
     vec3 away = vWorld - glow[i].xyz;
@@ -157,7 +149,7 @@ void burnt(inout Surface s, vec3 pale, vec3 browned, float blotch) {
   s.colour = mix(s.colour, browned * vec3(0.62, 0.52, 0.46), 0.85 * smoothstep(0.18, 0.60, c));
   s.colour = mix(s.colour, browned * vec3(0.20, 0.17, 0.16), 0.85 * smoothstep(0.55, 1.00, c));
   s.colour = mix(s.colour, vec3(0.030, 0.019, 0.014), 0.85 * smoothstep(0.95, 1.25, c));
-  s.wet *= 1.0 - 0.75 * smoothstep(0.3, 0.9, e); // dried
+  s.wet *= 1.0 - 0.45 * smoothstep(0.3, 0.9, e);
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
 }
 

@@ -163,7 +163,7 @@ void main() {
   s.colour = mix(vec3(0.62, 0.30, 0.10), vec3(0.90, 0.65, 0.26), dome) * (0.92 + 0.16 * n(vMaterial * 120.0));
   s.alpha = 1.0;
   s.gloss = 50.0;
-  s.wet = 0.3;
+  s.wet = 0.5;
   burnt(s, STRAW, vec3(0.47, 0.24, 0.075), 0.55 * (1.0 - dome) + 0.45 * patchy);
   float blood = smoothstep(0.54, 0.68, n(vMaterial * 24.0 + 0.23)) * (1.0 - 0.6 * dome);
   s.colour = mix(s.colour, vec3(0.33, 0.045, 0.03), 0.45 * blood);
@@ -215,41 +215,6 @@ void main() {
   show(s, view);
 }`;
 
-// What continues the tissue in the body: the same sheet over lobed fat, or the fat alone. It is looked past: single
-// fibres and lobes under the sheet are colour without slopes, which would cost as much again.
-const SHEATH = /* glsl */ `
-uniform float filmed;
-Surface afar(vec3 normal, vec3 m) {
-  float wander = n(m * 11.0);
-  float bundle, strand;
-  float dense = smoothstep(0.34, 0.66, weave(m + vec3(0.0, 0.0035 * (wander - 0.5), 0.0), bundle, strand));
-  float blotch = n(m * 34.0);
-  Steps wide = steps(0.0009);
-  vec2 uneven = vec2(n((m + wide.x) * 34.0), n((m + wide.y) * 34.0)) - blotch;
-  vec3 below = mix(vec3(0.64, 0.30, 0.18), vec3(0.82, 0.54, 0.30), smoothstep(0.30, 0.62, wander));
-  Surface s;
-  s.normal = bend(normal, wide, 0.0010 * uneven, 1.0);
-  s.colour = mix(vec3(0.67, 0.38, 0.31), vec3(0.76, 0.53, 0.45), dense);
-  s.colour = mix(s.colour, vec3(0.66, 0.33, 0.27), 0.4 * smoothstep(0.42, 0.70, blotch));
-  float blood = vessel(m.xy + 0.0016 * (vec2(wander, blotch) - 0.5));
-  s.colour = mix(s.colour, vec3(0.36, 0.035, 0.045), 0.72 * blood);
-  s.colour = mix(below, s.colour, mix(0.66, 0.82, dense));
-  s.gloss = 60.0;
-  s.wet = mix(0.26, 0.66, smoothstep(0.40, 0.62, blotch));
-  return s;
-}
-void main() {
-  vec3 view = normalize(cameraPosition - vWorld);
-  vec3 normal = normalize(vNormal);
-  if (dot(normal, view) < 0.0) normal = -normal;
-  float grain;
-  Surface s;
-  if (filmed > 0.5) s = afar(normal, vMaterial);
-  else s = fat(normal, vMaterial, 0.0015, grain);
-  s.alpha = 1.0;
-  show(s, view);
-}`;
-
 const CLOTH = /* glsl */ `
 uniform vec3 cloth;
 uniform vec3 background;
@@ -275,7 +240,6 @@ export const FRAGMENTS = {
   fat: COMMON + FAT_LOOK + FAT,
   bared: COMMON + FAT_LOOK + BARED,
   flesh: COMMON + FLESH,
-  sheath: COMMON + FASCIA_LOOK + FAT_LOOK + SHEATH,
   cloth: COMMON + CLOTH,
 } as const;
-export type SurfaceKind = Exclude<keyof typeof FRAGMENTS, 'flesh' | 'sheath' | 'cloth'>;
+export type SurfaceKind = Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>;
