@@ -13,7 +13,8 @@
 #include "server/hosted_session/hosted_fixture.h"
 
 enum { CREATED, STEPPED, BACK, OTHER, NEXT };
-enum { TICKS = 20, BACK_TICK = 5 };
+// A session that is stepped so far has a checkpoint there.
+enum { TICKS = 40, BACK_TICK = 5 };
 
 static void step(int asked, int64_t ticks)
 {
