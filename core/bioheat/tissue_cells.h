@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cells of a tissue: which cells an element fills, where they are in the world, and whether an
-// element still holds its vertices together. Triangles and tetrahedra have cells, links have none.
+// element still holds its vertices together. Triangles, tetrahedra and links have cells.
 #pragma once
 
 #include "base/vector.h"
@@ -12,14 +12,14 @@ typedef struct cau_tissue_cells {
 	cau_bioheat bioheat;
 	cau_current current;
 	cau_bioheat_material material[CAU_MAX_LAYERS];
-	double *half_m; // (triangle_count): half of a sheet's thickness as the cells were created
+	double *half_m; // (triangle_count + link_count): half of a sheet's thickness, a link's radius,
+	                // as the cells were created
 	int32_t filled_count;
 	int32_t *filled;    // elements in the order of filling
 	uint8_t *is_filled; // (elements)
 	int32_t *owner;     // (capacity): the element that a cell moves with
 	float *local;       // (capacity x 3): its middle in the owner, by cau_tissue_cells_at
 	int32_t *member;    // scratch: (capacity)
-	uint8_t *is_near;   // (elements): scratch of callers
 	int32_t *stamp;     // scratch: (capacity)
 	int32_t last_stamp;
 } cau_tissue_cells;
@@ -38,17 +38,11 @@ cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissu
 // Elements that may have cells: triangles, after them tetrahedra, and after them links.
 int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells);
 
-// The element's number among all, from its kind (cau_element_kind) and its number in that.
-int32_t cau_tissue_cells_element(const cau_tissue *tissue, int kind, int32_t index);
+// The element's number among these, from its kind (CAU_PRIMITIVE_*) and its number in that.
+int32_t cau_tissue_cells_element(const cau_tissue *tissue, int primitive, int32_t index);
 
 // Returns its kind, and its number in that.
-int cau_tissue_cells_kind(const cau_tissue *tissue, int32_t element, int32_t *index);
-
-// Places that filling an element looks at, by which it takes its time.
-int32_t cau_tissue_cells_places(const cau_tissue_cells *cells, int32_t element);
-
-// Its layer.
-int32_t cau_tissue_cells_layer(const cau_tissue *tissue, int32_t element);
+int cau_tissue_cells_primitive(const cau_tissue *tissue, int32_t element, int32_t *index);
 
 // Makes the cells of an element, at ambient temperature. Cells that it shares with elements that
 // were filled before are filled further. Nothing happens if it is filled already. Returns false if

@@ -7,39 +7,13 @@
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 
-static int element_kind(int primitive)
-{
-	CAU_ASSERT_INDEX(primitive, CAU_PRIMITIVE_KINDS);
-	static const int kind[CAU_PRIMITIVE_KINDS] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON,
-	                                              CAU_ELEMENT_LINK};
-	return kind[primitive];
-}
-
-int32_t cau_dissection_count_of(const cau_tissue *tissue, int primitive)
-{
-	return cau_tissue_element_count(tissue, element_kind(primitive));
-}
-
-// Of all kinds: what can be removed at most.
+// Elements of all kinds, which is how many can be removed at most.
 static int32_t element_total(const cau_tissue *tissue)
 {
 	int32_t total = 0;
 	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		total += cau_tissue_element_count(tissue, kind);
 	return total;
-}
-
-int32_t cau_dissection_layer_of(const cau_tissue *tissue, int primitive, int32_t index)
-{
-	CAU_ASSERT_INDEX(index, cau_dissection_count_of(tissue, primitive));
-	switch (primitive) {
-	case CAU_PRIMITIVE_TRIANGLE:
-		return tissue->triangle_layer[index];
-	case CAU_PRIMITIVE_TETRAHEDRON:
-		return tissue->tetrahedron_layer[index];
-	default:
-		return tissue->link_layer[index];
-	}
 }
 
 const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int primitive,
@@ -50,27 +24,13 @@ const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int pr
 		material = tissue->triangle_material[index];
 	else if (primitive == CAU_PRIMITIVE_TETRAHEDRON)
 		material = tissue->tetrahedron_material[index];
-	return cau_layer_heat(&tissue->layer[cau_dissection_layer_of(tissue, primitive, index)],
-	                      material);
-}
-
-const int32_t *cau_dissection_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
-                                          int *count)
-{
-	CAU_ASSERT_INDEX(index, cau_dissection_count_of(tissue, primitive));
-	*count = primitive == CAU_PRIMITIVE_TRIANGLE      ? 3
-	         : primitive == CAU_PRIMITIVE_TETRAHEDRON ? 4
-	                                                  : 2;
-	const int32_t *base = primitive == CAU_PRIMITIVE_TRIANGLE      ? tissue->triangle
-	                      : primitive == CAU_PRIMITIVE_TETRAHEDRON ? tissue->tetrahedron
-	                                                               : tissue->link;
-	return base + (size_t)*count * (size_t)index;
+	return cau_layer_heat(&tissue->layer[cau_tissue_layer_of(tissue, primitive, index)], material);
 }
 
 bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index)
 {
-	CAU_ASSERT_INDEX(index, cau_dissection_count_of(dissection->tissue, primitive));
-	return dissection->alive.element[element_kind(primitive)][index];
+	CAU_ASSERT_INDEX(index, cau_tissue_element_count(dissection->tissue, primitive));
+	return dissection->alive.element[primitive][index];
 }
 
 void cau_dissection_touch(cau_dissection *dissection, int32_t edge)
@@ -138,20 +98,20 @@ static void remove_hinges(cau_dissection *dissection, int32_t triangle)
 
 void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index)
 {
-	int kind = element_kind(primitive), count;
-	CAU_ASSERT(dissection->alive.element[kind][index], "element %d of kind %d is removed twice",
-	           index, kind);
+	int count;
+	CAU_ASSERT(dissection->alive.element[primitive][index],
+	           "element %d of kind %d is removed twice", index, primitive);
 	CAU_ASSERT(dissection->removed_count < element_total(dissection->tissue),
 	           "%d elements removed of %d", dissection->removed_count,
 	           element_total(dissection->tissue));
-	dissection->alive.element[kind][index] = 0;
+	dissection->alive.element[primitive][index] = 0;
 	dissection->elements_removed++;
-	dissection->removed[dissection->removed_count++] = (cau_removed){kind, index};
-	const int32_t *vertex =
-		cau_dissection_vertices_of(dissection->tissue, primitive, index, &count);
+	dissection->removed[dissection->removed_count++] = (cau_removed){primitive, index};
+	const int32_t *vertex = cau_tissue_vertices_of(dissection->tissue, primitive, index, &count);
 	for (int i = 0; i < count; i++) {
 		CAU_ASSERT(dissection->live_elements[vertex[i]] > 0,
-		           "vertex %d loses element %d of kind %d, and has none", vertex[i], index, kind);
+		           "vertex %d loses element %d of kind %d, and has none", vertex[i], index,
+		           primitive);
 		dissection->live_elements[vertex[i]]--;
 	}
 	lose_faces(dissection, primitive, index);
@@ -169,7 +129,7 @@ void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
-			if (!(layers >> cau_dissection_layer_of(dissection->tissue, p, index) & 1))
+			if (!(layers >> cau_tissue_layer_of(dissection->tissue, p, index) & 1))
 				continue;
 			CAU_ASSERT(dissection->share_count[p][index] > 0,
 			           "primitive %d of kind %d loses edge %d, and has none", index, p, edge);
@@ -190,8 +150,8 @@ static void mark_parted(const cau_tissue *tissue, const uint16_t *parted,
 		for (int p = 0; p < CAU_PRIMITIVE_KINDS && parted[e]; p++)
 			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; k++) {
 				int32_t index = edges->sharer[p][k];
-				if (parted[e] >> cau_dissection_layer_of(tissue, p, index) & 1)
-					alive[element_kind(p)][index] = 0;
+				if (parted[e] >> cau_tissue_layer_of(tissue, p, index) & 1)
+					alive[p][index] = 0;
 			}
 }
 
@@ -199,9 +159,8 @@ void cau_dissection_find_alive(const cau_tissue *tissue, const uint16_t *parted,
                                const uint8_t *gone, uint8_t *const alive[CAU_ELEMENT_KINDS])
 {
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		for (int32_t i = 0; i < cau_dissection_count_of(tissue, p); i++)
-			alive[element_kind(p)][i] =
-				!gone || p == CAU_PRIMITIVE_LINK || !gone[cau_doses_place(tissue, p, i)];
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, p); i++)
+			alive[p][i] = !gone || p == CAU_PRIMITIVE_LINK || !gone[cau_doses_place(tissue, p, i)];
 	mark_parted(tissue, parted, alive);
 	const uint8_t *triangle = alive[CAU_ELEMENT_TRIANGLE];
 	for (int32_t h = 0; h < tissue->hinge_count; h++)
@@ -215,13 +174,12 @@ static void recount_shares(cau_dissection *dissection)
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		memset(dissection->share_count[p], edges_of[p],
-		       (size_t)cau_dissection_count_of(dissection->tissue, p));
+		       (size_t)cau_tissue_element_count(dissection->tissue, p));
 	for (int32_t e = 0; e < edges->edge_count; e++)
 		for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->parted[e]; p++)
 			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; k++) {
 				int32_t index = edges->sharer[p][k];
-				if (!(dissection->parted[e] >>
-				          cau_dissection_layer_of(dissection->tissue, p, index) &
+				if (!(dissection->parted[e] >> cau_tissue_layer_of(dissection->tissue, p, index) &
 				      1))
 					continue;
 				CAU_ASSERT(dissection->share_count[p][index] > 0,
@@ -237,11 +195,11 @@ static void recount_faces(cau_dissection *dissection)
 	memset(dissection->live_elements, 0, (size_t)tissue->vertex_count * sizeof(int32_t));
 	memset(dissection->face_owners, 0, (size_t)faces->face_count);
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		for (int32_t i = 0; i < cau_dissection_count_of(tissue, p); i++) {
-			if (!dissection->alive.element[element_kind(p)][i])
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, p); i++) {
+			if (!dissection->alive.element[p][i])
 				continue;
 			int count;
-			const int32_t *vertex = cau_dissection_vertices_of(tissue, p, i, &count);
+			const int32_t *vertex = cau_tissue_vertices_of(tissue, p, i, &count);
 			for (int k = 0; k < count; k++)
 				dissection->live_elements[vertex[k]]++;
 			if (p == CAU_PRIMITIVE_TRIANGLE)

@@ -42,7 +42,7 @@ cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *t
 	bool missing = false;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
 		dissection->share_count[p] =
-			cau_arena_array(arena, (size_t)cau_dissection_count_of(tissue, p), 1);
+			cau_arena_array(arena, (size_t)cau_tissue_element_count(tissue, p), 1);
 		missing |= !dissection->share_count[p];
 	}
 	for (int k = 0; k < CAU_ELEMENT_KINDS; k++) {
@@ -175,7 +175,7 @@ static double ignition_in_bundles(const cau_dissection *dissection, const cau_he
 static bool ignites(const cau_dissection *dissection, int primitive, int32_t index, int32_t edge)
 {
 	const cau_heat_material *heat = cau_dissection_heat_of(dissection->tissue, primitive, index);
-	int32_t layer = cau_dissection_layer_of(dissection->tissue, primitive, index);
+	int32_t layer = cau_tissue_layer_of(dissection->tissue, primitive, index);
 	double ignition = heat->ignition_bundle_m > 0
 	                      ? ignition_in_bundles(dissection, heat, layer, edge)
 	                      : cau_ignition_of(heat->ignition_c, heat->ignition_spread_c,
@@ -197,9 +197,9 @@ static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 	for (int p = first_kind_of_edges(dissection); p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
-			uint16_t bit = (uint16_t)(1u << cau_dissection_layer_of(dissection->tissue, p, index));
+			uint16_t bit = (uint16_t)(1u << cau_tissue_layer_of(dissection->tissue, p, index));
 			CAU_ASSERT(bit != 0, "layer %d has no bit",
-			           cau_dissection_layer_of(dissection->tissue, p, index));
+			           cau_tissue_layer_of(dissection->tissue, p, index));
 			if (!((before | parting) & bit) && ignites(dissection, p, index, edge))
 				parting |= bit;
 		}

@@ -8,13 +8,8 @@
 #include "dissect/dissection.h"
 
 // ---- books.c
-int32_t cau_dissection_count_of(const cau_tissue *tissue, int primitive);
-int32_t cau_dissection_layer_of(const cau_tissue *tissue, int primitive, int32_t index);
 const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int primitive,
                                                 int32_t index);
-// Its vertices, *count of them.
-const int32_t *cau_dissection_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
-                                          int *count);
 bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index);
 // Takes a living primitive out: appends it to `removed`, with the hinges of a triangle.
 void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index);

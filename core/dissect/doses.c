@@ -32,7 +32,7 @@ static cau_vec3 middle_of(const cau_tissue *tissue, int primitive, int32_t index
                           const double *position)
 {
 	int count;
-	const int32_t *vertex = cau_dissection_vertices_of(tissue, primitive, index, &count);
+	const int32_t *vertex = cau_tissue_vertices_of(tissue, primitive, index, &count);
 	cau_vec3 sum = {0, 0, 0};
 	for (int i = 0; i < count; i++)
 		sum = cau_add(sum, cau_vec3_of(position + 3 * (size_t)vertex[i]));
@@ -149,7 +149,7 @@ static void expose_sharers(const exposing *work, int32_t edge)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
 			int count;
-			const int32_t *vertex = cau_dissection_vertices_of(tissue, p, index, &count);
+			const int32_t *vertex = cau_tissue_vertices_of(tissue, p, index, &count);
 			if (is_first_edge(ends, vertex, count) &&
 			    cau_dissection_lives(work->dissection, p, index))
 				expose_element(work, p, index);
@@ -176,7 +176,7 @@ static double ignition_of(const cau_dissection *dissection, int primitive, int32
 {
 	const cau_tissue *tissue = dissection->tissue;
 	const cau_heat_material *heat = cau_dissection_heat_of(tissue, primitive, index);
-	int32_t layer = cau_dissection_layer_of(tissue, primitive, index);
+	int32_t layer = cau_tissue_layer_of(tissue, primitive, index);
 	cau_vec3 fibre = cau_unit_or(cau_vec3_of(tissue->layer[layer].def.fibre), (cau_vec3){1, 0, 0});
 	return cau_ignition_in_bundles(heat->ignition_c, heat->ignition_spread_c, dissection->seed,
 	                               layer, middle_of(tissue, primitive, index, tissue->rest), fibre,
@@ -193,7 +193,7 @@ static void lose_edge_between(cau_dissection *dissection, int32_t a, int32_t b, 
 	cau_dissection_touch(dissection, edge);
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++)
-			if (cau_dissection_layer_of(tissue, p, edges->sharer[p][k]) == layer &&
+			if (cau_tissue_layer_of(tissue, p, edges->sharer[p][k]) == layer &&
 			    cau_dissection_lives(dissection, p, edges->sharer[p][k]))
 				return;
 	cau_dissection_lose_edge(dissection, edge, (uint16_t)(1u << layer));
@@ -202,11 +202,11 @@ static void lose_edge_between(cau_dissection *dissection, int32_t a, int32_t b, 
 void cau_doses_lose(cau_dissection *dissection, int primitive, int32_t index)
 {
 	const cau_tissue *tissue = dissection->tissue;
-	int32_t layer = cau_dissection_layer_of(tissue, primitive, index);
+	int32_t layer = cau_tissue_layer_of(tissue, primitive, index);
 	dissection->doses.gone[cau_doses_place(tissue, primitive, index)] = 1;
 	cau_dissection_remove(dissection, primitive, index);
 	int count;
-	const int32_t *vertex = cau_dissection_vertices_of(tissue, primitive, index, &count);
+	const int32_t *vertex = cau_tissue_vertices_of(tissue, primitive, index, &count);
 	for (int i = 0; i < count; i++)
 		for (int j = 0; j < i; j++)
 			lose_edge_between(dissection, vertex[i], vertex[j], layer);
@@ -222,7 +222,7 @@ static void part_element(cau_dissection *dissection, int32_t place, uint32_t *la
 	if (dissection->doses.gone[place] ||
 	    absorption * dissection->doses.dose[place] <= ignition_of(dissection, primitive, index))
 		return;
-	*layers |= 1u << cau_dissection_layer_of(tissue, primitive, index);
+	*layers |= 1u << cau_tissue_layer_of(tissue, primitive, index);
 	cau_doses_lose(dissection, primitive, index);
 }
 

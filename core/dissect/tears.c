@@ -134,7 +134,7 @@ static void metric_of(const cau_tissue *tissue, int primitive, int32_t index,
                       const double *position, double metric[6])
 {
 	int count;
-	const int32_t *v = cau_dissection_vertices_of(tissue, primitive, index, &count);
+	const int32_t *v = cau_tissue_vertices_of(tissue, primitive, index, &count);
 	cau_vec3 origin = cau_vec3_of(position + 3 * (size_t)v[0]);
 	cau_vec3 f[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 	int rank = count - 1;
@@ -356,8 +356,7 @@ static void mark_most(cau_dissection *dissection, int32_t count)
 	for (int32_t k = 0; k < count; k++) {
 		int32_t index;
 		int corners, primitive = primitive_at(dissection->tissue, tears->now[k], &index);
-		const int32_t *v =
-			cau_dissection_vertices_of(dissection->tissue, primitive, index, &corners);
+		const int32_t *v = cau_tissue_vertices_of(dissection->tissue, primitive, index, &corners);
 		for (int i = 0; i < corners; i++) {
 			int32_t best = tears->most[v[i]];
 			if (!best || tears->load[k] > tears->load[best - 1])
@@ -370,7 +369,7 @@ static bool is_most(const cau_dissection *dissection, int32_t k)
 {
 	int32_t index;
 	int corners, primitive = primitive_at(dissection->tissue, dissection->tears.now[k], &index);
-	const int32_t *v = cau_dissection_vertices_of(dissection->tissue, primitive, index, &corners);
+	const int32_t *v = cau_tissue_vertices_of(dissection->tissue, primitive, index, &corners);
 	for (int i = 0; i < corners; i++)
 		if (dissection->tears.most[v[i]] != k + 1)
 			return false;
@@ -382,8 +381,7 @@ static void forget_most(cau_dissection *dissection, int32_t count)
 	for (int32_t k = 0; k < count; k++) {
 		int32_t index;
 		int corners, primitive = primitive_at(dissection->tissue, dissection->tears.now[k], &index);
-		const int32_t *v =
-			cau_dissection_vertices_of(dissection->tissue, primitive, index, &corners);
+		const int32_t *v = cau_tissue_vertices_of(dissection->tissue, primitive, index, &corners);
 		for (int i = 0; i < corners; i++)
 			dissection->tears.most[v[i]] = 0;
 	}
@@ -396,7 +394,7 @@ static int32_t longest_edge(const cau_dissection *dissection, int primitive, int
 	const cau_tissue *tissue = dissection->tissue;
 	int corners, at[2] = {0, 1};
 	double most = 0;
-	const int32_t *v = cau_dissection_vertices_of(tissue, primitive, index, &corners);
+	const int32_t *v = cau_tissue_vertices_of(tissue, primitive, index, &corners);
 	for (int i = 0; i < corners; i++)
 		for (int j = 0; j < i; j++) {
 			size_t a = 3 * (size_t)v[i], b = 3 * (size_t)v[j];
@@ -418,7 +416,7 @@ static void tear(cau_dissection *dissection, int32_t place, const double *positi
 	int primitive = primitive_at(tissue, place, &index);
 	if (!cau_dissection_lives(dissection, primitive, index))
 		return; // with an edge of the one before it
-	int32_t layer = cau_dissection_layer_of(tissue, primitive, index);
+	int32_t layer = cau_tissue_layer_of(tissue, primitive, index);
 	if (dissection->doses.dose && primitive != CAU_PRIMITIVE_LINK)
 		cau_doses_lose(dissection, primitive, index);
 	else

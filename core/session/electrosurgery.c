@@ -10,8 +10,8 @@
 
 enum {
 	CELLS_MOST = 1 << 16,
-	PLACES_A_TICK = 4000, // looked at to give elements their cells: half a millisecond
-	ITERATIONS = 60,      // of the potential, which begins at that of the tick before
+	ADDED_A_TICK = 1000, // cells: some half a millisecond of work
+	ITERATIONS = 60,     // of the potential, which begins at that of the tick before
 };
 
 static const double filled_m = 3e-3;      // elements so near to a hot part get cells
@@ -126,28 +126,21 @@ static void grow(edge_visit *visit, cau_vec3 at)
 		(cau_vec3){fmax(visit->most.x, at.x), fmax(visit->most.y, at.y), fmax(visit->most.z, at.z)};
 }
 
-static const int kind_of[CAU_PRIMITIVE_KINDS] = {
-	[CAU_PRIMITIVE_TRIANGLE] = CAU_ELEMENT_TRIANGLE,
-	[CAU_PRIMITIVE_TETRAHEDRON] = CAU_ELEMENT_TETRAHEDRON,
-	[CAU_PRIMITIVE_LINK] = CAU_ELEMENT_LINK,
-};
-
 // `urgent`: heat or sparks may reach them in the next ticks.
 static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 {
-	const cau_tissue *tissue = &visit->session->tissue;
-	const cau_edge_table *edges = &tissue->edges;
+	cau_session *session = visit->session;
+	const cau_edge_table *edges = &session->tissue.edges;
+	const cau_cells *grid = &session->cells->bioheat.cells;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
-			int32_t index = edges->sharer[p][k];
-			int kind = kind_of[p];
-			int32_t element = cau_tissue_cells_element(tissue, kind, index);
-			if (!visit->session->dissection.alive.element[kind][index] ||
-			    visit->session->cells->is_filled[element] || visit->full ||
+			int32_t index = edges->sharer[p][k], before = grid->count;
+			if (!session->dissection.alive.element[p][index] || visit->full ||
 			    (visit->left <= 0 && !urgent))
 				continue;
-			visit->full = !cau_tissue_cells_fill(visit->session->cells, element);
-			visit->left -= cau_tissue_cells_places(visit->session->cells, element);
+			visit->full = !cau_tissue_cells_fill(
+				session->cells, cau_tissue_cells_element(&session->tissue, p, index));
+			visit->left -= grid->count - before;
 		}
 }
 
@@ -186,7 +179,7 @@ static void visit_edge(edge_visit *visit, const cau_tool *tool, int32_t edge)
 static edge_visit look_around(cau_session *session, const cau_tool *tool)
 {
 	edge_visit visit = {.session = session,
-	                    .left = PLACES_A_TICK,
+	                    .left = ADDED_A_TICK,
 	                    .least = {INFINITY, INFINITY, INFINITY},
 	                    .most = {-INFINITY, -INFINITY, -INFINITY}};
 	double radius;
@@ -250,34 +243,33 @@ static void strike(cau_current *current)
 		current->electrode[k].over_length_m = 4 * spot_m / current->electrode_count;
 }
 
-// Marks the elements of which a cell may be within reach of the tool: others' cells are not asked.
-static void mark_near(cau_session *session, const cau_tool *tool)
+// Whether the tool may reach a cell of the element.
+static bool may_reach(const cau_session *session, const cau_tool *tool, int32_t element)
 {
-	cau_tissue_cells *cells = session->cells;
-	double reach = touch_m(session, tool), around, radius;
-	cau_vec3 center, middle;
-	cau_tool_bound(&tool->state.definition, CAU_PART_HOT, &center, &around);
-	center = cau_pose_to_world(&tool->state.pose, center);
-	for (int32_t k = 0; k < cells->filled_count; k++) {
-		int32_t element = cells->filled[k];
-		cau_tissue_cells_bound(cells, element, session->position, &middle, &radius);
-		cells->is_near[element] = cau_length(cau_sub(middle, center)) <= around + radius + reach &&
-		                          hot_distance(tool, middle) <= radius + reach;
-	}
+	double radius, reach = touch_m(session, tool);
+	cau_vec3 middle;
+	cau_tissue_cells_bound(session->cells, element, session->position, &middle, &radius);
+	return hot_distance(tool, middle) <= radius + reach;
 }
 
+// Most elements have all their cells one after another, so each is asked once.
 static void find_touched(cau_session *session, int32_t index, const edge_visit *visit)
 {
 	cau_tissue_cells *cells = session->cells;
 	const cau_cells *grid = &cells->bioheat.cells;
-	mark_near(session, &session->tool[index]);
+	int32_t owner = -1;
+	bool reached = false;
 	cells->current.electrode_count = 0;
 	for (int32_t cell = 0; cell < grid->count; cell++) {
 		if (grid->severed[cell] || !is_in_box(grid, cell, visit))
 			continue;
 		if ((uint64_t)cell % STRETCH_TURNS == session->tick % STRETCH_TURNS)
 			cau_tissue_cells_stretch(cells, cell, session->position);
-		if (cells->is_near[cells->owner[cell]])
+		if (cells->owner[cell] != owner) {
+			owner = cells->owner[cell];
+			reached = may_reach(session, &session->tool[index], owner);
+		}
+		if (reached)
 			touch_cell(session, index, cell);
 	}
 }
@@ -354,25 +346,19 @@ static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
 	return any;
 }
 
-static const int primitive_of[CAU_ELEMENT_LINK + 1] = {
-	[CAU_ELEMENT_TRIANGLE] = CAU_PRIMITIVE_TRIANGLE,
-	[CAU_ELEMENT_TETRAHEDRON] = CAU_PRIMITIVE_TETRAHEDRON,
-	[CAU_ELEMENT_LINK] = CAU_PRIMITIVE_LINK,
-};
-
 static void lose_element(cau_session *session, int32_t element, uint32_t *layers)
 {
 	int32_t index;
-	int kind = cau_tissue_cells_kind(&session->tissue, element, &index);
-	*layers |= 1u << cau_tissue_cells_layer(&session->tissue, element);
-	cau_dissection_lose_element(&session->dissection, primitive_of[kind], index);
+	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
+	*layers |= 1u << cau_tissue_layer_of(&session->tissue, primitive, index);
+	cau_dissection_lose_element(&session->dissection, primitive, index);
 }
 
 static bool lives(const cau_session *session, int32_t element)
 {
 	int32_t index;
-	int kind = cau_tissue_cells_kind(&session->tissue, element, &index);
-	return session->dissection.alive.element[kind][index];
+	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
+	return session->dissection.alive.element[primitive][index];
 }
 
 // Removes the elements with cells in the box that are separated now.
@@ -393,7 +379,7 @@ static void remove_cells(cau_session *session)
 {
 	for (int32_t k = 0; k < session->dissection.removed_count; k++) {
 		const cau_removed *removed = &session->dissection.removed[k];
-		if (removed->kind <= CAU_ELEMENT_LINK)
+		if (removed->kind < CAU_PRIMITIVE_KINDS)
 			cau_tissue_cells_remove(
 				session->cells,
 				cau_tissue_cells_element(&session->tissue, (int)removed->kind, removed->element));

@@ -24,6 +24,19 @@ int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind)
 	}
 }
 
+const int32_t *cau_tissue_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
+                                      int *count)
+{
+	CAU_ASSERT_INDEX(index, cau_tissue_element_count(tissue, primitive));
+	*count = primitive == CAU_PRIMITIVE_TRIANGLE      ? 3
+	         : primitive == CAU_PRIMITIVE_TETRAHEDRON ? 4
+	                                                  : 2;
+	const int32_t *base = primitive == CAU_PRIMITIVE_TRIANGLE      ? tissue->triangle
+	                      : primitive == CAU_PRIMITIVE_TETRAHEDRON ? tissue->tetrahedron
+	                                                               : tissue->link;
+	return base + (size_t)*count * (size_t)index;
+}
+
 // Coefficients of vertices 1..rank are the rows of D_m^-1; vertex 0 has minus their sum.
 static void gradient_map(const double *dm_inverse, int rank, cau_element_map *map)
 {

@@ -31,6 +31,19 @@ const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32
 	            .def.fat[tissue->tetrahedron_material[tetrahedron]];
 }
 
+int32_t cau_tissue_layer_of(const cau_tissue *tissue, int primitive, int32_t index)
+{
+	CAU_ASSERT_INDEX(index, cau_tissue_element_count(tissue, primitive));
+	switch (primitive) {
+	case CAU_PRIMITIVE_TRIANGLE:
+		return tissue->triangle_layer[index];
+	case CAU_PRIMITIVE_TETRAHEDRON:
+		return tissue->tetrahedron_layer[index];
+	default:
+		return tissue->link_layer[index];
+	}
+}
+
 const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material)
 {
 	CAU_ASSERT_INDEX(layer->def.kind, CAU_LAYER_COUNT);

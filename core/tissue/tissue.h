@@ -87,14 +87,17 @@ int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1
 // Materials of one element.
 const cau_sheet_material *cau_triangle_material(const cau_tissue *tissue, int32_t triangle);
 const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32_t tetrahedron);
+// Layer of a triangle, tetrahedron or link (CAU_PRIMITIVE_*).
+int32_t cau_tissue_layer_of(const cau_tissue *tissue, int primitive, int32_t index);
 const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material);
 
-// element_map.c: elements as the system sees them: rank-r maps G with weight w.
+// element_map.c: elements as the system sees them: rank-r maps G with weight w. The first kinds are
+// the primitives (mesh/edge_table.h), with the same numbers.
 typedef enum cau_element_kind {
-	CAU_ELEMENT_TRIANGLE,
-	CAU_ELEMENT_TETRAHEDRON,
-	CAU_ELEMENT_LINK,
-	CAU_ELEMENT_HINGE,
+	CAU_ELEMENT_TRIANGLE = CAU_PRIMITIVE_TRIANGLE,
+	CAU_ELEMENT_TETRAHEDRON = CAU_PRIMITIVE_TETRAHEDRON,
+	CAU_ELEMENT_LINK = CAU_PRIMITIVE_LINK,
+	CAU_ELEMENT_HINGE = CAU_PRIMITIVE_KINDS,
 	CAU_ELEMENT_KINDS
 } cau_element_kind;
 
@@ -106,6 +109,9 @@ typedef struct cau_element_map {
 } cau_element_map;
 
 int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind);
+// The vertices of a triangle, tetrahedron or link (CAU_PRIMITIVE_*), *count of them.
+const int32_t *cau_tissue_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
+                                      int *count);
 void cau_tissue_element_map(const cau_tissue *tissue, int kind, int32_t index,
                             cau_element_map *map);
 // |G|^2 / vertices of an element, 1/m^2 (1 for links and hinges' own G).

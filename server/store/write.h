@@ -12,7 +12,7 @@ enum {
 };
 
 // Bytes of commands that branches.bytes does not count yet. Counting with each command would write
-// the page of branches with each commit. A crash loses what is in here: less than a page a branch.
+// the page of branches with each commit. A crash loses these bytes, less than a page a branch.
 struct cau_store_uncounted {
 	struct {
 		int64_t key, branch, bytes; // bytes 0: the slot is free
@@ -22,7 +22,7 @@ struct cau_store_uncounted {
 struct cau_store_writer {
 	sqlite3 *database; // borrowed
 	sqlite3_stmt *statement[CAU_STORE_STATEMENTS];
-	// Whoever rolls records back puts this back to what it was before them.
+	// A rollback of records restores its value from before them.
 	struct cau_store_uncounted uncounted;
 };
 

@@ -136,7 +136,7 @@ static cau_status encode_topology(cau_streams *streams, const cau_stream_def *de
 	                         .face_layer = layers,
 	                         .texture = shape->texture,
 	                         .rest_position = shape->rest_position};
-	if (streams->topology && !def->plain) { // what is kept is not plain
+	if (streams->topology && !def->plain) { // the kept topology is not plain
 		topology.known = cau_buffer_bytes(streams->topology);
 		topology.known_bytes = streams->topology->byte_count;
 	}

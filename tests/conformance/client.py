@@ -136,7 +136,7 @@ def golden_streams(adapter, golden):
 
 
 def deltas_after_a_gap(adapter, golden):
-    """A delta that does not build on what is held is skipped, and the next key frame mends it."""
+    """A delta that does not continue the held state is skipped, and the next key frame is taken."""
     stream = [frame for frame in golden.streams[-1]["frames"] if frame["expect"] == "ok"]
     adapter.ask("decode", description=golden.description)
     adapter.frame(golden.read(stream[0]))

@@ -139,7 +139,7 @@ def a_key_frame_is_the_chain(server):
 
 
 def a_late_joiner(server):
-    """Who joins late holds what those hold who were there."""
+    """A client that joins late has the same state as one that was there before."""
     late = server.connect()
     late.join({"session": server.session, **JOIN})
     same_state(late.state_at(server.own.decoder.tick), server.own.decoder.state(), late.decoder.description["step_m"])

@@ -226,7 +226,7 @@ test('an ephemeral session writes nothing; all of a stored one is there after ki
 	};
 	const memory = await smallSession(client, 'memory', { paused: true, ephemeral: true });
 	await client.call('tool.take_over', hook(memory));
-	await sleep(1000); // what was written before is on the disk
+	await sleep(1000); // earlier writes have reached the disk
 	let before = writtenBytes(own);
 	for (let i = 0; i < STEPS + CUT_STEPS; i++)
 		await drive(memory, i);
@@ -255,7 +255,7 @@ test('a stored step that moves a tool writes at most 16 KiB', async () => {
 	const client = await own.connect();
 	const session = await smallSession(client, 'long', { paused: true });
 	await client.call('tool.take_over', hook(session));
-	await sleep(1000); // what was written before is on the disk
+	await sleep(1000); // earlier writes have reached the disk
 	const before = writtenBytes(own);
 	for (let i = 0; i < LONG_STEPS; i++)
 		assert.equal((await advance(client, session, [move(-0.02 + 0.04 * i / LONG_STEPS, 0.02)])).tick, i + 1);

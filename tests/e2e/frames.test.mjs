@@ -184,7 +184,7 @@ for (const [what, flood] of [
 test('a message in fragments of their own weight is no flood', async () => {
 	const raw = await Raw.open();
 	const spaces = Buffer.alloc(1024, ' ');
-	raw.socket.write(hello); // who is known has a share of the processor that such a message needs within hello_timeout_s
+	raw.socket.write(hello); // after hello a client has a larger share of the processor
 	await raw.until(() => raw.frames.length > 0, 'the answer to hello');
 	raw.socket.write(frame(0x01, Buffer.from('{"jsonrpc":"2.0","id":2,"method":"session.list",')));
 	for (let i = 0; i < 900; i++)

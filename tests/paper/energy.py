@@ -41,7 +41,7 @@ def scene_with(sim, power_w=30, peak_v=None, speed_mm_s=7, cell_mm=None, cells=N
 
 
 def measure(sim, **changes):
-    """Of one run: shares of the ledger at its end, and what was parted."""
+    """Of one run: the ledger at its end, parted area, and severed length."""
     scene = scene_with(sim, **changes)
     ran = sim.run(scene, cut=True, seconds=SECONDS_ELSE + LENGTH_MM / (1000 * scene["cut"]["speed_m_s"]))
     last = {name: float(value) for name, value in ran.ticks[-1].items() if value}

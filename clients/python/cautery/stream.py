@@ -209,7 +209,7 @@ class Stream:
 
     # ---- for the client
     def take(self, frame: bytes) -> str:
-        """Decodes a frame. "key", "delta", "topology", or "skipped": it does not build on what is held.
+        """Decodes a frame. "key", "delta", "topology", or "skipped" where it does not continue the held state.
 
         Raises BadFrame; then nothing is held until the next key frame.
         """

@@ -196,8 +196,8 @@ static void a_link_is_of_cells(void **state)
 	cau_tissue_cells cells, alone;
 	assert_int_equal(cau_tissue_cells_create(&alone, &r.tissue, SIDE_M, 4000, 37, &r.arena, NULL),
 	                 CAU_OK);
-	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_ELEMENT_LINK, 0), index;
-	assert_int_equal(cau_tissue_cells_kind(&r.tissue, link, &index), CAU_ELEMENT_LINK);
+	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_PRIMITIVE_LINK, 0), index;
+	assert_int_equal(cau_tissue_cells_primitive(&r.tissue, link, &index), CAU_PRIMITIVE_LINK);
 	assert_int_equal(index, 0);
 	assert_true(cau_tissue_cells_fill(&alone, link));
 	double exact = r.tissue.layer[2].def.link.area_m2 * r.tissue.link_length[0];
@@ -223,7 +223,7 @@ static void a_link_s_cells_move_with_its_ends(void **state)
 	cau_tissue_cells cells;
 	assert_int_equal(cau_tissue_cells_create(&cells, &r.tissue, SIDE_M, 4000, 37, &r.arena, NULL),
 	                 CAU_OK);
-	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_ELEMENT_LINK, 0);
+	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_PRIMITIVE_LINK, 0);
 	assert_true(cau_tissue_cells_fill(&cells, link));
 	double x[18];
 	for (int i = 0; i < 18; i += 3) { // pulled to twice its length, and turned

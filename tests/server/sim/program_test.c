@@ -114,7 +114,7 @@ static void ticks_tell_energies_and_times(void **state)
 	free(text);
 }
 
-// A needle that cuts by power: what it delivered is found again, and the generator's 30 W are met.
+// A needle that cuts by power: the ledger accounts for the energy, and power stays within 30 W.
 static void ticks_tell_the_ledger(void **state)
 {
 	(void)state;

@@ -262,8 +262,8 @@ static void read_count(sqlite3 *database, int session, int64_t *counted, int64_t
 	assert_int_equal(cau_store_integer(database, sql, logged, NULL), CAU_OK);
 }
 
-// One tick of each session's log, and after every third one a batch that fails: what it would have
-// written first is not counted.
+// Writes `ticks` ticks of each session's log. After every third one comes a batch that fails. Its
+// first record is rolled back, and must not be counted.
 static void write_logs(cau_store *store, int sessions, uint64_t ticks)
 {
 	char id[16];
