@@ -174,21 +174,22 @@ cau_status cau_client_join(cau_client *client, const cau_wire_session_join *para
                            cau_client_stream **stream, cau_error *error)
 {
 	joining j = {0};
-	double until_s = cau_client_now() + client->def.timeout_s;
 	client->fault.code = 0;
 	cau_status status = cau_client_send_join(client, params, stream, note_join, &j, error);
 	if (status)
 		return status;
-	if (cau_client_wait_for(client, &j.done, until_s) && !j.error.status)
-		cau_client_wait_for(client, &(*stream)->state->synced, until_s);
 	cau_client_slot *slot = (cau_client_slot *)*stream;
+	status = cau_client_await(client, CAU_METHOD_SESSION_JOIN, &j.done, slot, error);
 	slot->answer = NULL;
+	if (status)
+		return status;
 	if (j.error.status) {
 		if (error)
 			*error = j.error;
 		return j.error.status;
 	}
-	return (*stream)->state->synced
+	double until_s = cau_client_now() + client->def.timeout_s;
+	return cau_client_wait_for(client, &slot->stream.state->synced, until_s)
 	           ? CAU_OK
 	           : cau_fail(error, CAU_IO, NULL, "no key frame within %g s", client->def.timeout_s);
 }

@@ -50,18 +50,23 @@ static bool is_heard(cau_client *client)
 	return answered && !w.error.status;
 }
 
+// A join is answered once its session is built, which takes a minute beside other programs.
+static bool takes_long(cau_method method)
+{
+	return cau_method_describe(method)->cost != CAU_COST_CHEAP || method == CAU_METHOD_SESSION_JOIN;
+}
+
 cau_status cau_client_await(cau_client *client, cau_method method, const bool *done,
                             const void *user, cau_error *error)
 {
-	const cau_method_info *info = cau_method_describe(method);
 	bool answered = wait_once(client, done);
-	while (!answered && info->cost != CAU_COST_CHEAP && is_heard(client))
+	while (!answered && takes_long(method) && is_heard(client))
 		answered = *done || wait_once(client, done);
 	if (answered || *done)
 		return CAU_OK;
 	abandon(client, user);
-	return cau_fail(error, CAU_IO, NULL, "no answer to %s within %g s", info->name,
-	                client->def.timeout_s);
+	return cau_fail(error, CAU_IO, NULL, "no answer to %s within %g s",
+	                cau_method_describe(method)->name, client->def.timeout_s);
 }
 
 static cau_status wait(cau_client *client, waiting *w, cau_error *error)

@@ -103,7 +103,7 @@ static cau_corners corners_of(const cau_tissue *tissue, int32_t element)
 
 // ---- filling
 
-static cau_bioheat_material material_of_kind(cau_layer_kind kind)
+static cau_bioheat_material material_of_kind(int32_t kind)
 {
 	return kind == CAU_LAYER_FAT     ? fat_tissue
 	       : kind == CAU_LAYER_LINKS ? strand_tissue

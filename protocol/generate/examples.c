@@ -199,7 +199,8 @@ static void say_join(FILE *out, cau_rpc_buffer *to)
 	                                       .vertex_count = def.vertex_count,
 	                                       .face_count = def.face_count,
 	                                       .step_m = def.step_m,
-	                                       .stress_step_pa = def.stress_step_pa};
+	                                       .stress_step_pa = def.stress_step_pa,
+	                                       .has_plain = true};
 	say(out, ">", cau_rpc_write_request(to, 2, CAU_METHOD_SESSION_JOIN, &join, NULL), to);
 	answer(out, to, 2, CAU_METHOD_SESSION_JOIN, &granted);
 	fputs("< (binary) the topology frame of below, then a key frame\n", out);

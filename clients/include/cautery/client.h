@@ -98,7 +98,8 @@ typedef struct cau_client_def {
 	bool reconnect;        // reconnect after a lost connection: resume, join again, resend
 	bool follow;           // follow a session that moves to another daemon; true by default
 	double timeout_s;      // of connecting and of each waiting call. An expensive call
-	                       // (cau_method_cost) goes on while the server answers heartbeats
+	                       // (cau_method_cost) and a join, which waits until its session is
+	                       // built, go on while the server answers heartbeats
 	void *user;            // for the callbacks, each of which may be NULL
 	// The condition is another one.
 	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);

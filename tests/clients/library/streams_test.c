@@ -55,6 +55,39 @@ static void a_refused_join_says_why(void **state)
 	fixture_end(&f);
 }
 
+// A server that builds the session for as long as two heartbeats take to come.
+typedef struct building {
+	cau_rpc_message join;
+	int heartbeats;
+} building;
+
+static bool build_first(scripted_peer *peer, const cau_rpc_message *message, const char *text)
+{
+	building *b = scripted_user(peer);
+	(void)text;
+	if (message->method == CAU_METHOD_SESSION_JOIN)
+		b->join = (cau_rpc_message){.id = message->id, .method = message->method};
+	if (message->method == CAU_METHOD_HEARTBEAT && ++b->heartbeats == 2) {
+		scripted_answer_join(peer, &b->join);
+		scripted_send_topology(peer);
+		scripted_advance(peer, true);
+	}
+	return message->method == CAU_METHOD_SESSION_JOIN;
+}
+
+static void a_join_waits_for_a_session_that_is_built(void **state)
+{
+	(void)state;
+	fixture f;
+	building b = {0};
+	fixture_begin(&f, &(scripted_script){.text = build_first, .user = &b});
+	f.def.timeout_s = 0.5; // for hello and each heartbeat, too
+	assert_int_equal(fixture_connect(&f), CAU_OK);
+	assert_true(join(&f)->state->synced);
+	fixture_end(&f);
+	assert_int_equal(b.heartbeats, 2); // the server's thread has ended
+}
+
 // Loses frame 3 of a chain of 5; sends a key frame only when asked.
 static bool lose_a_frame(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
@@ -183,6 +216,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(joining_brings_topology_and_state),
 		cmocka_unit_test(a_refused_join_says_why),
+		cmocka_unit_test(a_join_waits_for_a_session_that_is_built),
 		cmocka_unit_test(a_gap_is_closed_by_a_key_frame),
 		cmocka_unit_test(damage_is_counted_and_repaired),
 		cmocka_unit_test(a_stream_is_joined_again_after_a_loss),
