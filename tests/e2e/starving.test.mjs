@@ -3,7 +3,7 @@
 // flooded in turn by eight viewers (in the short form, those that viewers may call, and one that they may not). The
 // driver keeps its frames, and the daemon answers "energy off" soon.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -21,11 +21,15 @@ const OFF_MOST_S = 0.05 * slowness(), ANSWER_MOST_S = 0.05 * slowness();
 const TOKENS = { view: 'viewer-token-0123456789', operate: 'driver-token-0123456789' };
 const viewing = { token: TOKENS.view };
 
+// "Off" acts at once, and is answered when it is stored. The store is in memory, so that other programs which write to the
+// disk add nothing to the times: beside one that did, an answer took 95 ms without any flood.
+const MEMORY = '/dev/shm';
+
 let folder, daemon, driver, session, stream;
 before(async () => {
-	folder = mkdtempSync(join(tmpdir(), 'cautery-starving-'));
+	folder = mkdtempSync(join(existsSync(MEMORY) ? MEMORY : tmpdir(), 'cautery-starving-'));
 	writeFileSync(join(folder, 'tokens'), `view ${TOKENS.view}\noperate ${TOKENS.operate}\n`, { mode: 0o600 });
-	daemon = await Daemon.start({ settings: { tokens: join(folder, 'tokens') } });
+	daemon = await Daemon.start({ settings: { tokens: join(folder, 'tokens'), store: join(folder, 'store.db') } });
 	driver = await Driver.connect(daemon.url(), { hello: { token: TOKENS.operate } });
 	session = (await driver.client.call('session.create', { name: 'knee', scene: 'fascia' })).summary.session;
 	stream = await driver.client.join(session);
