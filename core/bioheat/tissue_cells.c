@@ -6,40 +6,11 @@
 
 #include "base/hash.h"
 #include "bioheat/element_shape.h"
+#include "bioheat/living_tissue.h"
 #include "cautery/assert.h"
 
 // The middle of an element's cell is less than a cell outside of it. Stretch may double that.
 enum { BOUND_CELLS = 2 };
-
-// ---- materials (README.md)
-
-static const cau_bioheat_material sheet_tissue = {.conductivity_w_mk = 0.49,
-                                                  .density_kg_m3 = 1090,
-                                                  .specific_heat_j_kgk = 3421,
-                                                  .water = 0.75,
-                                                  .electric_s_m = 0.4,
-                                                  .perfusion_w_m3k = 12960,
-                                                  .damage_log_rate = 91.8, // of 7.39e39 1/s
-                                                  .damage_energy_j_mol = 2.577e5,
-                                                  .sheet = true};
-static const cau_bioheat_material fat_tissue = {.conductivity_w_mk = 0.21,
-                                                .density_kg_m3 = 911,
-                                                .specific_heat_j_kgk = 2348,
-                                                .water = 0.2,
-                                                .electric_s_m = 0.03,
-                                                .perfusion_w_m3k = 8065,
-                                                .damage_log_rate = 91.8,
-                                                .damage_energy_j_mol = 2.577e5};
-
-// A strand of connective tissue. Beyond the cells its current spreads in space, as in a solid.
-static const cau_bioheat_material strand_tissue = {.conductivity_w_mk = 0.49,
-                                                   .density_kg_m3 = 1090,
-                                                   .specific_heat_j_kgk = 3421,
-                                                   .water = 0.75,
-                                                   .electric_s_m = 0.4,
-                                                   .perfusion_w_m3k = 12960,
-                                                   .damage_log_rate = 91.8,
-                                                   .damage_energy_j_mol = 2.577e5};
 
 static const double surface_w_m2k = 20; // still gas, with radiation
 
@@ -103,11 +74,12 @@ static cau_corners corners_of(const cau_tissue *tissue, int32_t element)
 
 // ---- filling
 
-static cau_bioheat_material material_of_kind(int32_t kind)
+static cau_bioheat_material material_of(const cau_layer_def *layer)
 {
-	return kind == CAU_LAYER_FAT     ? fat_tissue
-	       : kind == CAU_LAYER_LINKS ? strand_tissue
-	                                 : sheet_tissue;
+	cau_bioheat_material material = cau_living_tissue(layer->tissue);
+	material.perfusion_w_m3k *= layer->perfusion;
+	material.sheet = layer->kind == CAU_LAYER_FASCIA || layer->kind == CAU_LAYER_MEMBRANE;
+	return material;
 }
 
 static size_t half_count(const cau_tissue *tissue)
@@ -134,7 +106,7 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	size_t most = (size_t)capacity;
 	*cells = (cau_tissue_cells){.tissue = tissue};
 	for (int32_t i = 0; i < tissue->layer_count; i++)
-		cells->material[i] = material_of_kind(tissue->layer[i].def.kind);
+		cells->material[i] = material_of(&tissue->layer[i].def);
 	cau_status status = cau_bioheat_create(&cells->bioheat, side_m, capacity, cells->material,
 	                                       tissue->layer_count, ambient_c, arena, error);
 	if (!status)

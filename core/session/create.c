@@ -174,6 +174,16 @@ static uint64_t hash_array(uint64_t hash, const void *array, int32_t count, size
 	return cau_hash_bytes(cau_hash_word(hash, (uint64_t)count), array, (size_t)count * bytes);
 }
 
+static uint64_t hash_bioheat(uint64_t hash, const cau_scene_def *scene)
+{
+	hash = cau_hash_bytes(hash, &scene->cell_m, sizeof scene->cell_m);
+	for (int32_t i = 0; i < scene->layer_count; i++) {
+		hash = cau_hash_word(hash, (uint64_t)scene->layers[i].tissue);
+		hash = cau_hash_bytes(hash, &scene->layers[i].perfusion, sizeof(double));
+	}
+	return hash;
+}
+
 // What a snapshot does not hold: time, solver and the tissue at rest. Materials it does hold.
 static uint64_t hash_definition(const cau_session *session)
 {
@@ -192,7 +202,7 @@ static uint64_t hash_definition(const cau_session *session)
 		hash = cau_hash_bytes(hash, contact, sizeof contact);
 	}
 	if (scene->energy != CAU_ENERGY_PAPER)
-		hash = cau_hash_bytes(hash, &scene->cell_m, sizeof scene->cell_m);
+		hash = hash_bioheat(hash, scene);
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
 	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
 	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));

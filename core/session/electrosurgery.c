@@ -62,6 +62,16 @@ cau_status cau_session_make_cells(cau_session *session, cau_error *error)
 	                               scene->ambient_c, &session->arena, error);
 }
 
+double cau_session_coagulated(const cau_session *session)
+{
+	double volume_m3 = 0;
+	const cau_bioheat *bioheat = session->cells ? &session->cells->bioheat : NULL;
+	for (int32_t i = 0; bioheat && i < bioheat->cells.count; i++)
+		if (bioheat->damage[i] >= 1 && !bioheat->cells.severed[i])
+			volume_m3 += cau_cells_volume(&bioheat->cells, i);
+	return volume_m3;
+}
+
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger)
 {
 	*ledger = session->cells ? session->cells->bioheat.ledger : (cau_energy_ledger){0};

@@ -13,6 +13,7 @@ CHOICES_OF_WORDS(model_choices, CAU_MODEL_TABLE)
 CHOICES(limit_choices, CAU_LIMIT_TABLE)
 CHOICES(projection_choices, CAU_PROJECTION_TABLE)
 CHOICES(layer_kind_choices, CAU_LAYER_TABLE)
+CHOICES(living_choices, CAU_LIVING_TABLE)
 CHOICES(select_kind_choices, CAU_SELECT_TABLE)
 CHOICES_OF_WORDS(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
 
@@ -76,6 +77,10 @@ static const cau_field layer_fields[] = {
 	{VECTOR(fibre, 3, -CAU_FIBRE_MOST, CAU_FIBRE_MOST, "1",
             "material direction where the mesh has no UV; fat: first axis"),
      .kinds = KIND(FASCIA) | KIND(FAT) | KIND(MEMBRANE)},
+	{CHOICE(tissue, living_choices, "with energy `tissue`: what heat and current find in it")},
+	{SCALAR_OF(
+		perfusion, 0.0, CAU_PERFUSION_MOST, "1",
+		"with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none")},
 };
 #undef STRUCT
 #undef KIND

@@ -8,7 +8,8 @@
 // All but the last columns, the stages' times, depend on scene and commands alone: two runs have
 // the same bytes there.
 
-// column, format, value of `frame`, `s`, its statistics, `balance` and `ledger`
+// column, format, value of `row`, of its `frame`, `balance` and `ledger`, and of `s`, the
+// statistics
 #define COLUMNS(X)                                                                                 \
 	X("tick", PRIu64, frame->tick)                                                                 \
 	X("time_s", ".9g", frame->time_s)                                                              \
@@ -43,7 +44,8 @@
 	X("boiled_j", ".9g", ledger->boiled_j)                                                         \
 	X("perfused_j", ".9g", ledger->perfused_j)                                                     \
 	X("ambient_j", ".9g", ledger->ambient_j)                                                       \
-	X("shed_j", ".9g", ledger->shed_j)
+	X("shed_j", ".9g", ledger->shed_j)                                                             \
+	X("coagulated_m3", ".9g", row->coagulated_m3)
 
 // suffix of a tool's column, value of `tool`
 #define TOOL_COLUMNS(X)                                                                            \
@@ -115,9 +117,11 @@ static void write_tool(FILE *file, const cau_tool_state *tool)
 #undef CELL
 }
 
-void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
-                  const cau_balance *balance, const cau_energy_ledger *ledger)
+void sim_csv_tick(FILE *file, const cau_scene_def *scene, const sim_csv_row *row)
 {
+	const cau_frame *frame = row->frame;
+	const cau_balance *balance = &row->balance;
+	const cau_energy_ledger *ledger = &row->ledger;
 	const cau_statistics *s = &frame->statistics;
 	const char *comma = "";
 #define CELL(column, format, value)                                                                \

@@ -11,7 +11,14 @@
 // The columns' names; those of a tool begin with its name. `scene` is the one that the ticks are
 // of.
 void sim_csv_begin(FILE *file, const cau_scene_def *scene);
+// What a line tells, of one tick.
+typedef struct sim_csv_row {
+	const cau_frame *frame;
+	cau_balance balance;
+	cau_energy_ledger ledger;
+	double coagulated_m3; // cau_session_coagulated
+} sim_csv_row;
+
 // Stage times are the machine's, and 0 unless the session has a clock. Cells of a tool that is gone
 // are empty.
-void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
-                  const cau_balance *balance, const cau_energy_ledger *ledger);
+void sim_csv_tick(FILE *file, const cau_scene_def *scene, const sim_csv_row *row);

@@ -118,13 +118,12 @@ static void note_events(run *r, const cau_frame *frame)
 static cau_status write_outputs(run *r, const cau_frame *frame)
 {
 	if (r->csv) {
-		cau_balance balance;
-		cau_status status = cau_session_balance(r->session, &balance);
+		sim_csv_row row = {.frame = frame, .coagulated_m3 = cau_session_coagulated(r->session)};
+		cau_status status = cau_session_balance(r->session, &row.balance);
 		if (status)
 			return cau_fail(r->error, status, NULL, "no memory for a tick's energies");
-		cau_energy_ledger ledger;
-		cau_session_read_ledger(r->session, &ledger);
-		sim_csv_tick(r->csv, r->scene, frame, &balance, &ledger);
+		cau_session_read_ledger(r->session, &row.ledger);
+		sim_csv_tick(r->csv, r->scene, &row);
 	}
 	if (r->vtu_open && frame->tick % (uint64_t)r->options->vtu_every == 0)
 		return sim_vtu_write(&r->vtu, r->session, r->error);

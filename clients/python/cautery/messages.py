@@ -1853,6 +1853,12 @@ class FasciaLayer(TypedDict):
     # material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000)
     fibre: NotRequired[Sequence[float]]
 
+    # with energy `tissue`: what heat and current find in it
+    tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
+
+    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    perfusion: NotRequired[float]
+
     # sheet thickness (1e-06 to 0.05 m)
     thickness_m: NotRequired[float]
 
@@ -1977,6 +1983,12 @@ class MembraneLayer(TypedDict):
 
     # material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000)
     fibre: NotRequired[Sequence[float]]
+
+    # with energy `tissue`: what heat and current find in it
+    tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
+
+    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    perfusion: NotRequired[float]
 
     # sheet thickness (1e-06 to 0.05 m)
     thickness_m: NotRequired[float]
@@ -2109,6 +2121,12 @@ class FatLayer(TypedDict):
     # material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000)
     fibre: NotRequired[Sequence[float]]
 
+    # with energy `tissue`: what heat and current find in it
+    tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
+
+    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    perfusion: NotRequired[float]
+
     # elastic energy
     model: NotRequired[Literal["neohookean", "corotated", "stvk", "energy"]]
 
@@ -2184,6 +2202,12 @@ class LinksLayer(TypedDict):
 
     # the lower layer
     to: NotRequired[str]
+
+    # with energy `tissue`: what heat and current find in it
+    tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
+
+    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    perfusion: NotRequired[float]
 
     # Young's modulus of a truss (1 to 100000000000 Pa)
     young_modulus_pa: NotRequired[float]

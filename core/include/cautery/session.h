@@ -363,6 +363,9 @@ typedef struct cau_energy_ledger {
 } cau_energy_ledger;
 // Writes the session's ledger.
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger);
+// Volume of the tissue that is there and dead by heat (damage of 1 or more), m^3 at rest. 0 with
+// energy `paper`. Divided by the area of a cut, it is the mean width of what coagulated beside it.
+double cau_session_coagulated(const cau_session *session);
 
 // Total mechanical quantities, for tests and plots.
 typedef struct cau_balance {

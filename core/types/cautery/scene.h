@@ -54,6 +54,7 @@ enum {
 #define CAU_MESH_UNIT_LEAST_M 1e-9
 #define CAU_MESH_UNIT_MOST_M 1000.0
 #define CAU_ITERATIONS_MOST 1000
+#define CAU_PERFUSION_MOST 10.0
 #define CAU_PULL_MOST_M 1.0
 #define CAU_PULL_LEAST_S 1e-3
 #define CAU_PULL_MOST_S 3600.0
@@ -210,10 +211,20 @@ typedef struct cau_link_material {
 	X(FAT, "fat")           /* the tetrahedra of its mesh */                                       \
 	X(LINKS, "links")       /* trusses from each vertex of layer `of` to the nearest of `to` */
 
+// What heat and current find in a layer, with energy `tissue`. The numbers of each are in
+// core/bioheat/living_tissue.c.
+#define CAU_LIVING_TABLE(X)                                                                        \
+	X(CONNECTIVE, "connective") /* fascia, membranes and strands: muscle's numbers */              \
+	X(FAT, "fat")                                                                                  \
+	X(LIVER, "liver")                                                                              \
+	X(MUSCLE, "muscle")
+
 // One layer of tissue: which part of which mesh it is, and what it is made of.
 typedef struct cau_layer_def {
 	char name[CAU_NAME_BYTES]; // of the layer
 	int kind;                  // CAU_LAYER_*
+	int tissue;                // CAU_LIVING_*
+	double perfusion;          // its blood flow, as a share of that of living tissue
 	char mesh[CAU_NAME_BYTES]; // FASCIA, FAT, MEMBRANE without `of`
 	char of[CAU_NAME_BYTES];   // MEMBRANE: a fat layer. LINKS: the upper layer
 	char to[CAU_NAME_BYTES];   // LINKS: the lower layer
@@ -404,6 +415,13 @@ typedef enum cau_layer_kind {
 #undef X
 		CAU_LAYER_COUNT
 } cau_layer_kind;
+// What heat and current find: CAU_LIVING_TABLE.
+typedef enum cau_living {
+#define X(code, name) CAU_LIVING_##code,
+	CAU_LIVING_TABLE(X)
+#undef X
+		CAU_LIVING_COUNT
+} cau_living;
 // How vertices are chosen: CAU_SELECT_TABLE.
 typedef enum cau_select_kind {
 #define X(code, name) CAU_SELECT_##code,

@@ -47,6 +47,26 @@ static rig small_slab(void)
 	return r;
 }
 
+// Liver without blood, as an organ that was taken out; the same layer by default is fat.
+static void a_layer_is_of_its_tissue(void **state)
+{
+	(void)state;
+	rig slab = small_slab();
+	cau_tissue_cells fat, liver;
+	fill_all(&fat, &slab, SIDE_M, 4000);
+	slab.tissue.layer[0].def.tissue = CAU_LIVING_LIVER;
+	slab.tissue.layer[0].def.perfusion = 0;
+	fill_all(&liver, &slab, SIDE_M, 4000);
+	assert_near(cau_bioheat_conductivity(&fat.bioheat, 0), 0.21, 1e-9);
+	assert_near(cau_bioheat_conductivity(&liver.bioheat, 0), 0.52, 1e-9);
+	assert_near(cau_bioheat_electric(&fat.bioheat, 0), 0.03, 1e-9);
+	assert_near(cau_bioheat_electric(&liver.bioheat, 0), 0.15, 1e-9);
+	assert_near(liver.bioheat.material[0].perfusion_w_m3k, 0, 0);
+	assert_true(fat.bioheat.material[0].perfusion_w_m3k > 0);
+	assert_false(liver.bioheat.material[0].sheet);
+	rig_finish(&slab);
+}
+
 static void cells_have_the_tissue_s_volume(void **state)
 {
 	(void)state;
@@ -256,6 +276,7 @@ static void there_may_be_no_room(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_layer_is_of_its_tissue),
 		cmocka_unit_test(cells_have_the_tissue_s_volume),
 		cmocka_unit_test(cells_move_with_the_tissue),
 		cmocka_unit_test(conductivity_is_pulled_back),

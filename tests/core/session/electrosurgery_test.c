@@ -102,6 +102,9 @@ static void off_ends_the_power_and_not_the_heat(void **state)
 	assert_true(after.delivered_j == before.delivered_j);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);
 	assert_true(after.stored_j > 0);
+	// Beside the cut tissue is dead: less than a sheet of 0.5 mm has under 4 mm of the way.
+	double dead_m3 = cau_session_coagulated(session);
+	assert_true(dead_m3 > 1e-10 && dead_m3 < 5e-4 * 4e-3 * 0.04);
 	assert_ledger_closes(session);
 	cau_session_destroy(session);
 }

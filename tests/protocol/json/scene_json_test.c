@@ -92,7 +92,9 @@ static const char everything[] =
 	"\"translate_m\":[1,2,3]},{\"source\":\"bytes\",\"name\":\"b\",\"file\":\"b.obj\"},"
 	"{\"source\":\"sheet\",\"name\":\"c\",\"size_m\":[1,2],\"cells\":[3,4],"
 	"\"texture_turn_rad\":0.5},{\"source\":\"pattern\",\"name\":\"d\",\"cells\":[5]}],"
-	"\"layers\":[{\"kind\":\"fat\",\"name\":\"f\",\"mesh\":\"a\",\"young_modulus_pa\":1234.5,"
+	"\"layers\":[{\"kind\":\"fat\",\"name\":\"f\",\"mesh\":\"a\",\"tissue\":\"liver\","
+	"\"perfusion\":0,"
+	"\"young_modulus_pa\":1234.5,"
 	"\"model\":\"stvk\",\"target\":[1,2,3,0.1,0.2,0.3],\"absorption_per_s\":3,"
 	"\"regions\":[{\"region\":3,\"poisson_ratio\":0.25},{\"region\":7,\"ignition_c\":99}]},"
 	"{\"kind\":\"membrane\",\"name\":\"m\",\"of\":\"f\",\"thickness_m\":0.0001,"
@@ -124,6 +126,9 @@ static void every_member_comes_back(void **state)
 	assert_int_equal(scene->tools[0].shape, CAU_TOOL_BIPOLAR);
 	assert_true(scene->pull.present && scene->pull.move_m[2] == 1.0);
 	assert_true(scene->cut.present && scene->cut.rotation[1] == 1.0);
+	assert_int_equal(scene->layers[0].tissue, CAU_LIVING_LIVER);
+	assert_true(scene->layers[0].perfusion == 0 && scene->layers[1].perfusion == 1);
+	assert_int_equal(scene->layers[1].tissue, CAU_LIVING_CONNECTIVE);
 	assert_int_equal(scene->pins[3].kind, CAU_SELECT_NEAREST);
 	assert_string_equal(scene->directory, "");
 	free(scene);

@@ -590,6 +590,12 @@ cau_status cau_session_balance(cau_session *s, cau_balance *balance)
 	return CAU_OK;
 }
 
+double cau_session_coagulated(const cau_session *s)
+{
+	(void)s;
+	return 0;
+}
+
 void cau_session_read_ledger(const cau_session *s, cau_energy_ledger *ledger)
 {
 	(void)s;

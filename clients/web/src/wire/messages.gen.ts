@@ -1259,6 +1259,10 @@ export interface FasciaLayer {
   mesh?: string;
   /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
   fibre?: [number, number, number];
+  /** with energy `tissue`: what heat and current find in it */
+  tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
+  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  perfusion?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
   /** mass density (1 to 25000 kg/m^3) */
@@ -1345,6 +1349,10 @@ export interface MembraneLayer {
   of?: string;
   /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
   fibre?: [number, number, number];
+  /** with energy `tissue`: what heat and current find in it */
+  tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
+  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  perfusion?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
   /** mass density (1 to 25000 kg/m^3) */
@@ -1435,6 +1443,10 @@ export interface FatLayer {
   mesh?: string;
   /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
   fibre?: [number, number, number];
+  /** with energy `tissue`: what heat and current find in it */
+  tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
+  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  perfusion?: number;
   /** elastic energy */
   model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
   /** mass density (1 to 25000 kg/m^3) */
@@ -1487,6 +1499,10 @@ export interface LinksLayer {
   of?: string;
   /** the lower layer */
   to?: string;
+  /** with energy `tissue`: what heat and current find in it */
+  tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
+  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  perfusion?: number;
   /** Young's modulus of a truss (1 to 100000000000 Pa) */
   young_modulus_pa?: number;
   /** cross section of a truss (1e-12 to 1 m^2) */
