@@ -11,7 +11,10 @@
 enum {
 	CELLS_MOST = 1 << 16,
 	ADDED_A_TICK = 1000, // cells: some half a millisecond of work
-	ITERATIONS = 60,     // of the potential, which begins at that of the tick before
+	// Where heat arrives there are cells, while these are fewer. The others are for tools.
+	FOLLOWED_MOST = CELLS_MOST / 4 * 3,
+	FOLLOW_TURNS = 60, // each element is looked at once in so many ticks; heat is slow
+	ITERATIONS = 60,   // of the potential, which begins at that of the tick before
 };
 
 static const double filled_m = 3e-3;      // elements so near to a hot part get cells
@@ -24,6 +27,7 @@ static const double spark_v_m = 3e6;      // breakdown of air
 // resistance is there, and most of the heat.
 static const double spot_m = 1e-4;
 static const double cold_k = 0.01;
+static const double warm_k = 3; // above the surroundings: tissue beyond gets cells
 // Share of its water that tissue still has when it bursts. No measurement was found. Steam in
 // tissue that holds 1 MPa has 180 degC, and a sixth of such water boils at once when it is let off.
 // At most all of the water has boiled. A half is between the two.
@@ -128,6 +132,13 @@ typedef struct edge_visit {
 	cau_vec3 least, most; // box at rest around the ends
 } edge_visit;
 
+static bool lives(const cau_session *session, int32_t element)
+{
+	int32_t index;
+	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
+	return session->dissection.alive.element[primitive][index];
+}
+
 static void grow(edge_visit *visit, cau_vec3 at)
 {
 	visit->least = (cau_vec3){fmin(visit->least.x, at.x), fmin(visit->least.y, at.y),
@@ -204,6 +215,44 @@ static edge_visit look_around(cau_session *session, const cau_tool *tool)
 			visit_edge(&visit, tool, near->edge[k]);
 	}
 	return visit;
+}
+
+static bool is_warm(const cau_session *session, int32_t vertex)
+{
+	return cau_tissue_cells_temperature(session->cells, vertex) >
+	       session->scene->ambient_c + warm_k;
+}
+
+static void follow_element(edge_visit *visit, int32_t element)
+{
+	cau_session *session = visit->session;
+	int32_t index, count;
+	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
+	const int32_t *vertex = cau_tissue_vertices_of(&session->tissue, primitive, index, &count);
+	for (int i = 0; i < count; i++) {
+		if (!is_warm(session, vertex[i]))
+			continue;
+		for (int j = 0; j < count; j++) {
+			int32_t edge =
+				i == j ? -1 : cau_edge_table_find(&session->tissue.edges, vertex[i], vertex[j]);
+			if (edge >= 0) {
+				fill_sharers(visit, edge, false);
+				show_heat(session, edge);
+			}
+		}
+	}
+}
+
+// Gives cells to the neighbours of warm elements. Without, heat would end 3 mm from where a tool
+// was.
+static void follow_heat(cau_session *session)
+{
+	const cau_tissue_cells *cells = session->cells;
+	edge_visit visit = {.session = session, .left = ADDED_A_TICK};
+	int32_t known = cells->filled_count;
+	for (int32_t k = (int32_t)(session->tick % FOLLOW_TURNS); k < known; k += FOLLOW_TURNS)
+		if (cells->bioheat.cells.count < FOLLOWED_MOST && lives(session, cells->filled[k]))
+			follow_element(&visit, cells->filled[k]);
 }
 
 static bool is_in_box(const cau_cells *grid, int32_t cell, const edge_visit *visit)
@@ -364,13 +413,6 @@ static void lose_element(cau_session *session, int32_t element, uint32_t *layers
 	cau_dissection_lose_element(&session->dissection, primitive, index);
 }
 
-static bool lives(const cau_session *session, int32_t element)
-{
-	int32_t index;
-	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
-	return session->dissection.alive.element[primitive][index];
-}
-
 // Removes the elements with cells in the box that are separated now.
 static void part(cau_session *session, const int32_t least[3], const int32_t most[3],
                  uint32_t *layers)
@@ -451,6 +493,7 @@ void cau_session_operate(cau_session *session)
 		find_touched(session, i, &visit);
 		energize(session, tool);
 	}
+	follow_heat(session);
 	heat(session);
 	if (vaporise(session, least, most))
 		part(session, least, most, &layers);

@@ -277,6 +277,45 @@ static void power_parts_links(void **state)
 	free(scene);
 }
 
+// A ball that coagulates in one place for a minute. Its heat goes on to tissue 6 mm away from it,
+// to which no tool has come.
+static void heat_goes_on_beyond_the_tool(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	scene->energy = CAU_ENERGY_TISSUE;
+	scene->parting = CAU_PARTING_ELEMENTS;
+	scene->cell_m = 1e-3;
+	scene->step_s = 1.0 / 30;
+	cau_layer_def *liver =
+		stage_add_slab(scene, "liver", (double[]){0.032, 0.032, 0.012}, (int32_t[]){16, 16, 6});
+	liver->tissue = CAU_LIVING_LIVER;
+	liver->perfusion = 0;
+	stage_pin_box(scene, (double[]){-0.02, -0.02, -0.013}, (double[]){0.02, 0.02, -0.011});
+	cau_tool_def *ball = stage_add_tool(scene, "hook", CAU_TOOL_SPHERE, 0, 0, 1e-3);
+	ball->hot_radius_m = 2e-3;
+	ball->power_w = 4;
+	ball->peak_v = 60;
+	cau_session *session = stage_open(scene, 1);
+	int32_t far = 0; // the vertex nearest to (8 mm, 0, 0)
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
+		const double *rest = session->tissue.rest + 3 * (size_t)v;
+		const double *best = session->tissue.rest + 3 * (size_t)far;
+		if (hypot(hypot(rest[0] - 8e-3, rest[1]), rest[2]) <
+		    hypot(hypot(best[0] - 8e-3, best[1]), best[2]))
+			far = v;
+	}
+	stage_energize(session, "hook", 1);
+	stage_step(session, 30);
+	assert_true(cau_tissue_cells_temperature(session->cells, far) == scene->ambient_c);
+	stage_step(session, CAU_TEST_SANITIZED ? 900 : 1800);
+	assert_true(cau_tissue_cells_temperature(session->cells, far) > scene->ambient_c + 0.5);
+	assert_int_equal(parted(session), 0);
+	assert_ledger_closes(session);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 static void edges_cannot_part_by_power(void **state)
 {
 	(void)state;
@@ -295,6 +334,7 @@ int main(void)
 		cmocka_unit_test(one_watt_holds_the_needle_up),
 		cmocka_unit_test(off_ends_the_power_and_not_the_heat),
 		cmocka_unit_test(threads_and_a_restore_change_no_bit),
+		cmocka_unit_test(heat_goes_on_beyond_the_tool),
 		cmocka_unit_test(soft_coagulation_heats_and_parts_nothing),
 		cmocka_unit_test(a_changed_thickness_is_restored),
 		cmocka_unit_test(bipolar_jaws_heat_what_lies_between),
