@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The books of the edge-based structure: what a primitive is, which live, which faces are drawn;
+// The books of the edge-based structure: what a primitive is, how far heat has come at an edge,
+// which live, which faces are drawn;
 // what an edge or an element that parts takes with it; and all of it counted again from what has
 // parted.
 #include <string.h>
@@ -25,6 +26,45 @@ const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int pr
 	else if (primitive == CAU_PRIMITIVE_TETRAHEDRON)
 		material = tissue->tetrahedron_material[index];
 	return cau_layer_heat(&tissue->layer[cau_tissue_layer_of(tissue, primitive, index)], material);
+}
+
+// Of the primitives of a kind that share the edge, the first one's material; NULL: there is none.
+static const cau_heat_material *heat_at(const cau_dissection *dissection, int primitive,
+                                        int32_t edge)
+{
+	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
+	const cau_edge_table *edges = &dissection->tissue->edges;
+	int32_t k = edges->first[primitive][edge];
+	if (k == edges->first[primitive][edge + 1])
+		return NULL;
+	return cau_dissection_heat_of(dissection->tissue, primitive, edges->sharer[primitive][k]);
+}
+
+// The material that needs most exposure decides.
+void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double share)
+{
+	double exposure = dissection->exposure[edge];
+	CAU_ASSERT(share >= 0 && share <= 1, "edge %d is heated by %g", edge, share);
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
+		const cau_heat_material *heat = heat_at(dissection, p, edge);
+		if (heat && heat->absorption_per_s > 0)
+			exposure = fmax(exposure, share * heat->ignition_c / heat->absorption_per_s);
+	}
+	if (exposure > dissection->exposure[edge])
+		cau_dissection_touch(dissection, edge);
+	dissection->exposure[edge] = exposure;
+}
+
+double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
+{
+	double most = 0;
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->exposure[edge] > 0; p++) {
+		const cau_heat_material *heat = heat_at(dissection, p, edge);
+		if (heat)
+			most =
+				fmax(most, heat->absorption_per_s * dissection->exposure[edge] / heat->ignition_c);
+	}
+	return fmin(most, 1);
 }
 
 bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index)

@@ -19,6 +19,9 @@
 // the energy of the laws at small strain; it leaves out what Poisson's ratio adds where two axes
 // are stretched, and counts what has flowed as stored, which a band spends all the same.
 //
+// Coagulated tissue bears less: `coagulated_share` of G_c, and what is between fresh and coagulated
+// bears what is between (exposure of 0.5: coagulated).
+//
 // An element goes when it was there in two converged ticks, one after the other, or in six of any
 // kind: an iterate on the way may be far beyond the solution, but not for a tenth of a second, and
 // a flap that hangs on little may never converge. Of those that touch each other only the most
@@ -77,6 +80,7 @@ cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_aren
 	if (!tears->over || !tears->before || !tears->now || !tears->found || !tears->load ||
 	    !tears->most)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tears");
+	tears->coagulated_share = 1;
 	for (int32_t place = 0; place < cau_tears_capacity(tissue); place++) {
 		int32_t index;
 		int primitive = primitive_at(tissue, place, &index);
@@ -182,18 +186,44 @@ static double borne_j_m3(const bearing *b, double size_m)
 
 // Sum of the squared stretches below which no element of size up to widest_m can be loaded with 1:
 // for a given sum psi is most where all of it is along one axis.
-static double least_squared(const bearing *b, double widest_m)
+static double least_squared(const bearing *b, double widest_m, double least_strength)
 {
-	double most = 1 + sqrt(2 * borne_j_m3(b, widest_m) / (b->young_pa + b->limit_pa));
+	double borne = least_strength * borne_j_m3(b, widest_m);
+	double most = 1 + sqrt(2 * borne / (b->young_pa + b->limit_pa));
 	return most * most;
 }
 
-static double load_of(const cau_tissue *tissue, const bearing *b, int primitive, int32_t index,
-                      const double *position)
+// 0 where all of the element's edges are fresh, 1 where all are coagulated.
+static double coagulation_of(const cau_dissection *dissection, int primitive, int32_t index)
+{
+	int count, edges = 0;
+	const int32_t *v = cau_tissue_vertices_of(dissection->tissue, primitive, index, &count);
+	double sum = 0;
+	for (int i = 0; i < count; i++)
+		for (int j = i + 1; j < count; j++) {
+			int32_t edge = cau_edge_table_find(&dissection->tissue->edges, v[i], v[j]);
+			CAU_ASSERT(edge >= 0, "element %d of kind %d lacks an edge", index, primitive);
+			sum += fmin(2 * cau_dissection_heated(dissection, edge), 1);
+			edges++;
+		}
+	return sum / edges;
+}
+
+// Share of G_c that the element bears.
+static double strength_of(const cau_dissection *dissection, int primitive, int32_t index)
+{
+	double lost = 1 - dissection->tears.coagulated_share;
+	return lost > 0 ? 1 - lost * coagulation_of(dissection, primitive, index) : 1;
+}
+
+static double load_of(const cau_dissection *dissection, const bearing *b, int primitive,
+                      int32_t index, const double *position)
 {
 	double metric[6];
+	const cau_tissue *tissue = dissection->tissue;
 	metric_of(tissue, primitive, index, position, metric);
-	return stored_energy(b, metric) / borne_j_m3(b, size_of(tissue, primitive, index));
+	return stored_energy(b, metric) / (borne_j_m3(b, size_of(tissue, primitive, index)) *
+	                                   strength_of(dissection, primitive, index));
 }
 
 // ---- which are over what they bear
@@ -257,12 +287,13 @@ static void look_at_part(void *context, int32_t part)
 		if (material_of(tissue, range->primitive, index) != material) {
 			material = material_of(tissue, range->primitive, index);
 			b = bearing_of(tissue, range->primitive, index);
-			least =
-				b.tear_j_m2 > 0 ? least_squared(&b, tears->widest_m[range->primitive]) : HUGE_VAL;
+			least = b.tear_j_m2 > 0 ? least_squared(&b, tears->widest_m[range->primitive],
+			                                        tears->coagulated_share)
+			                        : HUGE_VAL;
 		}
 		if (!(squared_stretches(tissue, range->primitive, index, work->position) >= least))
 			continue;
-		double load = load_of(tissue, &b, range->primitive, index, work->position);
+		double load = load_of(work->dissection, &b, range->primitive, index, work->position);
 		if (!(load >= 1))
 			continue;
 		tears->now[part * PART + found] = before + index;

@@ -114,6 +114,10 @@ static cau_status pass_border(const cau_session *session, const cau_session_def 
 	return def->border ? def->border(def->user, &border, error) : CAU_OK;
 }
 
+// Of the energy that a tear of fresh tissue takes, with energy `tissue`. Assumed: collagen that was
+// heated to 60 to 80 degC loses most of its strength, and figures differ (core/bioheat/README.md).
+static const double coagulated_share = 0.3;
+
 static cau_status make_solver(cau_session *session, const cau_session_def *def, cau_error *error)
 {
 	cau_arena *arena = &session->arena;
@@ -123,6 +127,8 @@ static cau_status make_solver(cau_session *session, const cau_session_def *def, 
 	if (!status)
 		status = cau_dissection_create(dissection, &session->tissue, session->scene->seed,
 		                               session->scene->parting, arena, error);
+	if (!status && session->scene->energy == CAU_ENERGY_TISSUE)
+		dissection->tears.coagulated_share = coagulated_share;
 	if (!status)
 		status = cau_shrink_create(&session->shrink, &session->tissue, arena, error);
 	if (status)

@@ -66,6 +66,29 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 	}
 }
 
+// Where its edges are coagulated, a sheet bears the given share of the energy; between fresh and
+// coagulated, what is between.
+static void coagulated_tissue_bears_less(void **state)
+{
+	(void)state;
+	for (int quarters = 0; quarters <= 8; quarters++) { // of an exposure of 0.5
+		rig r;
+		rig_begin(&r);
+		cau_sheet_material *sheet = rig_add_sheet(&r, 5, 4)->sheet;
+		sheet->limit_stiffness_pa = stiffness_pa;
+		sheet->heat.tear_energy_j_m2 = tear_j_m2;
+		build(&r, CAU_PARTING_ELEMENTS);
+		r.dissection.tears.coagulated_share = 0.25;
+		for (int32_t e = 0; e < r.tissue.edges.edge_count; e++)
+			cau_dissection_show_heated(&r.dissection, e, quarters / 8.0);
+		double strength = 1 - 0.75 * fmin(quarters / 4.0, 1);
+		double least = 1 + sqrt(2 * band_share * strength * tear_j_m2 / 0.02 / stiffness_pa);
+		assert_int_equal(torn_at(&r, least * (1 - near_share), 0.5, 1), 0);
+		assert_true(torn_at(&r, least * (1 + near_share), 0.5, 1) > 0);
+		rig_finish(&r);
+	}
+}
+
 static void fat_and_links_bear_what_their_parameters_say(void **state)
 {
 	(void)state;
@@ -199,6 +222,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_sheet_bears_what_its_parameters_say),
+		cmocka_unit_test(coagulated_tissue_bears_less),
 		cmocka_unit_test(fat_and_links_bear_what_their_parameters_say),
 		cmocka_unit_test(what_has_no_energy_does_not_tear),
 		cmocka_unit_test(one_overshoot_tears_nothing),
