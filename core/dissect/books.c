@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The books of the edge-based structure: what a primitive is, how far heat has come at an edge,
-// which live, which faces are drawn;
-// what an edge or an element that parts takes with it; and all of it counted again from what has
-// parted.
+// which live, which faces are drawn; what an edge or an element that parts takes with it; and all
+// of it counted again from what has parted.
 #include <string.h>
 
 #include "cautery/assert.h"
