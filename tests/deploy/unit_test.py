@@ -209,7 +209,7 @@ class TestUnit(unittest.TestCase):
     def test_threads_have_names_and_priorities(self):
         daemon, _, _ = self.start()
         nice = {"cautery-net": -5, "cautery-watch": -5, "cautery-store": 0, "cautery-memory": 0, "cautery-fold": 0, "cautery-work": 5,
-                "cautery-build": 15, "cautery-move": 5}
+                "cautery-build": 10, "cautery-move": 5}
         threads = self.named_threads(daemon, nice)
         for name, wanted in nice.items():
             self.assertIn(name, threads)
