@@ -243,6 +243,17 @@ static void write_changing(FILE *out)
 	fputs("})\n", out);
 }
 
+static void write_expensive(FILE *out)
+{
+	fputs("\n# Requests that the quotas of expensive requests count: they may take long.\n"
+	      "EXPENSIVE_METHODS = frozenset({\n",
+	      out);
+	for (int i = 0; i < CAU_METHOD_COUNT; i++)
+		if (cau_method_describe((cau_method)i)->cost != CAU_COST_CHEAP)
+			fprintf(out, "    \"%s\",\n", cau_method_describe((cau_method)i)->name);
+	fputs("})\n", out);
+}
+
 void write_python(FILE *out, const model *from)
 {
 	fprintf(out,
@@ -258,6 +269,7 @@ void write_python(FILE *out, const model *from)
 	        CAU_FRAME_VERSION, CAU_SUBPROTOCOL);
 	write_tables(out);
 	write_changing(out);
+	write_expensive(out);
 	write_scalars(out);
 	for (int i = 0; i < from->type_count; i++)
 		write_type(out, &from->types[i]);

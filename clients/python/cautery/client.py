@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from typing import Any, Callable, Iterator, Mapping, Sequence
 
 from .errors import BadFrame, ConnectionClosed, Error, NoAnswer, RequestError
-from .messages import SUBPROTOCOL, WIRE_VERSION, Calls, HelloResult, UploadResult
+from .messages import EXPENSIVE_METHODS, SUBPROTOCOL, WIRE_VERSION, Calls, HelloResult, UploadResult
 from .stream import Stream, session_number
 from .websocket import WebSocket
 
@@ -25,6 +25,8 @@ _KEY_FRAME_S = 1.0  # between requests for key frames: the daemon gives no more
 _HEARTBEAT_S = 0.1
 _CHUNK_HEAD = 16
 _NOTICES_MOST = 1000
+# These may take long. A join is answered once its session is built.
+_LONG = EXPENSIVE_METHODS | {"session.join"}
 # Methods whose result announces a file in chunks.
 _FILES = frozenset({"session.export", "session.log", "session.frame_at", "move.read"})
 
@@ -53,7 +55,8 @@ class Client(Calls):
             made = client.session_create(name="lesson", scene="fascia", paused=True)
 
     `token`: where the daemon asks for one. `role`: less than the token's. `timeout_s`: for connecting, and for each
-    answer. `tls`: for wss, by default the system's authorities. All functions may be called from any thread. A thread
+    answer; requests that may take long (building, going back, files, joining) go on while the daemon answers heartbeats.
+    `tls`: for wss, by default the system's authorities. All functions may be called from any thread. A thread
     of the client receives; `on_notice` is called on it with method and params of each notification, and must not wait.
     A lost connection stays lost: every function then raises ConnectionClosed.
     """
@@ -184,8 +187,13 @@ class Client(Calls):
             raise
         return pending
 
+    def _is_heard(self) -> bool:
+        return self._send_request("heartbeat", {}).done.wait(self.timeout_s)
+
     def _wait_for(self, pending: _Pending) -> Any:
-        if not pending.done.wait(self.timeout_s):
+        while not pending.done.wait(self.timeout_s):
+            if pending.method in _LONG and self._is_heard():
+                continue
             raise NoAnswer(f"{pending.method}: no answer within {self.timeout_s:g} s")
         if pending.error:
             raise pending.error

@@ -134,6 +134,21 @@ CHANGING_METHODS = frozenset({
     "force.set",
 })
 
+# Requests that the quotas of expensive requests count: they may take long.
+EXPENSIVE_METHODS = frozenset({
+    "session.create",
+    "session.reset",
+    "session.fork",
+    "session.restore",
+    "session.rewind",
+    "session.export",
+    "session.log",
+    "session.frame_at",
+    "mesh.read",
+    "store.backup",
+    "move.read",
+})
+
 
 class Scalar(NamedTuple):
     """A scalar of the vertices: n in a frame is least + step n in the unit, n is at most `most`.
@@ -1859,6 +1874,9 @@ class FasciaLayer(TypedDict):
     # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
 
+    # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
+    coagulated_tear: NotRequired[float]
+
     # sheet thickness (1e-06 to 0.05 m)
     thickness_m: NotRequired[float]
 
@@ -1989,6 +2007,9 @@ class MembraneLayer(TypedDict):
 
     # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
+
+    # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
+    coagulated_tear: NotRequired[float]
 
     # sheet thickness (1e-06 to 0.05 m)
     thickness_m: NotRequired[float]
@@ -2127,6 +2148,9 @@ class FatLayer(TypedDict):
     # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
 
+    # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
+    coagulated_tear: NotRequired[float]
+
     # elastic energy
     model: NotRequired[Literal["neohookean", "corotated", "stvk", "energy"]]
 
@@ -2208,6 +2232,9 @@ class LinksLayer(TypedDict):
 
     # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
+
+    # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
+    coagulated_tear: NotRequired[float]
 
     # Young's modulus of a truss (1 to 100000000000 Pa)
     young_modulus_pa: NotRequired[float]

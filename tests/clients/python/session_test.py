@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 import numpy as np
@@ -35,6 +36,15 @@ class Sessions(programs.Case):
     def destroy(self, session):
         with cautery.Client(self.daemon.url, timeout_s=programs.PATIENCE_S) as client:
             client.session_destroy(session=session)
+
+    def test_what_takes_long_is_waited_for_while_the_daemon_is_heard(self):
+        """`layers` is built for longer than half a second."""
+        with cautery.Client(self.daemon.url, timeout_s=0.5) as client:
+            began = time.monotonic()
+            made = client.session_create(name="large", scene="layers", paused=True)
+            took_s = time.monotonic() - began
+        self.addCleanup(self.destroy, made["summary"]["session"])
+        self.assertGreater(took_s, 0.5, "it must outlast the timeout to show anything")
 
     def test_a_stream_is_the_tissue(self):
         session = self.paused("stream")
