@@ -35,7 +35,6 @@ typedef struct cau_tears {
 	cau_over *over;                       // ascending by place
 	int32_t elements_torn;                // since creation, with what they took along
 	double widest_m[CAU_PRIMITIVE_KINDS]; // greatest size of an element
-	double coagulated_share; // of G_c, that coagulated tissue bears; 1: as fresh tissue
 	// Scratch.
 	cau_over *before;
 	int32_t *now, *found; // over in this tick; how many of each part

@@ -19,8 +19,8 @@
 // the energy of the laws at small strain; it leaves out what Poisson's ratio adds where two axes
 // are stretched, and counts what has flowed as stored, which a band spends all the same.
 //
-// Coagulated tissue bears less: `coagulated_share` of G_c, and what is between fresh and coagulated
-// bears what is between (exposure of 0.5: coagulated).
+// Where a layer's `coagulated_tear` is below 1, heat weakens it. G_c falls in proportion to the
+// exposure of the element's edges, and is that share of its fresh value from an exposure of 0.5 on.
 //
 // An element goes when it was there in two converged ticks, one after the other, or in six of any
 // kind: an iterate on the way may be far beyond the solution, but not for a tenth of a second, and
@@ -80,7 +80,6 @@ cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_aren
 	if (!tears->over || !tears->before || !tears->now || !tears->found || !tears->load ||
 	    !tears->most)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tears");
-	tears->coagulated_share = 1;
 	for (int32_t place = 0; place < cau_tears_capacity(tissue); place++) {
 		int32_t index;
 		int primitive = primitive_at(tissue, place, &index);
@@ -96,8 +95,9 @@ cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_aren
 // What an element's law and its layer make of stretch.
 typedef struct bearing {
 	double young_pa, limit_pa;
-	double free[3];   // stretches that the limit lets go, along the material axes
-	double tear_j_m2; // its share of G_c
+	double free[3];          // stretches that the limit lets go, along the material axes
+	double tear_j_m2;        // its share of G_c
+	double coagulated_share; // of tear_j_m2, where it is coagulated
 } bearing;
 
 // The share of the energy set free that one element at the tip of a cut stores over its size:
@@ -114,7 +114,10 @@ static void free_stretches(double out[3], int limit, const double *strain_max, i
 static bearing bearing_of(const cau_tissue *tissue, int primitive, int32_t index)
 {
 	double energy = cau_dissection_heat_of(tissue, primitive, index)->tear_energy_j_m2;
-	bearing b = {.tear_j_m2 = share_of[primitive] * energy, .free = {1, 1, 1}};
+	int32_t layer = cau_tissue_layer_of(tissue, primitive, index);
+	bearing b = {.tear_j_m2 = share_of[primitive] * energy,
+	             .coagulated_share = tissue->layer[layer].def.coagulated_tear,
+	             .free = {1, 1, 1}};
 	if (b.tear_j_m2 == 0)
 		return b;
 	if (primitive == CAU_PRIMITIVE_TRIANGLE) {
@@ -186,9 +189,9 @@ static double borne_j_m3(const bearing *b, double size_m)
 
 // Sum of the squared stretches below which no element of size up to widest_m can be loaded with 1:
 // for a given sum psi is most where all of it is along one axis.
-static double least_squared(const bearing *b, double widest_m, double least_strength)
+static double least_squared(const bearing *b, double widest_m)
 {
-	double borne = least_strength * borne_j_m3(b, widest_m);
+	double borne = b->coagulated_share * borne_j_m3(b, widest_m);
 	double most = 1 + sqrt(2 * borne / (b->young_pa + b->limit_pa));
 	return most * most;
 }
@@ -209,10 +212,11 @@ static double coagulation_of(const cau_dissection *dissection, int primitive, in
 	return sum / edges;
 }
 
-// Share of G_c that the element bears.
-static double strength_of(const cau_dissection *dissection, int primitive, int32_t index)
+// Share of its fresh G_c that the element bears.
+static double strength_of(const cau_dissection *dissection, const bearing *b, int primitive,
+                          int32_t index)
 {
-	double lost = 1 - dissection->tears.coagulated_share;
+	double lost = 1 - b->coagulated_share;
 	return lost > 0 ? 1 - lost * coagulation_of(dissection, primitive, index) : 1;
 }
 
@@ -223,7 +227,7 @@ static double load_of(const cau_dissection *dissection, const bearing *b, int pr
 	const cau_tissue *tissue = dissection->tissue;
 	metric_of(tissue, primitive, index, position, metric);
 	return stored_energy(b, metric) / (borne_j_m3(b, size_of(tissue, primitive, index)) *
-	                                   strength_of(dissection, primitive, index));
+	                                   strength_of(dissection, b, primitive, index));
 }
 
 // ---- which are over what they bear
@@ -287,9 +291,8 @@ static void look_at_part(void *context, int32_t part)
 		if (material_of(tissue, range->primitive, index) != material) {
 			material = material_of(tissue, range->primitive, index);
 			b = bearing_of(tissue, range->primitive, index);
-			least = b.tear_j_m2 > 0 ? least_squared(&b, tears->widest_m[range->primitive],
-			                                        tears->coagulated_share)
-			                        : HUGE_VAL;
+			least =
+				b.tear_j_m2 > 0 ? least_squared(&b, tears->widest_m[range->primitive]) : HUGE_VAL;
 		}
 		if (!(squared_stretches(tissue, range->primitive, index, work->position) >= least))
 			continue;

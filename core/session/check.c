@@ -325,6 +325,9 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 	if (!status)
 		status = in_range(layer->perfusion, 0.0, CAU_PERFUSION_MOST, "1", path, "perfusion", error);
 	if (!status)
+		status = in_range(layer->coagulated_tear, CAU_COAGULATED_TEAR_LEAST, 1.0, "1", path,
+		                  "coagulated_tear", error);
+	if (!status)
 		status = finite_vector(layer->fibre, 3, CAU_FIBRE_MOST, path, "fibre", error);
 	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
 		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",

@@ -114,10 +114,6 @@ static cau_status pass_border(const cau_session *session, const cau_session_def 
 	return def->border ? def->border(def->user, &border, error) : CAU_OK;
 }
 
-// Of the energy that a tear of fresh tissue takes, with energy `tissue`. Assumed: collagen that was
-// heated to 60 to 80 degC loses most of its strength, and figures differ (core/bioheat/README.md).
-static const double coagulated_share = 0.3;
-
 static cau_status make_solver(cau_session *session, const cau_session_def *def, cau_error *error)
 {
 	cau_arena *arena = &session->arena;
@@ -127,8 +123,6 @@ static cau_status make_solver(cau_session *session, const cau_session_def *def, 
 	if (!status)
 		status = cau_dissection_create(dissection, &session->tissue, session->scene->seed,
 		                               session->scene->parting, arena, error);
-	if (!status && session->scene->energy == CAU_ENERGY_TISSUE)
-		dissection->tears.coagulated_share = coagulated_share;
 	if (!status)
 		status = cau_shrink_create(&session->shrink, &session->tissue, arena, error);
 	if (status)
@@ -209,6 +203,10 @@ static uint64_t hash_definition(const cau_session *session)
 	}
 	if (scene->energy != CAU_ENERGY_PAPER)
 		hash = hash_bioheat(hash, scene);
+	for (int32_t i = 0; i < scene->layer_count; i++)
+		if (scene->layers[i].coagulated_tear < 1) // 1: left out of older snapshots
+			hash = cau_hash_bytes(cau_hash_word(hash, (uint64_t)i),
+			                      &scene->layers[i].coagulated_tear, sizeof(double));
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
 	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
 	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));

@@ -229,22 +229,22 @@ static void follow_element(edge_visit *visit, int32_t element)
 	int32_t index, count;
 	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
 	const int32_t *vertex = cau_tissue_vertices_of(&session->tissue, primitive, index, &count);
-	for (int i = 0; i < count; i++) {
-		if (!is_warm(session, vertex[i]))
-			continue;
-		for (int j = 0; j < count; j++) {
-			int32_t edge =
-				i == j ? -1 : cau_edge_table_find(&session->tissue.edges, vertex[i], vertex[j]);
-			if (edge >= 0) {
-				fill_sharers(visit, edge, false);
-				show_heat(session, edge);
-			}
+	bool warm[4];
+	CAU_ASSERT(count <= 4, "an element of %d corners", count);
+	for (int i = 0; i < count; i++)
+		warm[i] = is_warm(session, vertex[i]);
+	for (int i = 0; i < count; i++)
+		for (int j = i + 1; j < count; j++) {
+			if (!warm[i] && !warm[j])
+				continue;
+			int32_t edge = cau_edge_table_find(&session->tissue.edges, vertex[i], vertex[j]);
+			fill_sharers(visit, edge, false);
+			show_heat(session, edge);
 		}
-	}
 }
 
-// Gives cells to the neighbours of warm elements. Without, heat would end 3 mm from where a tool
-// was.
+// Gives cells to the elements that share an edge with a warm one. Otherwise heat would end 3 mm
+// from where a tool was.
 static void follow_heat(cau_session *session)
 {
 	const cau_tissue_cells *cells = session->cells;

@@ -81,6 +81,8 @@ static const cau_field layer_fields[] = {
 	{SCALAR_OF(
 		perfusion, 0.0, CAU_PERFUSION_MOST, "1",
 		"with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none")},
+	{SCALAR_OF(coagulated_tear, CAU_COAGULATED_TEAR_LEAST, 1.0, "1",
+               "share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more")},
 };
 #undef STRUCT
 #undef KIND

@@ -11,7 +11,7 @@
 // The columns' names; those of a tool begin with its name. `scene` is the one that the ticks are
 // of.
 void sim_csv_begin(FILE *file, const cau_scene_def *scene);
-// What a line tells, of one tick.
+// One line: the values of one tick.
 typedef struct sim_csv_row {
 	const cau_frame *frame;
 	cau_balance balance;

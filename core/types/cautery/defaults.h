@@ -116,7 +116,7 @@ static inline void cau_default_layer_def(cau_layer_def *def, int kind)
 	memset(def, 0, sizeof *def);
 	def->kind = kind;
 	def->tissue = kind == CAU_LAYER_FAT ? CAU_LIVING_FAT : CAU_LIVING_CONNECTIVE;
-	def->perfusion = 1.0;
+	def->perfusion = def->coagulated_tear = 1.0;
 	def->fibre[0] = 1.0;
 	def->material_count = 1;
 	if (kind == CAU_LAYER_FAT)

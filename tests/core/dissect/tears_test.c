@@ -66,19 +66,19 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 	}
 }
 
-// Where its edges are coagulated, a sheet bears the given share of the energy; between fresh and
-// coagulated, what is between.
+// A sheet whose edges have an exposure of 0.5 or more tears at a quarter of its energy. Below 0.5
+// the energy falls in proportion to the exposure.
 static void coagulated_tissue_bears_less(void **state)
 {
 	(void)state;
 	for (int quarters = 0; quarters <= 8; quarters++) { // of an exposure of 0.5
 		rig r;
 		rig_begin(&r);
-		cau_sheet_material *sheet = rig_add_sheet(&r, 5, 4)->sheet;
-		sheet->limit_stiffness_pa = stiffness_pa;
-		sheet->heat.tear_energy_j_m2 = tear_j_m2;
+		cau_layer_def *layer = rig_add_sheet(&r, 5, 4);
+		layer->coagulated_tear = 0.25;
+		layer->sheet->limit_stiffness_pa = stiffness_pa;
+		layer->sheet->heat.tear_energy_j_m2 = tear_j_m2;
 		build(&r, CAU_PARTING_ELEMENTS);
-		r.dissection.tears.coagulated_share = 0.25;
 		for (int32_t e = 0; e < r.tissue.edges.edge_count; e++)
 			cau_dissection_show_heated(&r.dissection, e, quarters / 8.0);
 		double strength = 1 - 0.75 * fmin(quarters / 4.0, 1);

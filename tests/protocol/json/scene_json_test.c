@@ -93,7 +93,7 @@ static const char everything[] =
 	"{\"source\":\"sheet\",\"name\":\"c\",\"size_m\":[1,2],\"cells\":[3,4],"
 	"\"texture_turn_rad\":0.5},{\"source\":\"pattern\",\"name\":\"d\",\"cells\":[5]}],"
 	"\"layers\":[{\"kind\":\"fat\",\"name\":\"f\",\"mesh\":\"a\",\"tissue\":\"liver\","
-	"\"perfusion\":0,"
+	"\"perfusion\":0,\"coagulated_tear\":0.3,"
 	"\"young_modulus_pa\":1234.5,"
 	"\"model\":\"stvk\",\"target\":[1,2,3,0.1,0.2,0.3],\"absorption_per_s\":3,"
 	"\"regions\":[{\"region\":3,\"poisson_ratio\":0.25},{\"region\":7,\"ignition_c\":99}]},"
@@ -128,6 +128,7 @@ static void every_member_comes_back(void **state)
 	assert_true(scene->cut.present && scene->cut.rotation[1] == 1.0);
 	assert_int_equal(scene->layers[0].tissue, CAU_LIVING_LIVER);
 	assert_true(scene->layers[0].perfusion == 0 && scene->layers[1].perfusion == 1);
+	assert_true(scene->layers[0].coagulated_tear == 0.3 && scene->layers[1].coagulated_tear == 1);
 	assert_int_equal(scene->layers[1].tissue, CAU_LIVING_CONNECTIVE);
 	assert_int_equal(scene->pins[3].kind, CAU_SELECT_NEAREST);
 	assert_string_equal(scene->directory, "");

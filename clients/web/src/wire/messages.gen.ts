@@ -1263,6 +1263,8 @@ export interface FasciaLayer {
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
   /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
   perfusion?: number;
+  /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
+  coagulated_tear?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
   /** mass density (1 to 25000 kg/m^3) */
@@ -1353,6 +1355,8 @@ export interface MembraneLayer {
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
   /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
   perfusion?: number;
+  /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
+  coagulated_tear?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
   /** mass density (1 to 25000 kg/m^3) */
@@ -1447,6 +1451,8 @@ export interface FatLayer {
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
   /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
   perfusion?: number;
+  /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
+  coagulated_tear?: number;
   /** elastic energy */
   model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
   /** mass density (1 to 25000 kg/m^3) */
@@ -1503,6 +1509,8 @@ export interface LinksLayer {
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
   /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
   perfusion?: number;
+  /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
+  coagulated_tear?: number;
   /** Young's modulus of a truss (1 to 100000000000 Pa) */
   young_modulus_pa?: number;
   /** cross section of a truss (1e-12 to 1 m^2) */
