@@ -55,6 +55,9 @@ const DIRECTIONS: Readonly<Record<Kind, readonly Directions[]>> = {
   fascia: directions(2), membrane: directions(2), fat: directions(3), links: [],
 };
 
+/** Members of a material of this kind that have inputs here. */
+export const limitMembers = (kind: Kind): string[] => [...CHOICES[kind], ...DIRECTIONS[kind]].map(({ name }) => name);
+
 export interface LimitInputs {
   fields: HTMLElement[];
   /** all members; throws a sentence if one is out of range */

@@ -8,22 +8,16 @@ import { limitInputs } from './limits';
 import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
 
-/** Members of a layer that are not of its material. */
-const LAYER_ONLY = ['kind', 'name', 'mesh', 'of', 'to', 'fibre', 'regions'];
-
-function materialOf(layer: Layer): Record<string, unknown> {
-  return Object.fromEntries(Object.entries(layer).filter(([name]) => !LAYER_ONLY.includes(name)));
-}
-
 /** A layer's default material, or that of a region of its mesh file, which has the default's where it says nothing. */
 interface Material {
   layer: Layer;
   region: number | null;
+  /** what the layer says, members besides those of its material included */
   values: Record<string, unknown>;
 }
 
 function materialsOf(layer: Layer): Material[] {
-  const values = materialOf(layer);
+  const values = { ...layer };
   const regions = 'regions' in layer ? layer.regions ?? [] : [];
   return [
     { layer, region: null, values },
@@ -42,9 +36,8 @@ function materialForm(control: Control, { layer, region, values }: Material): HT
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     const work = async (): Promise<void> => {
-      const material = { ...values, ...inputs.read(), ...limits.read() };
       const where = region === null ? {} : { region };
-      await control.setMaterial({ ...material, ...where, kind: layer.kind, layer: layer.name });
+      await control.setMaterial({ ...inputs.read(), ...limits.read(), ...where, kind: layer.kind, layer: layer.name });
     };
     void attempt(problem, work, apply);
   });

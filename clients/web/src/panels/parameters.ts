@@ -6,7 +6,7 @@ import { element, field, short } from './dom';
 
 export interface ParameterInputs {
   fields: HTMLElement[];
-  /** members that differ from what was shown; throws a sentence if one is out of range */
+  /** all members, those that nobody touched with all their digits; throws a sentence if one is out of range */
   read(): Record<string, number>;
   /** what is in force; a number that somebody has typed and not applied yet stays */
   show(values: Readonly<Record<string, unknown>>): void;
