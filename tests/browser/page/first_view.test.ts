@@ -2,6 +2,8 @@
 // A newcomer's first half minute: tissue and tool in the picture, one cue where to cut and nothing else in
 // the way; who follows the cue has cut. What destroys asks first.
 
+import type { CDPSession, Page } from 'playwright-core';
+
 import { BrowserStage, daemonForTest, Stage } from './stage';
 import { MOVING, ViewerPage } from './viewer_page';
 
@@ -63,6 +65,45 @@ function stepsPerSecond(viewer: ViewerPage): Promise<number> {
   });
 }
 
+/** Presses on the picture, drags and lets go. */
+interface Hand {
+  press(at: Place): Promise<unknown>;
+  drag(to: Place): Promise<unknown>;
+  release(): Promise<unknown>;
+}
+
+class Finger implements Hand {
+  constructor(private readonly fingers: CDPSession) {}
+  private readonly touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', ...places: Place[]): Promise<unknown> =>
+    this.fingers.send('Input.dispatchTouchEvent', { type, touchPoints: places.map((place) => ({ ...place, id: 1 })) });
+  press = (at: Place): Promise<unknown> => this.touch('touchStart', at);
+  drag = (to: Place): Promise<unknown> => this.touch('touchMove', to);
+  release = (): Promise<unknown> => this.touch('touchEnd');
+}
+
+class Mouse implements Hand {
+  constructor(private readonly page: Page) {}
+  async press(at: Place): Promise<void> {
+    await this.page.mouse.move(at.x, at.y);
+    await this.page.mouse.down();
+  }
+  drag = (to: Place): Promise<unknown> => this.page.mouse.move(to.x, to.y, { steps: 5 });
+  release = (): Promise<unknown> => this.page.mouse.up();
+}
+
+/** Follows the cue until at most so many faces of the fascia are left. A page that stood still for too long loses its energy,
+ * and asks whoever holds it to press again. */
+async function follow(viewer: ViewerPage, hand: Hand, from: Place, to: Place, left: number): Promise<void> {
+  for (;;) {
+    await hand.press(from);
+    await viewer.until(() => window.cautery.energized, null, 'the press heats');
+    await hand.drag(to);
+    await viewer.until((most) => window.cautery.drawnFaces['fascia'] <= most || !window.cautery.energized, left, 'faces are gone');
+    if ((await viewer.state()).drawnFaces['fascia'] <= left) return;
+    await hand.release();
+  }
+}
+
 describe('the first view', () => {
   const stage = new BrowserStage();
 
@@ -94,24 +135,14 @@ describe('the first view', () => {
     const { fascia } = (await viewer.state()).drawnFaces;
     const [from, to] = await cue(viewer);
     await countCues(viewer);
-    const fingers = await page.context().newCDPSession(page);
-    if ('hasTouch' in options) {
-      await fingers.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ ...from, id: 1 }] });
-      await viewer.until(() => window.cautery.energized, null, 'the finger heats');
-      await fingers.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ ...to, id: 1 }] });
-    } else {
-      await page.mouse.move(from.x, from.y);
-      await page.mouse.down();
-      await page.mouse.move(to.x, to.y, { steps: 5 });
-    }
+    const hand = 'hasTouch' in options ? new Finger(await page.context().newCDPSession(page)) : new Mouse(page);
+    await follow(viewer, hand, from, to, fascia - CUT_FACES);
     expect(await page.locator('#cue').isVisible()).toBe(false);
-    await viewer.until((left) => window.cautery.drawnFaces['fascia'] <= left, fascia - CUT_FACES, 'faces are gone');
     const open = await page.evaluate(() => [-0.026, -0.023, -0.02, -0.017, -0.014].some((x) => !window.cautery.drawnAt('fascia', x, 0)));
     expect(open, 'the cut begins where the cue does').toBe(true);
     await viewer.drawn();
     await viewer.screenshot(picture.replace('first-view', 'cutting'));
-    if ('hasTouch' in options) await fingers.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
-    else await page.mouse.up();
+    await hand.release();
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');
     expect(await cues(viewer), 'the cue does not come back').toBe(0);
     expect(viewer.complaints).toEqual([]);
