@@ -159,17 +159,18 @@ static void wait_to_come(building *b)
 	                             .hash = cau_session_hash(h->core),
 	                             .has_exact = true,
 	                             .exact = h->replay.exact};
-	const cau_reply reply = h->creator_reply;
-	char *text = cau_answer_text(reply.method, &result, &outcome.text_bytes, &error);
+	cau_reply reply;
+	char *text = cau_answer_text(h->creator_reply.method, &result, &outcome.text_bytes, &error);
 	if (!text) {
 		drop(&b->job);
 		return;
 	}
 	cau_replay_finish(&h->replay);
-	h->creator_reply = (cau_reply){0};
+	bool waits = cau_hosted_take_creator(h, &reply);
 	h->built = &b->job;
 	outcome.text = text;
-	cau_reply_answer(&reply, &outcome); // from here on it may come
+	if (waits)
+		cau_reply_answer(&reply, &outcome); // from here on it may come
 	free(text);
 }
 
@@ -196,6 +197,7 @@ void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply
 	h->origin.branch = branch;
 	h->pause_at_start = paused;
 	h->creator_reply = *reply;
+	h->creator_waits = true;
 	leave_to_builder(h, run_again);
 }
 

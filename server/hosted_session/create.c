@@ -53,7 +53,7 @@ static void init(cau_hosted *h, const cau_surroundings *around, const cau_hosted
 	h->incoming = def->incoming;
 	h->next_branch = 1;
 	h->lost_from = h->batch_lost = UINT64_MAX;
-	h->starting = h->unanswered = h->away = true;
+	h->starting = h->unanswered = h->away = h->creator_waits = true;
 	pthread_mutex_init(&h->mutex, NULL);
 	pthread_mutex_init(&h->deciding, NULL);
 	h->streams = (cau_streams){.id = h->id,

@@ -40,6 +40,21 @@ void cau_hosted_end(cau_hosted *h)
 	cau_worker_pool_wake(h->around->pool, &h->task);
 }
 
+bool cau_hosted_take_creator(cau_hosted *h, cau_reply *reply)
+{
+	if (!atomic_exchange(&h->creator_waits, false))
+		return false;
+	*reply = h->creator_reply;
+	return true;
+}
+
+void cau_hosted_fail_creator(cau_hosted *h, const cau_error *error, int32_t code)
+{
+	cau_reply reply;
+	if (cau_hosted_take_creator(h, &reply))
+		cau_reply_fail(&reply, error, code);
+}
+
 void cau_hosted_release(cau_hosted *h)
 {
 	if (!h || atomic_fetch_sub(&h->references, 1) != 1)

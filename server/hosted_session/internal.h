@@ -82,7 +82,8 @@ struct cau_hosted {
 	cau_hosted_origin origin;
 	cau_asker creator;
 	int64_t creator_sequence;
-	cau_reply creator_reply;
+	cau_reply creator_reply;   // cau_hosted_take_creator gives it to who answers
+	atomic_bool creator_waits; // for an answer to it
 	cau_session *core;
 	cau_session_info info;
 	bool pause_at_start;
@@ -156,6 +157,7 @@ struct cau_hosted {
 	// The store lacks commands from this tick on, until a checkpoint is stored; UINT64_MAX: none.
 	_Atomic uint64_t lost_from;
 	atomic_bool unanswered; // its making is not with the store yet
+	atomic_int unmade;      // a cau_status: why the store has not taken its first rows
 	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
 	atomic_bool dirty;     // streams must show a change that no step made
 	atomic_bool away;      // it is the builder's, who alone ends this: no worker touches it
@@ -170,6 +172,10 @@ struct cau_hosted {
 void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order);
 // It could not be brought up or kept: nothing is taken any more. From any thread.
 void cau_hosted_end(cau_hosted *h);
+// The reply to who made the session. False if somebody has taken it before. Any thread.
+bool cau_hosted_take_creator(cau_hosted *h, cau_reply *reply);
+// Fails that reply, if nobody has taken it.
+void cau_hosted_fail_creator(cau_hosted *h, const cau_error *error, int32_t code);
 
 // ---- run.c
 cau_due cau_hosted_run(cau_task *task);

@@ -263,16 +263,31 @@ static void answer_all(cau_pending *list, cau_status status, const char *reason)
 	}
 }
 
+// Its first rows are lost, and with them the session. While its past is replayed no answer is
+// pending.
+static void end_making(cau_hosted *h, cau_status status, const char *reason)
+{
+	cau_error error = {.status = status};
+	snprintf(error.reason, sizeof error.reason, "%s", reason);
+	h->unmade = (int)status;
+	cau_hosted_end(h);
+	cau_hosted_fail_creator(h, &error, cau_hosted_commit_code(status));
+}
+
 // On the store's thread.
 static void committed(void *user, cau_status status, const char *reason)
 {
 	commit *done = user;
+	if (!status && done->hosted->unmade) { // of a session whose first rows are lost
+		status = (cau_status)done->hosted->unmade;
+		reason = "the session could not be stored";
+	}
 	if (status) {
 		cau_log(CAU_LOG_ERROR, done->hosted->id, "commit_failed", "status=%s reason=\"%s\"",
 		        cau_status_name(status), reason);
 		lose(done->hosted, done->from_tick);
 		if (done->making)
-			cau_hosted_end(done->hosted);
+			end_making(done->hosted, status, reason);
 	}
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits, 1) == 1) {
@@ -313,7 +328,7 @@ void cau_record_commit(cau_hosted *h)
 		cau_store_batch_destroy(h->batch);
 		answer_all(pending, status, error.reason);
 		if (is_being_made(h))
-			cau_hosted_end(h);
+			end_making(h, status, error.reason);
 		if (travelling) {
 			atomic_fetch_sub(&h->commits, 1);
 			cau_hosted_release(h);

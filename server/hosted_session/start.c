@@ -112,11 +112,10 @@ static cau_status record_session(cau_hosted *h, cau_error *error)
 
 static void answer_creator(cau_hosted *h)
 {
-	cau_order asked = {
-		.asker = h->creator, .client_sequence = h->creator_sequence, .reply = h->creator_reply};
+	cau_order asked = {.asker = h->creator, .client_sequence = h->creator_sequence};
 	cau_error error = {0};
 	size_t bytes = 0;
-	if (!asked.reply.answer)
+	if (!cau_hosted_take_creator(h, &asked.reply) || !asked.reply.answer)
 		return;
 	char *text = cau_answer_description(h, asked.reply.method, &bytes, &error);
 	if (!text) {
@@ -216,7 +215,7 @@ void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)
 	h->batch = NULL;
 	h->starting = false;
 	cau_hosted_end(h);
-	cau_reply_fail(&h->creator_reply, error, 0);
+	cau_hosted_fail_creator(h, error, 0);
 }
 
 // Of a move: what has come is read once, so that it is known to be readable before anybody decides.

@@ -152,6 +152,26 @@ static void what_waits_is_refused_where_it_cannot_be_stored(void **state)
 	assert_true(cau_hosted_ended(t.h));
 }
 
+// Its rows are refused while the past of its source is replayed.
+static void a_fork_that_cannot_be_stored_is_answered(void **state)
+{
+	(void)state;
+	hosted_begin(NOWHERE, 0);
+	assert_int_equal(hosted_await(0)->status, CAU_OK);
+	hosted_let_go();
+	cau_hosted_def def = {.id = "d1-building",
+	                      .number = 2,
+	                      .scene = hosted_make_scene(),
+	                      .origin = {.kind = CAU_ORIGIN_FORK, .session = "d1-building"},
+	                      .creator = {.client = CREATOR},
+	                      .reply = hosted_reply_to(1, CAU_METHOD_SESSION_FORK)};
+	assert_int_equal(cau_hosted_create(&t.h, &t.around, &def, NULL), CAU_OK);
+	assert_int_not_equal(hosted_await(1)->status, CAU_OK);
+	while (!cau_hosted_ended(t.h))
+		usleep(1000);
+	assert_int_equal(t.answers[1].count, 1);
+}
+
 static void whose_creator_is_gone_for_good_it_ends(void **state)
 {
 	(void)state;
@@ -300,6 +320,7 @@ int main(void)
 		TEST(what_waits_is_refused_where_it_does_not_come_to_be),
 		TEST(what_waits_is_refused_where_it_is_destroyed),
 		TEST(what_waits_is_refused_where_it_cannot_be_stored),
+		TEST(a_fork_that_cannot_be_stored_is_answered),
 		TEST(whose_creator_is_gone_for_good_it_ends),
 		TEST(as_the_daemon_ends_it_ends),
 		TEST(begun_after_the_builder_stopped_it_is_refused),
