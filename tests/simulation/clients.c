@@ -132,12 +132,15 @@ void clients_send_again(int index)
 	const sim_request *old = clients_request(c->newest);
 	if (old->session >= 0 && old->life != sim_sessions[old->session].life)
 		return;
+	if (old->what == ASK_CREATE && old->machine != c->machine)
+		return; // another daemon would make another session
 	sim_request like = {.what = old->what,
 	                    .session = old->session,
 	                    .tool = old->tool,
 	                    .life = old->life,
 	                    .sequence = old->sequence,
 	                    .gravity = old->gravity,
+	                    .later = old->later,
 	                    .first = old->first ? old->first : c->newest,
 	                    .method = old->method,
 	                    .params = old->params};

@@ -35,9 +35,9 @@ typedef struct core_book {
 // What the present fiber is at.
 typedef struct at_work {
 	uint64_t fiber;
-	cau_hosted *deciding; // within cau_decide_next
-	bool applying;        // an order, or the daemon's own commands
-	bool begun;           // a tick was decided and not stepped yet
+	cau_hosted *deciding;     // within cau_decide_next
+	bool applying;            // an order, or the daemon's own commands
+	const cau_session *begun; // a tick of it was decided and not stepped yet
 	energy allowed[TOOLS];
 } at_work;
 
@@ -136,11 +136,12 @@ static void on_step(const cau_session *core)
 	at_work *work = work_of(sim_self());
 	sim_work(
 		sim_between(&watched.random, watched.profile.step_least_ns, watched.profile.step_most_ns));
+	bool replayed = work->begun != core;
+	work->begun = NULL;
 	if (book)
-		book->served = work->begun;
-	if (!is_present(book) || !work->begun)
-		return; // replayed
-	work->begun = false;
+		book->served = !replayed;
+	if (!is_present(book) || replayed)
+		return;
 	promises_counted.ticks++;
 	sim_note((uint64_t)books_number(cau_fake_gravity(core)[2]));
 	cau_session_frame(core, &frame);
@@ -226,7 +227,7 @@ WRAPPED void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *a
 		note_decision(core, logic, action);
 	if (action->act != CAU_ACT_STEP)
 		return;
-	work->begun = true;
+	work->begun = work->deciding->core;
 	see_server(place, cau_hosted_id(work->deciding));
 	for (int t = 0; t < TOOLS; t++)
 		work->allowed[t] = promises_energy(place, t, sim_now());

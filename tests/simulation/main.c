@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole daemon in simulation: seeds, one after the other, each a run of its own.
+// The whole daemon in simulation: seeds, each a run of its own.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+#include <unistd.h>
 
 #include "cautery/options.h"
 #include "simulation/run.h"
@@ -16,7 +17,7 @@ enum {
 
 typedef struct asked {
 	int64_t seed;
-	int32_t seeds;
+	int32_t seeds, jobs;
 	double seconds;
 	const char *steps, *fault;
 	bool help, replay, twice, each_fault, faults, long_form;
@@ -27,6 +28,8 @@ static const cau_option rows[] = {
 	{"seeds", "N", CAU_OPTION_WHOLE, offsetof(asked, seeds), 1, 1e9, .meaning = "so many at most"},
 	{"seconds", "S", CAU_OPTION_NUMBER, offsetof(asked, seconds), 0.1, 1e6,
      .meaning = "no new seed after so long; 10"},
+	{"jobs", "N", CAU_OPTION_WHOLE, offsetof(asked, jobs), 1, RUNS_MOST,
+     .meaning = "so many seeds at once; one for each processor"},
 	{"long", NULL, CAU_OPTION_FLAG, offsetof(asked, long_form), .meaning = "an hour"},
 	{"replay", NULL, CAU_OPTION_FLAG, offsetof(asked, replay),
      .meaning = "one seed, with its steps and everything that is sent and logged"},
@@ -57,13 +60,6 @@ typedef struct totals {
 	promise_counts counts;
 	disk_counts disk;
 } totals;
-
-static double real_s(void)
-{
-	struct timespec now;
-	timespec_get(&now, TIME_UTC);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void add(totals *t, const run_result *r)
 {
@@ -119,7 +115,7 @@ static void report(uint64_t seed, workload *work, run_result *result)
 static bool differs(uint64_t seed, const workload *work, const run_result *first)
 {
 	run_result second;
-	run_seed(seed, work, true, &second);
+	run_seed(seed, work, &second);
 	if (second.trace == first->trace && second.switches == first->switches)
 		return false;
 	printf("seed %llu runs otherwise the second time: %llu switches, then %llu\n",
@@ -128,42 +124,65 @@ static bool differs(uint64_t seed, const workload *work, const run_result *first
 	return true;
 }
 
+static bool make_work(const asked *a, uint64_t seed, workload *work)
+{
+	sim_profile profile = sim_profile_of(seed);
+	workload_make(work, seed, &profile);
+	return shrink_choose(work, a->steps);
+}
+
+// What a run has come to: false if the others need not be run.
+static bool take(const asked *a, uint64_t seed, run_result *result, totals *t)
+{
+	static workload work;
+	make_work(a, seed, &work);
+	if (result->failed) {
+		report(seed, &work, result);
+		return false;
+	}
+	if (a->twice && differs(seed, &work, result))
+		return false;
+	add(t, result);
+	return true;
+}
+
 static int run_all(const asked *a)
 {
 	static workload work;
+	static run_child children[RUNS_MOST];
 	run_result result;
 	totals t = {.began_s = real_s()};
-	for (int64_t i = 0; i < a->seeds && real_s() - t.began_s < a->seconds; i++) {
-		uint64_t seed = (uint64_t)(a->seed + i);
-		sim_profile profile = sim_profile_of(seed);
-		workload_make(&work, seed, &profile);
-		if (!shrink_choose(&work, a->steps))
-			return 2;
-		run_seed(seed, &work, true, &result);
-		if (result.failed) {
-			report(seed, &work, &result);
-			return 1;
+	int64_t begun = 0;
+	int count = 0;
+	bool kept = true;
+	for (;;) {
+		for (; kept && count < a->jobs && begun < a->seeds && real_s() - t.began_s < a->seconds;
+		     begun++, count++) {
+			if (!make_work(a, (uint64_t)(a->seed + begun), &work))
+				return 2;
+			run_begin((uint64_t)(a->seed + begun), &work, &children[count]);
 		}
-		if (a->twice && differs(seed, &work, &result))
-			return 1;
-		add(&t, &result);
+		if (!count)
+			break;
+		int ended = run_end(children, count, &result);
+		uint64_t seed = children[ended].seed;
+		children[ended] = children[--count];
+		kept = take(a, seed, &result, &t) && kept;
 	}
-	print_totals(&t);
-	return 0;
+	if (kept)
+		print_totals(&t);
+	return kept ? 0 : 1;
 }
 
 static int replay(const asked *a)
 {
 	static workload work;
-	run_result result;
-	sim_profile profile = sim_profile_of((uint64_t)a->seed);
-	workload_make(&work, (uint64_t)a->seed, &profile);
-	if (!shrink_choose(&work, a->steps))
+	if (!make_work(a, (uint64_t)a->seed, &work))
 		return 2;
 	workload_print(&work);
 	fflush(stdout);
 	sim_verbose = true;
-	run_seed((uint64_t)a->seed, &work, false, &result);
+	run_here((uint64_t)a->seed, &work);
 	printf("every promise was kept\n");
 	return 0;
 }
@@ -181,7 +200,7 @@ static bool find_fault(const asked *a, sim_fault fault)
 		uint64_t seed = (uint64_t)(a->seed + i);
 		sim_profile profile = sim_profile_of(seed);
 		workload_make(&work, seed, &profile);
-		run_seed(seed, &work, true, &result);
+		run_seed(seed, &work, &result);
 		if (result.failed && strcmp(result.promise, faults_promise(fault)) == 0) {
 			printf("%-22s %-15s seed %llu%s: %s\n", faults_word(fault), result.promise,
 			       (unsigned long long)seed, others, result.text);
@@ -219,6 +238,7 @@ static bool plant(const char *word)
 int main(int argument_count, char **arguments)
 {
 	asked a = {.seed = 1, .seeds = INT32_MAX, .seconds = 10};
+	a.jobs = (int32_t)fmin((double)sysconf(_SC_NPROCESSORS_ONLN), RUNS_MOST);
 	if (!cau_options_read(&line, argument_count, arguments, &a, NULL, stderr))
 		return 2;
 	if (a.help) {

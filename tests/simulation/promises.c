@@ -192,8 +192,8 @@ static bool is_due(const sim_request *r, int64_t now_ns)
 	if (r->session >= 0 && sim_sessions[r->session].moving)
 		return false; // what is asked of it waits
 	int64_t since_ns = r->arriving_ns > c->reads_ns ? r->arriving_ns : c->reads_ns;
-	return r->arrived && !r->answered && c->link && c->connection == r->connection && c->reads &&
-	       now_ns - since_ns > ANSWER_MOST_NS;
+	return r->arrived && !r->answered && !r->later && c->link && c->connection == r->connection &&
+	       c->reads && now_ns - since_ns > ANSWER_MOST_NS;
 }
 
 static void check_answers(int64_t now_ns)
@@ -276,7 +276,7 @@ void promises_settled(void)
 	for (uint64_t i = 1; i <= (uint64_t)sim_request_count; i++) {
 		const sim_request *r = clients_request(i);
 		const sim_client *c = &sim_clients[r->client];
-		if (r->arrived && !r->answered && c->link && c->connection == r->connection &&
+		if (r->arrived && !r->answered && !r->later && c->link && c->connection == r->connection &&
 		    r->arriving_ns < own.calm_ns)
 			sim_fail("answered", "request %llu, %s %s, is never answered", (unsigned long long)i,
 			         r->method, r->params);

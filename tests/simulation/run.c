@@ -4,12 +4,14 @@
 #include <assert.h>
 #include <errno.h>
 #include <malloc.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "simulation/core_watch.h"
@@ -33,6 +35,13 @@ extern const sim_end sim_clients_end;
 static int result_pipe = -1;
 static run_result now;
 static int machines; // that have a daemon in this run
+
+double real_s(void) // time() and clock_gettime are the simulation's here
+{
+	struct timespec time;
+	timespec_get(&time, TIME_UTC);
+	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
 
 // ---- the seed's manner
 sim_profile sim_profile_of(uint64_t seed)
@@ -181,25 +190,28 @@ static void do_run(uint64_t seed, const workload *work)
 }
 
 // ---- in a process of its own
-static void read_result(int from, pid_t child, run_result *result)
+void run_begin(uint64_t seed, const workload *work, run_child *child)
 {
-	size_t got = 0;
-	struct pollfd ready = {from, POLLIN, 0};
-	while (got < sizeof *result) {
-		int count = poll(&ready, 1, HANG_S * 1000);
-		if (count < 0 && errno == EINTR)
-			continue;
-		ssize_t part = count > 0 ? read(from, (char *)result + got, sizeof *result - got) : 0;
-		if (part <= 0)
-			break;
-		got += (size_t)part;
+	int ends[2];
+	*child = (run_child){.seed = seed, .most_s = real_s() + HANG_S};
+	int code = pipe(ends);
+	assert(code == 0);
+	(void)code;
+	fflush(stdout);
+	child->process = fork();
+	if (child->process == 0) {
+		close(ends[0]);
+		result_pipe = ends[1];
+		do_run(seed, work);
+		send_result();
+		_exit(0);
 	}
-	int status = 0;
-	if (got < sizeof *result)
-		kill(child, SIGKILL); // it hangs, or has ended
-	waitpid(child, &status, 0);
-	if (got == sizeof *result)
-		return;
+	close(ends[1]);
+	child->from = ends[0];
+}
+
+static void crashed(int status, run_result *result)
+{
 	*result = (run_result){.failed = true, .promise = "crash"};
 	if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
 		snprintf(result->text, sizeof result->text, "no end within %d s", HANG_S);
@@ -208,29 +220,59 @@ static void read_result(int from, pid_t child, run_result *result)
 		         (unsigned)status);
 }
 
-void run_seed(uint64_t seed, const workload *work, bool own_process, run_result *result)
+// Its result is there, or it has ended, or its time is over.
+static void take_result(const run_child *child, run_result *result)
 {
-	int ends[2];
-	*result = (run_result){0};
-	if (!own_process) {
-		do_run(seed, work);
-		send_result();
-		*result = now;
-		return;
+	size_t got = 0;
+	struct pollfd ready = {child->from, POLLIN, 0};
+	while (got < sizeof *result) {
+		int count = poll(&ready, 1, 0);
+		if (count < 0 && errno == EINTR)
+			continue;
+		ssize_t part =
+			count > 0 ? read(child->from, (char *)result + got, sizeof *result - got) : 0;
+		if (part <= 0)
+			break;
+		got += (size_t)part;
 	}
-	int code = pipe(ends);
-	assert(code == 0);
-	(void)code;
-	fflush(stdout);
-	pid_t child = fork();
-	if (child == 0) {
-		close(ends[0]);
-		result_pipe = ends[1];
-		do_run(seed, work);
-		send_result();
-		_exit(0);
+	int status = 0;
+	if (got < sizeof *result)
+		kill(child->process, SIGKILL); // it hangs, or has ended
+	waitpid(child->process, &status, 0);
+	close(child->from);
+	if (got < sizeof *result)
+		crashed(status, result);
+}
+
+int run_end(const run_child *children, int count, run_result *result)
+{
+	struct pollfd ready[RUNS_MOST];
+	double first_s = children[0].most_s;
+	assert(count >= 1 && count <= RUNS_MOST);
+	for (int i = 0; i < count; i++) {
+		ready[i] = (struct pollfd){children[i].from, POLLIN, 0};
+		first_s = fmin(first_s, children[i].most_s);
 	}
-	close(ends[1]);
-	read_result(ends[0], child, result);
-	close(ends[0]);
+	for (;;) {
+		double left_s = first_s - real_s();
+		poll(ready, (nfds_t)count, left_s > 0 ? (int)(1000 * left_s) + 1 : 0);
+		for (int i = 0; i < count; i++)
+			if (ready[i].revents || real_s() > children[i].most_s) {
+				take_result(&children[i], result);
+				return i;
+			}
+	}
+}
+
+void run_seed(uint64_t seed, const workload *work, run_result *result)
+{
+	run_child child;
+	run_begin(seed, work, &child);
+	run_end(&child, 1, result);
+}
+
+void run_here(uint64_t seed, const workload *work)
+{
+	do_run(seed, work);
+	send_result();
 }

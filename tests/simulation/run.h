@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run of a seed, in a process of its own, so that what a kill leaves in memory goes with it.
+// Runs of seeds, each in a process of its own, so that what a kill leaves in memory goes with it.
 #pragma once
 
 #include "simulation/faults.h"
@@ -16,5 +16,21 @@ typedef struct run_result {
 	int requests;
 } run_result;
 
-// `own_process`: false in a debugger; the process ends with the run then, if it fails.
-void run_seed(uint64_t seed, const workload *work, bool own_process, run_result *result);
+enum { RUNS_MOST = 256 }; // at once
+
+typedef struct run_child {
+	uint64_t seed;
+	int process, from; // from: the pipe that brings its result
+	double most_s;     // of real time; then it hangs
+} run_child;
+
+double real_s(void);
+
+// Begins a run in a process of its own. Each child is to be given to run_end.
+void run_begin(uint64_t seed, const workload *work, run_child *child);
+// Waits until one of the children ends, and returns which.
+int run_end(const run_child *children, int count, run_result *result);
+// Both of them.
+void run_seed(uint64_t seed, const workload *work, run_result *result);
+// In this process, which ends with the run if it breaks a promise: for a debugger.
+void run_here(uint64_t seed, const workload *work);

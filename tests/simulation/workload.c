@@ -54,6 +54,10 @@ static void drive(maker *m)
 		pass(m, 100);
 		add(m, STEP_STEP, client, session, 1 + pick(m, 20));
 	}
+	if (pick(m, 4) == 0) {
+		pass(m, 100);
+		add(m, STEP_SILENT, client, 0, 0);
+	}
 	pass(m, 300);
 }
 
@@ -72,6 +76,7 @@ static void befall(maker *m)
 		{STEP_HAND_OVER, 3, CLIENTS, SESSIONS, TOOLS},
 		{STEP_TAKE, 5, CLIENTS, SESSIONS, TOOLS},
 		{STEP_ON, 6, CLIENTS, SESSIONS, TOOLS},
+		{STEP_ON_LATER, 4, CLIENTS, SESSIONS, 60},
 		{STEP_MOVE, 3, CLIENTS, SESSIONS, TOOLS},
 		{STEP_GRAVITY, 14, CLIENTS, SESSIONS, 0},
 		{STEP_BURST, 2, CLIENTS, SESSIONS, 60},
@@ -86,6 +91,7 @@ static void befall(maker *m)
 		{STEP_READ, 3, CLIENTS, 16, 0},
 		{STEP_CREATE, 3, CLIENTS, SESSIONS, 2},
 		{STEP_DESTROY, 1, CLIENTS, SESSIONS, 0},
+		{STEP_FORK, 2, CLIENTS, SESSIONS, SESSIONS},
 		{STEP_MOVE_SESSION, 4, SESSIONS, 0, 0},
 		{STEP_KILL, 2, DISK_MACHINES, 0, 0},
 		{STEP_POWER, 2, DISK_MACHINES, 0, 0},
@@ -159,19 +165,37 @@ static bool exists(const work_step *s)
 	return sim_sessions[s->b].wanted;
 }
 
+// Whether the client may ask for a session at this place. Its book begins.
+static bool begin_session(int client, int place, char name[NAME_MOST])
+{
+	sim_session *made = &sim_sessions[place];
+	if (made->wanted || !sim_clients[client].link)
+		return false;
+	*made = (sim_session){
+		.life = made->life + 1, .machine = sim_clients[client].machine, .wanted = true};
+	memset(&sim_books[place], 0, sizeof sim_books[place]);
+	sim_session_name(place, name);
+	return true;
+}
+
 static void create(const work_step *s)
 {
 	char name[NAME_MOST], params[256];
-	sim_session *made = &sim_sessions[s->b];
-	if (made->wanted || !sim_clients[s->a].link)
+	if (!begin_session(s->a, s->b, name))
 		return;
-	*made =
-		(sim_session){.life = made->life + 1, .machine = sim_clients[s->a].machine, .wanted = true};
-	memset(&sim_books[s->b], 0, sizeof sim_books[s->b]);
-	sim_session_name(s->b, name);
 	snprintf(params, sizeof params, "\"name\":\"%s\",\"scene\":\"sheet\",\"paused\":%s", name,
 	         s->c ? "true" : "false");
 	clients_ask(s->a, ASK_CREATE, "session.create", s->b, -1, true, params);
+}
+
+static void fork_session(const work_step *s)
+{
+	char name[NAME_MOST], params[256], source[NAME_MOST];
+	if (!begin_session(s->a, s->c, name))
+		return;
+	sim_session_id(s->b, sim_clients[s->a].machine, source);
+	snprintf(params, sizeof params, "\"session\":\"%s\",\"name\":\"%s\"", source, name);
+	clients_ask(s->a, ASK_CREATE, "session.fork", s->c, -1, true, params);
 }
 
 static void destroy(const work_step *s)
@@ -192,11 +216,24 @@ static void set_gravity(int client, int place)
 	clients_request(number)->gravity = gravities;
 }
 
-static void of_tool(const work_step *s, ask what, const char *method, const char *more)
+static uint64_t of_tool(const work_step *s, ask what, const char *method, const char *more)
 {
 	char params[160];
 	snprintf(params, sizeof params, "\"tool\":\"%s\"%s", sim_tools[s->c % TOOLS], more);
-	clients_ask(s->a, what, method, s->b, s->c % TOOLS, true, params);
+	return clients_ask(s->a, what, method, s->b, s->c % TOOLS, true, params);
+}
+
+static void energize_later(const work_step *s)
+{
+	char more[64];
+	int gravity;
+	int64_t tick;
+	if (!core_watch_state(s->b, sim_clients[s->a].machine, &gravity, &tick))
+		return;
+	snprintf(more, sizeof more, ",\"energized\":true,\"tick\":%lld", (long long)(tick + 1 + s->c));
+	uint64_t number = of_tool(s, ASK_ON, "tool.energize", more);
+	if (number)
+		clients_request(number)->later = true;
 }
 
 static void move_tool(const work_step *s)
@@ -233,6 +270,9 @@ static void do_to_session(const work_step *s)
 		break;
 	case STEP_OFF:
 		of_tool(s, ASK_OFF, "tool.energize", ",\"energized\":false");
+		break;
+	case STEP_ON_LATER:
+		energize_later(s);
 		break;
 	case STEP_HAND_OVER:
 		of_tool(s, ASK_HAND_OVER, "tool.hand_over", "");
@@ -338,7 +378,10 @@ void workload_do(const work_step *s)
 		create(s);
 	else if (s->kind == STEP_DESTROY)
 		destroy(s);
-	else if (s->kind == STEP_MOVE_SESSION)
+	else if (s->kind == STEP_FORK) {
+		if (exists(s))
+			fork_session(s);
+	} else if (s->kind == STEP_MOVE_SESSION)
 		courier_move(s->a);
 	else if (s->kind >= STEP_KILL)
 		do_to_machine(s);

@@ -19,8 +19,10 @@ enum { STEPS_MOST = 512 };
 	X(READ, "read")            /* client, frames a round */                                        \
 	X(CREATE, "create")        /* client, session, paused */                                       \
 	X(DESTROY, "destroy")      /* client, sim_session */                                           \
+	X(FORK, "fork")            /* client, session, the session that it makes */                    \
 	X(TAKE, "take")            /* client, session, tool */                                         \
 	X(ON, "on")                /* client, session, tool */                                         \
+	X(ON_LATER, "on_later")    /* client, session, after how many ticks, with a tool of TOOLS */   \
 	X(OFF, "off")              /* client, session, tool */                                         \
 	X(HAND_OVER, "hand_over")  /* client, session, tool */                                         \
 	X(MOVE, "move")            /* client, session, tool */                                         \

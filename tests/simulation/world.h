@@ -68,7 +68,8 @@ typedef struct sim_request {
 	uint64_t first;            // number of the request that this one is sent again for; 0: none
 	int connection, machine;   // connection: of its client, counted
 	int64_t sent_ns, arriving_ns, answered_ns;
-	bool met; // its session was there when it arrived
+	bool later; // it waits for a tick, so its answer may wait as long as its session is paused
+	bool met;   // its session was there when it arrived
 	bool arrived, answered, ok, unstored;
 	char *method, *params; // to send it again
 	char *result;          // text of it
