@@ -92,7 +92,9 @@ void cau_streams_acknowledge(cau_subscriber *sub, uint64_t epoch, uint64_t seque
 	sub->acknowledges = true;
 	sub->in_flight = 0;
 	for (size_t i = 0; i < SENT_FRAMES; i++)
-		if (sub->sent[i].sequence > sequence && sub->sent[i].sequence <= sub->sequence)
+		if (sub->sent[i].sequence <= sequence)
+			sub->sent[i].bytes = 0; // it is there, whatever is acknowledged later
+		else if (sub->sent[i].sequence <= sub->sequence)
 			sub->in_flight += sub->sent[i].bytes;
 }
 

@@ -68,11 +68,13 @@ void books_apply(session_book *book, int number)
 		sim_fail("once", "gravity %d acts again after it was acknowledged", number);
 	if (book->applied[number] && !was_sent_again(number))
 		sim_fail("once", "gravity %d acts again though it was sent once", number);
-	if (!was_sent_again(number) && number < book->last_of_client[r->client])
+	bool ordered = !r->later && !was_sent_again(number);
+	if (ordered && number < book->last_of_client[r->client])
 		sim_fail("order", "client %d sent gravity %d before %d, and it acts behind it", r->client,
 		         number, book->last_of_client[r->client]);
 	book->applied[number] = ++book->last_applied;
-	book->last_of_client[r->client] = number;
+	if (!r->later)
+		book->last_of_client[r->client] = number;
 }
 
 void books_compare(session_book *book, int place, int number)

@@ -280,6 +280,8 @@ void streams_ack_arriving(int client, const char *text)
 	s->acknowledged = true;
 	s->in_flight = 0;
 	for (int i = s->sent_at > SENT ? s->sent_at - SENT : 0; i < s->sent_at; i++)
-		if (s->sent[i % SENT].sequence > sequence)
+		if (s->sent[i % SENT].sequence <= sequence)
+			s->sent[i % SENT].bytes = 0;
+		else
 			s->in_flight += s->sent[i % SENT].bytes;
 }

@@ -80,6 +80,8 @@ static void befall(maker *m)
 		{STEP_MOVE, 3, CLIENTS, SESSIONS, TOOLS},
 		{STEP_GRAVITY, 14, CLIENTS, SESSIONS, 0},
 		{STEP_BURST, 2, CLIENTS, SESSIONS, 60},
+		{STEP_GRAVITY_LATER, 4, CLIENTS, SESSIONS, 60},
+		{STEP_CANCEL, 1, CLIENTS, SESSIONS, 0},
 		{STEP_STEP, 4, CLIENTS, SESSIONS, 30},
 		{STEP_REWIND, 2, CLIENTS, SESSIONS, 100},
 		{STEP_RESET, 1, CLIENTS, SESSIONS, 0},
@@ -206,14 +208,23 @@ static void destroy(const work_step *s)
 	sim_sessions[s->b].wanted = sim_sessions[s->b].made = false;
 }
 
-static void set_gravity(int client, int place)
+// `ticks`: 0: at once.
+static void set_gravity(int client, int place, int ticks)
 {
-	char params[96];
+	char params[96], at_tick[32] = "";
+	int gravity;
+	int64_t tick;
 	if (gravities + 1 >= GRAVITIES_MOST || !sim_clients[client].link)
 		return;
-	snprintf(params, sizeof params, "\"gravity_m_s2\":[0,0,%.6f]", books_gravity(++gravities));
+	if (ticks && !core_watch_state(place, sim_clients[client].machine, &gravity, &tick))
+		return;
+	if (ticks)
+		snprintf(at_tick, sizeof at_tick, ",\"tick\":%lld", (long long)(tick + ticks));
+	snprintf(params, sizeof params, "\"gravity_m_s2\":[0,0,%.6f]%s", books_gravity(++gravities),
+	         at_tick);
 	uint64_t number = clients_ask(client, ASK_GRAVITY, "gravity.set", place, -1, true, params);
 	clients_request(number)->gravity = gravities;
+	clients_request(number)->later = ticks > 0;
 }
 
 static uint64_t of_tool(const work_step *s, ask what, const char *method, const char *more)
@@ -281,11 +292,17 @@ static void do_to_session(const work_step *s)
 		move_tool(s);
 		break;
 	case STEP_GRAVITY:
-		set_gravity(s->a, s->b);
+		set_gravity(s->a, s->b, 0);
+		break;
+	case STEP_GRAVITY_LATER:
+		set_gravity(s->a, s->b, 1 + s->c);
+		break;
+	case STEP_CANCEL:
+		clients_ask(s->a, ASK_OTHER, "session.cancel", s->b, -1, false, "");
 		break;
 	case STEP_BURST:
 		for (int i = 0; i < s->c; i++)
-			set_gravity(s->a, s->b);
+			set_gravity(s->a, s->b, 0);
 		break;
 	case STEP_PAUSE:
 		clients_ask(s->a, ASK_PAUSE, "session.pause", s->b, -1, true, "");

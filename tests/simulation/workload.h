@@ -9,43 +9,45 @@ enum { STEPS_MOST = 512 };
 
 // code, word: the step's arguments a, b, c
 #define STEP_TABLE(X)                                                                              \
-	X(CONNECT, "connect")      /* client, machine */                                               \
-	X(CUT, "cut")              /* client: its connection is lost */                                \
-	X(HIDE, "hide")            /* client: its page is hidden */                                    \
-	X(SHOW, "show")            /* sim_client */                                                    \
-	X(SILENT, "silent")        /* client: no heartbeats */                                         \
-	X(BEAT, "beat")            /* client: again */                                                 \
-	X(STOP_READING, "unread")  /* client takes nothing */                                          \
-	X(READ, "read")            /* client, frames a round */                                        \
-	X(CREATE, "create")        /* client, session, paused */                                       \
-	X(DESTROY, "destroy")      /* client, sim_session */                                           \
-	X(FORK, "fork")            /* client, session, the session that it makes */                    \
-	X(TAKE, "take")            /* client, session, tool */                                         \
-	X(ON, "on")                /* client, session, tool */                                         \
-	X(ON_LATER, "on_later")    /* client, session, after how many ticks, with a tool of TOOLS */   \
-	X(OFF, "off")              /* client, session, tool */                                         \
-	X(HAND_OVER, "hand_over")  /* client, session, tool */                                         \
-	X(MOVE, "move")            /* client, session, tool */                                         \
-	X(GRAVITY, "gravity")      /* client, sim_session */                                           \
-	X(BURST, "burst")          /* client, session, how many gravities at once */                   \
-	X(PAUSE, "pause")          /* client, sim_session */                                           \
-	X(RESUME, "resume")        /* client, sim_session */                                           \
-	X(STEP, "step")            /* client, session, ticks */                                        \
-	X(REWIND, "rewind")        /* client, session, hundredths of its ticks */                      \
-	X(RESET, "reset")          /* client, sim_session */                                           \
-	X(SNAPSHOT, "snapshot")    /* client, sim_session */                                           \
-	X(AGAIN, "again")          /* client sends its newest change again */                          \
-	X(JOIN, "join")            /* client, sim_session */                                           \
-	X(KEY_FRAME, "key_frame")  /* client, sim_session */                                           \
-	X(MOVE_SESSION, "migrate") /* session: to the other machine */                                 \
-	X(KILL, "kill")            /* machine: kill -9 */                                              \
-	X(POWER, "power")          /* machine: power is lost */                                        \
-	X(RESTART, "restart")      /* machine: SIGTERM, and a start */                                 \
-	X(FULL, "full")            /* machine: its disk takes no more */                               \
-	X(ROOM, "room")            /* machine: it does again */                                        \
-	X(SLOW_DISK, "slow_disk")  /* machine, ms of a sync */                                         \
-	X(BAD_DISK, "bad_disk")    /* machine: one in c writes or syncs fails */                       \
-	X(GOOD_DISK, "good_disk")  /* machine: fast and without errors */
+	X(CONNECT, "connect")     /* client, machine */                                                \
+	X(CUT, "cut")             /* client: its connection is lost */                                 \
+	X(HIDE, "hide")           /* client: its page is hidden */                                     \
+	X(SHOW, "show")           /* sim_client */                                                     \
+	X(SILENT, "silent")       /* client: no heartbeats */                                          \
+	X(BEAT, "beat")           /* client: again */                                                  \
+	X(STOP_READING, "unread") /* client takes nothing */                                           \
+	X(READ, "read")           /* client, frames a round */                                         \
+	X(CREATE, "create")       /* client, session, paused */                                        \
+	X(DESTROY, "destroy")     /* client, sim_session */                                            \
+	X(FORK, "fork")           /* client, session, the session that it makes */                     \
+	X(TAKE, "take")           /* client, session, tool */                                          \
+	X(ON, "on")               /* client, session, tool */                                          \
+	X(ON_LATER, "on_later")   /* client, session, after how many ticks, with a tool of TOOLS */    \
+	X(OFF, "off")             /* client, session, tool */                                          \
+	X(HAND_OVER, "hand_over") /* client, session, tool */                                          \
+	X(MOVE, "move")           /* client, session, tool */                                          \
+	X(GRAVITY, "gravity")     /* client, sim_session */                                            \
+	X(BURST, "burst")         /* client, session, how many gravities at once */                    \
+	X(GRAVITY_LATER, "gravity_later") /* client, session, after how many ticks */                  \
+	X(CANCEL, "cancel")               /* client, session: what waits for later ticks */            \
+	X(PAUSE, "pause")                 /* client, sim_session */                                    \
+	X(RESUME, "resume")               /* client, sim_session */                                    \
+	X(STEP, "step")                   /* client, session, ticks */                                 \
+	X(REWIND, "rewind")               /* client, session, hundredths of its ticks */               \
+	X(RESET, "reset")                 /* client, sim_session */                                    \
+	X(SNAPSHOT, "snapshot")           /* client, sim_session */                                    \
+	X(AGAIN, "again")                 /* client sends its newest change again */                   \
+	X(JOIN, "join")                   /* client, sim_session */                                    \
+	X(KEY_FRAME, "key_frame")         /* client, sim_session */                                    \
+	X(MOVE_SESSION, "migrate")        /* session: to the other machine */                          \
+	X(KILL, "kill")                   /* machine: kill -9 */                                       \
+	X(POWER, "power")                 /* machine: power is lost */                                 \
+	X(RESTART, "restart")             /* machine: SIGTERM, and a start */                          \
+	X(FULL, "full")                   /* machine: its disk takes no more */                        \
+	X(ROOM, "room")                   /* machine: it does again */                                 \
+	X(SLOW_DISK, "slow_disk")         /* machine, ms of a sync */                                  \
+	X(BAD_DISK, "bad_disk")           /* machine: one in c writes or syncs fails */                \
+	X(GOOD_DISK, "good_disk")         /* machine: fast and without errors */
 typedef enum step_kind {
 #define X(code, word) STEP_##code,
 	STEP_TABLE(X)

@@ -193,6 +193,27 @@ static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **u
 	scene_finish(&s);
 }
 
+// A client that begins anew knows no frame. What it took before is not on its way for that.
+static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = join(&s);
+	uint64_t last = 1;
+	for (int i = 0; i < 4 * RING_FRAMES; i++) {
+		publish(&s);
+		last = take(&s, &sub).sequence;
+		cau_streams_acknowledge(&sub, 7, last);
+	}
+	assert_int_equal(sub.in_flight, 0);
+	cau_streams_acknowledge(&sub, 7, 0);
+	assert_int_equal(sub.in_flight, 0);
+	publish(&s);
+	assert_int_equal(take(&s, &sub).sequence, last + 1);
+	scene_finish(&s);
+}
+
 static void test_one_that_keeps_falling_goes_to_half_rate(void **unused)
 {
 	(void)unused;
@@ -325,6 +346,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_every_frame_in_order),
 		cmocka_unit_test(test_beyond_the_bound_nothing_is_sent_until_it_acknowledges),
+		cmocka_unit_test(test_an_acknowledgement_of_less_takes_nothing_back),
 		cmocka_unit_test(test_one_that_keeps_falling_goes_to_half_rate),
 		cmocka_unit_test(test_others_keep_the_full_rate),
 		cmocka_unit_test(test_a_last_single_frame_is_not_kept_back),
