@@ -219,7 +219,7 @@ static void set_gravity(int client, int place, int ticks)
 	if (ticks && !core_watch_state(place, sim_clients[client].machine, &gravity, &tick))
 		return;
 	if (ticks)
-		snprintf(at_tick, sizeof at_tick, ",\"tick\":%lld", (long long)(tick + ticks));
+		snprintf(at_tick, sizeof at_tick, ",\"tick\":%lld", (long long)tick + ticks);
 	snprintf(params, sizeof params, "\"gravity_m_s2\":[0,0,%.6f]%s", books_gravity(++gravities),
 	         at_tick);
 	uint64_t number = clients_ask(client, ASK_GRAVITY, "gravity.set", place, -1, true, params);
@@ -241,7 +241,7 @@ static void energize_later(const work_step *s)
 	int64_t tick;
 	if (!core_watch_state(s->b, sim_clients[s->a].machine, &gravity, &tick))
 		return;
-	snprintf(more, sizeof more, ",\"energized\":true,\"tick\":%lld", (long long)(tick + 1 + s->c));
+	snprintf(more, sizeof more, ",\"energized\":true,\"tick\":%lld", (long long)tick + 1 + s->c);
 	uint64_t number = of_tool(s, ASK_ON, "tool.energize", more);
 	if (number)
 		clients_request(number)->later = true;
