@@ -35,6 +35,7 @@ typedef struct cau_refused_motion {
 // An entry of the log that is being replayed.
 typedef struct cau_replayed {
 	uint64_t tick;
+	uint32_t order;
 	bool acts; // it has a command: see CAU_STORE_REACHED
 	cau_command command;
 } cau_replayed;

@@ -44,6 +44,7 @@ static cau_status take_command(void *user, const cau_store_command *row)
 	}
 	cau_replayed *made = &replay->commands[replay->count++];
 	made->tick = row->tick;
+	made->order = row->order;
 	made->acts = row->kind != CAU_STORE_REACHED;
 	if (!made->acts)
 		return CAU_OK;

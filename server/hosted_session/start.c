@@ -271,6 +271,21 @@ static void go_on_from_events(cau_hosted *h)
 	cau_events_load(h);
 }
 
+// Behind the last entry of this tick, whose number counts what the store could not take, too.
+static void go_on_logging(cau_hosted *h)
+{
+	h->logged_order = 0;
+	h->logged_acts = false;
+	for (size_t i = 0; i < h->replay.count; i++) {
+		const cau_replayed *entry = &h->replay.commands[i];
+		if (entry->tick != h->tick)
+			continue;
+		h->logged_tick = h->tick;
+		h->logged_order = entry->order + 1;
+		h->logged_acts |= entry->acts;
+	}
+}
+
 void cau_hosted_started(cau_hosted *h)
 {
 	bool restarted = h->origin.kind == CAU_ORIGIN_STORE;
@@ -280,16 +295,8 @@ void cau_hosted_started(cau_hosted *h)
 	if (!restarted)
 		h->first_tick = h->tick;
 	h->logged_tick = UINT64_MAX;
-	if (restarted && h->replay.count) { // go on counting within the last tick of the log
-		h->logged_tick = h->tick;
-		h->logged_order = 0;
-		h->logged_acts = false;
-		for (size_t i = 0; i < h->replay.count; i++) {
-			bool now = h->replay.commands[i].tick == h->tick;
-			h->logged_order += now;
-			h->logged_acts |= now && h->replay.commands[i].acts;
-		}
-	}
+	if (restarted)
+		go_on_logging(h);
 	if (restarted)
 		go_on_from_events(h);
 	cau_record_checkpoint(h, NULL, NULL);

@@ -85,7 +85,11 @@ static void befall(maker *m)
 		{STEP_STEP, 4, CLIENTS, SESSIONS, 30},
 		{STEP_REWIND, 2, CLIENTS, SESSIONS, 100},
 		{STEP_RESET, 1, CLIENTS, SESSIONS, 0},
-		{STEP_SNAPSHOT, 1, CLIENTS, SESSIONS, 0},
+		{STEP_SNAPSHOT, 2, CLIENTS, SESSIONS, 3},
+		{STEP_RESTORE, 1, CLIENTS, SESSIONS, 3},
+		{STEP_PAST, 2, CLIENTS, SESSIONS, 100},
+		{STEP_SPEED, 1, CLIENTS, SESSIONS, 8},
+		{STEP_HOLD, 2, CLIENTS, SESSIONS, TOOLS},
 		{STEP_AGAIN, 8, CLIENTS, 0, 0},
 		{STEP_JOIN, 4, CLIENTS, SESSIONS, 0},
 		{STEP_KEY_FRAME, 1, CLIENTS, SESSIONS, 0},
@@ -94,6 +98,7 @@ static void befall(maker *m)
 		{STEP_CREATE, 3, CLIENTS, SESSIONS, 2},
 		{STEP_DESTROY, 1, CLIENTS, SESSIONS, 0},
 		{STEP_FORK, 2, CLIENTS, SESSIONS, SESSIONS},
+		{STEP_FORK_PAST, 1, CLIENTS, SESSIONS, SESSIONS},
 		{STEP_MOVE_SESSION, 4, SESSIONS, 0, 0},
 		{STEP_KILL, 2, DISK_MACHINES, 0, 0},
 		{STEP_POWER, 2, DISK_MACHINES, 0, 0},
@@ -192,11 +197,16 @@ static void create(const work_step *s)
 
 static void fork_session(const work_step *s)
 {
-	char name[NAME_MOST], params[256], source[NAME_MOST];
+	char name[NAME_MOST], params[256], source[NAME_MOST], of_tick[32] = "";
+	int gravity;
+	int64_t tick;
+	bool there = core_watch_state(s->b, sim_clients[s->a].machine, &gravity, &tick);
 	if (!begin_session(s->a, s->c, name))
 		return;
 	sim_session_id(s->b, sim_clients[s->a].machine, source);
-	snprintf(params, sizeof params, "\"session\":\"%s\",\"name\":\"%s\"", source, name);
+	if (s->kind == STEP_FORK_PAST && there)
+		snprintf(of_tick, sizeof of_tick, ",\"tick\":%lld", (long long)tick / 2);
+	snprintf(params, sizeof params, "\"session\":\"%s\",\"name\":\"%s\"%s", source, name, of_tick);
 	clients_ask(s->a, ASK_CREATE, "session.fork", s->c, -1, true, params);
 }
 
@@ -258,7 +268,8 @@ static void move_tool(const work_step *s)
 	clients_notify(s->a, "tool.move", params);
 }
 
-static void rewind_session(const work_step *s)
+// Asks about a tick of the session's past.
+static void ask_past(const work_step *s, ask what, const char *method, bool changes)
 {
 	char params[64];
 	int gravity;
@@ -266,7 +277,14 @@ static void rewind_session(const work_step *s)
 	if (!core_watch_state(s->b, sim_clients[s->a].machine, &gravity, &tick))
 		return;
 	snprintf(params, sizeof params, "\"tick\":%lld", (long long)(tick * s->c / 100));
-	clients_ask(s->a, ASK_REWIND, "session.rewind", s->b, -1, true, params);
+	clients_ask(s->a, what, method, s->b, -1, changes, params);
+}
+
+static void ask_named(const work_step *s, ask what, const char *method)
+{
+	char params[64];
+	snprintf(params, sizeof params, "\"name\":\"kept%d\"", s->c);
+	clients_ask(s->a, what, method, s->b, -1, true, params);
 }
 
 static void do_to_session(const work_step *s)
@@ -315,13 +333,26 @@ static void do_to_session(const work_step *s)
 		clients_ask(s->a, ASK_STEP, "session.step", s->b, -1, true, params);
 		break;
 	case STEP_REWIND:
-		rewind_session(s);
+		ask_past(s, ASK_REWIND, "session.rewind", true);
 		break;
 	case STEP_RESET:
 		clients_ask(s->a, ASK_RESET, "session.reset", s->b, -1, true, "");
 		break;
 	case STEP_SNAPSHOT:
-		clients_ask(s->a, ASK_SNAPSHOT, "session.snapshot", s->b, -1, true, "");
+		ask_named(s, ASK_SNAPSHOT, "session.snapshot");
+		break;
+	case STEP_RESTORE:
+		ask_named(s, ASK_REWIND, "session.restore");
+		break;
+	case STEP_PAST:
+		ask_past(s, ASK_OTHER, "session.frame_at", false);
+		break;
+	case STEP_SPEED:
+		snprintf(params, sizeof params, "\"speed\":%.1f", 0.5 * (1 + s->c));
+		clients_ask(s->a, ASK_OTHER, "session.speed", s->b, -1, true, params);
+		break;
+	case STEP_HOLD:
+		of_tool(s, ASK_OTHER, "tool.hold", "");
 		break;
 	case STEP_JOIN:
 		clients_ask(s->a, ASK_JOIN, "session.join", s->b, -1, false, "");
@@ -395,7 +426,7 @@ void workload_do(const work_step *s)
 		create(s);
 	else if (s->kind == STEP_DESTROY)
 		destroy(s);
-	else if (s->kind == STEP_FORK) {
+	else if (s->kind == STEP_FORK || s->kind == STEP_FORK_PAST) {
 		if (exists(s))
 			fork_session(s);
 	} else if (s->kind == STEP_MOVE_SESSION)

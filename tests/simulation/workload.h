@@ -20,6 +20,7 @@ enum { STEPS_MOST = 512 };
 	X(CREATE, "create")       /* client, session, paused */                                        \
 	X(DESTROY, "destroy")     /* client, sim_session */                                            \
 	X(FORK, "fork")           /* client, session, the session that it makes */                     \
+	X(FORK_PAST, "fork_past") /* the same, from the middle of its ticks */                         \
 	X(TAKE, "take")           /* client, session, tool */                                          \
 	X(ON, "on")               /* client, session, tool */                                          \
 	X(ON_LATER, "on_later")   /* client, session, after how many ticks, with a tool of TOOLS */    \
@@ -35,19 +36,23 @@ enum { STEPS_MOST = 512 };
 	X(STEP, "step")                   /* client, session, ticks */                                 \
 	X(REWIND, "rewind")               /* client, session, hundredths of its ticks */               \
 	X(RESET, "reset")                 /* client, sim_session */                                    \
-	X(SNAPSHOT, "snapshot")           /* client, sim_session */                                    \
-	X(AGAIN, "again")                 /* client sends its newest change again */                   \
-	X(JOIN, "join")                   /* client, sim_session */                                    \
-	X(KEY_FRAME, "key_frame")         /* client, sim_session */                                    \
-	X(MOVE_SESSION, "migrate")        /* session: to the other machine */                          \
-	X(KILL, "kill")                   /* machine: kill -9 */                                       \
-	X(POWER, "power")                 /* machine: power is lost */                                 \
-	X(RESTART, "restart")             /* machine: SIGTERM, and a start */                          \
-	X(FULL, "full")                   /* machine: its disk takes no more */                        \
-	X(ROOM, "room")                   /* machine: it does again */                                 \
-	X(SLOW_DISK, "slow_disk")         /* machine, ms of a sync */                                  \
-	X(BAD_DISK, "bad_disk")           /* machine: one in c writes or syncs fails */                \
-	X(GOOD_DISK, "good_disk")         /* machine: fast and without errors */
+	X(SNAPSHOT, "snapshot")           /* client, session, name */                                  \
+	X(RESTORE, "restore")             /* client, session, name */                                  \
+	X(PAST, "past")            /* client, session, hundredths of its ticks: it is looked at */     \
+	X(SPEED, "speed")          /* client, session, halves of the clock's, less one */              \
+	X(HOLD, "hold")            /* client, session, tool */                                         \
+	X(AGAIN, "again")          /* client sends its newest change again */                          \
+	X(JOIN, "join")            /* client, sim_session */                                           \
+	X(KEY_FRAME, "key_frame")  /* client, sim_session */                                           \
+	X(MOVE_SESSION, "migrate") /* session: to the other machine */                                 \
+	X(KILL, "kill")            /* machine: kill -9 */                                              \
+	X(POWER, "power")          /* machine: power is lost */                                        \
+	X(RESTART, "restart")      /* machine: SIGTERM, and a start */                                 \
+	X(FULL, "full")            /* machine: its disk takes no more */                               \
+	X(ROOM, "room")            /* machine: it does again */                                        \
+	X(SLOW_DISK, "slow_disk")  /* machine, ms of a sync */                                         \
+	X(BAD_DISK, "bad_disk")    /* machine: one in c writes or syncs fails */                       \
+	X(GOOD_DISK, "good_disk")  /* machine: fast and without errors */
 typedef enum step_kind {
 #define X(code, word) STEP_##code,
 	STEP_TABLE(X)
