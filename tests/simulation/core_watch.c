@@ -286,7 +286,7 @@ void core_watch_advance(int64_t to_ns)
 		core_book *book = &watched.cores[i];
 		if (!book->core || !is_present(book) || !is_served(book))
 			continue;
-		if (book->logic->going) { // suspended: no tick begins
+		if (book->logic->going || book->logic->draining) { // no tick begins
 			book->began_ns = to_ns;
 		} else {
 			look_at(book, to_ns);
