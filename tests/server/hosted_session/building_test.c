@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "cautery/command_json.h"
 #include "server/double/fake_session.h"
 #include "server/hosted_session/hosted_fixture.h"
 
@@ -172,6 +173,62 @@ static void a_fork_that_cannot_be_stored_is_answered(void **state)
 	assert_int_equal(t.answers[1].count, 1);
 }
 
+// ---- after a restart
+static void see_stored(void *user, cau_status status, const char *reason)
+{
+	(void)reason;
+	*(cau_status *)user = status;
+}
+
+static void log_gravity(uint32_t order)
+{
+	char json[CAU_COMMAND_JSON_MAX_BYTES];
+	size_t bytes = 0;
+	cau_command command;
+	cau_status stored = CAU_BAD_STATE;
+	cau_default_command(&command, CAU_COMMAND_SET_GRAVITY);
+	assert_int_equal(cau_command_to_json(&command, json, sizeof json, &bytes, NULL), CAU_OK);
+	cau_store_command row = {
+		.session = "d1-building", .order = order, .kind = command.kind, .payload = {json, bytes}};
+	cau_store_batch *batch = cau_store_batch_create();
+	assert_int_equal(cau_store_put_command(batch, &row, NULL), CAU_OK);
+	assert_int_equal(cau_store_submit(t.around.store, batch, see_stored, &stored, NULL), CAU_OK);
+	cau_store_flush(t.around.store);
+	assert_int_equal(stored, CAU_OK);
+}
+
+static cau_status take_order(void *user, const cau_store_command *row)
+{
+	*(uint32_t *)user = row->order;
+	return CAU_OK;
+}
+
+// What the store did not take leaves a gap in the numbers of a tick.
+static void after_a_restart_it_logs_behind_the_last(void **state)
+{
+	(void)state;
+	uint32_t last = 0;
+	hosted_begin(NOWHERE, 0);
+	assert_int_equal(hosted_await(0)->status, CAU_OK);
+	hosted_let_go();
+	log_gravity(0);
+	log_gravity(5);
+	cau_hosted_def def = {.id = "d1-building",
+	                      .number = 2,
+	                      .scene = hosted_make_scene(),
+	                      .paused = true,
+	                      .origin = {.kind = CAU_ORIGIN_STORE}};
+	assert_int_equal(cau_hosted_create(&t.h, &t.around, &def, NULL), CAU_OK);
+	cau_order *order = hosted_new_order(1, CAU_ORDER_COMMAND, CAU_METHOD_SET_GRAVITY);
+	cau_default_command(&order->as.command, CAU_COMMAND_SET_GRAVITY);
+	hosted_submit(order);
+	assert_int_equal(hosted_await(1)->status, CAU_OK);
+	assert_int_equal(
+		cau_store_read_log(t.around.store, "d1-building", 0, 0, INT64_MAX, take_order, &last, NULL),
+		CAU_OK);
+	assert_int_equal(last, 6);
+}
+
 static void whose_creator_is_gone_for_good_it_ends(void **state)
 {
 	(void)state;
@@ -321,6 +378,7 @@ int main(void)
 		TEST(what_waits_is_refused_where_it_is_destroyed),
 		TEST(what_waits_is_refused_where_it_cannot_be_stored),
 		TEST(a_fork_that_cannot_be_stored_is_answered),
+		TEST(after_a_restart_it_logs_behind_the_last),
 		TEST(whose_creator_is_gone_for_good_it_ends),
 		TEST(as_the_daemon_ends_it_ends),
 		TEST(begun_after_the_builder_stopped_it_is_refused),
