@@ -229,6 +229,19 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 	return true;
 }
 
+// A tool whose energy is on is cut before it is removed: the core removes it in its next tick.
+static bool remove_tool(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                        cau_effects *effects)
+{
+	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
+	CAU_RULE(drive != NULL, "tool %s was to be removed, and there is no such tool",
+	         order->asked.tool);
+	if (!drive->lit)
+		return true;
+	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "it was removed", effects);
+	return !cau_drive_next_cut(logic, true, action);
+}
+
 // What waited and was overtaken. An enable's refusal says what cut it (drive.c).
 static bool refuse_void(const cau_waiting *order, cau_action *action)
 {
@@ -277,6 +290,8 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 	case CAU_ASK_TAKE_OVER:
 	case CAU_ASK_HAND_OVER:
 		return change_driver(logic, order, action, effects);
+	case CAU_ASK_TOOL_REMOVE:
+		return remove_tool(logic, order, action, effects);
 	case CAU_ASK_ENERGY_OFF:
 		turn_off(logic, order, effects);
 		return true;

@@ -79,7 +79,10 @@ static void on_made(const cau_session_def *def, const cau_session *core)
 	*book = (core_book){.core = core, .machine = sim_machine()};
 	snprintf(book->id, sizeof book->id, "%s", cau_hosted_id(def->user));
 	book->place = sim_session_of(book->id);
-	book->life = book->place >= 0 ? sim_sessions[book->place].life : 0;
+	if (book->place < 0)
+		return;
+	book->life = sim_sessions[book->place].life;
+	sim_books[book->place].full = false; // what a full store did not take is made anew
 }
 
 // Its name was not given anew.

@@ -217,7 +217,7 @@ static void *run(void *argument)
 void courier_move(int place)
 {
 	sim_session *moved = &sim_sessions[place];
-	if (courier.under_way || !moved->made || !moved->wanted)
+	if (courier.under_way || !moved->made || !moved->wanted || moved->ephemeral)
 		return;
 	courier.under_way = moved->moving = true;
 	courier.place = place;

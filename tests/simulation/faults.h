@@ -10,7 +10,7 @@
 #define FAULT_TABLE(X)                                                                             \
 	X(watchdog_oversleeps, energy_silent, "the watchdog looks half a second after it should")      \
 	X(worker_wake_lost, energy_cut, "one in three wakes of a worker is lost")                      \
-	X(signal_lost, up, "one in eight signals of a condition is lost")                              \
+	X(signal_lost, answered, "one in eight signals of a condition is lost")                        \
 	X(early_acknowledgement, acknowledged, "answers go out before the commit")                     \
 	X(commit_not_synced, acknowledged, "commits are not synced to the disk")                       \
 	X(row_lost, acknowledged, "one in eight commands is not written to the log")                   \

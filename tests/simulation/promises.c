@@ -161,6 +161,8 @@ void promises_answered(uint64_t number)
 	if ((r->what == ASK_REWIND || r->what == ASK_RESET || r->what == ASK_HAND_OVER) && !r->first)
 		void_enables(r->session, r->what == ASK_HAND_OVER ? r->tool : -1,
 		             r->what == ASK_HAND_OVER ? r->client : EVERY_CLIENT, r->arriving_ns - 1);
+	if (r->what == ASK_REMOVE && !r->first)
+		void_enables(r->session, r->tool, EVERY_CLIENT, r->arriving_ns - 1);
 	if (r->what == ASK_GRAVITY && !r->unstored) {
 		promises_counted.acknowledged++;
 		books_acknowledge(book, r->gravity);
@@ -262,7 +264,7 @@ void promises_calm(void)
 // Sessions that were made and not asked to go are there.
 static bool must_be_there(int place)
 {
-	return sim_books[place].made && sim_sessions[place].wanted;
+	return sim_books[place].made && sim_sessions[place].wanted && !sim_sessions[place].ephemeral;
 }
 
 void promises_settled(void)

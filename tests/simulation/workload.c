@@ -11,6 +11,8 @@
 #include "simulation/courier.h"
 #include "simulation/promises.h"
 
+enum { EPHEMERAL = 5 }; // of six creations
+
 static int gravities; // numbers given
 
 // ---- making
@@ -90,12 +92,14 @@ static void befall(maker *m)
 		{STEP_PAST, 2, CLIENTS, SESSIONS, 100},
 		{STEP_SPEED, 1, CLIENTS, SESSIONS, 8},
 		{STEP_HOLD, 2, CLIENTS, SESSIONS, TOOLS},
+		{STEP_REMOVE, 1, CLIENTS, SESSIONS, 0},
+		{STEP_ADD, 2, CLIENTS, SESSIONS, 0},
 		{STEP_AGAIN, 8, CLIENTS, 0, 0},
 		{STEP_JOIN, 4, CLIENTS, SESSIONS, 0},
 		{STEP_KEY_FRAME, 1, CLIENTS, SESSIONS, 0},
 		{STEP_STOP_READING, 1, CLIENTS, 0, 0},
 		{STEP_READ, 3, CLIENTS, 16, 0},
-		{STEP_CREATE, 3, CLIENTS, SESSIONS, 2},
+		{STEP_CREATE, 3, CLIENTS, SESSIONS, 6},
 		{STEP_DESTROY, 1, CLIENTS, SESSIONS, 0},
 		{STEP_FORK, 2, CLIENTS, SESSIONS, SESSIONS},
 		{STEP_FORK_PAST, 1, CLIENTS, SESSIONS, SESSIONS},
@@ -190,8 +194,10 @@ static void create(const work_step *s)
 	char name[NAME_MOST], params[256];
 	if (!begin_session(s->a, s->b, name))
 		return;
-	snprintf(params, sizeof params, "\"name\":\"%s\",\"scene\":\"sheet\",\"paused\":%s", name,
-	         s->c ? "true" : "false");
+	sim_sessions[s->b].ephemeral = s->c == EPHEMERAL;
+	snprintf(params, sizeof params,
+	         "\"name\":\"%s\",\"scene\":\"sheet\",\"paused\":%s,\"ephemeral\":%s", name,
+	         s->c % 2 ? "true" : "false", s->c == EPHEMERAL ? "true" : "false");
 	clients_ask(s->a, ASK_CREATE, "session.create", s->b, -1, true, params);
 }
 
@@ -204,6 +210,7 @@ static void fork_session(const work_step *s)
 	if (!begin_session(s->a, s->c, name))
 		return;
 	sim_session_id(s->b, sim_clients[s->a].machine, source);
+	sim_sessions[s->c].ephemeral = sim_sessions[s->b].ephemeral;
 	if (s->kind == STEP_FORK_PAST && there)
 		snprintf(of_tick, sizeof of_tick, ",\"tick\":%lld", (long long)tick / 2);
 	snprintf(params, sizeof params, "\"session\":\"%s\",\"name\":\"%s\"%s", source, name, of_tick);
@@ -242,6 +249,17 @@ static uint64_t of_tool(const work_step *s, ask what, const char *method, const 
 	char params[160];
 	snprintf(params, sizeof params, "\"tool\":\"%s\"%s", sim_tools[s->c % TOOLS], more);
 	return clients_ask(s->a, what, method, s->b, s->c % TOOLS, true, params);
+}
+
+static void change_tools(const work_step *s)
+{
+	char params[256];
+	bool removes = s->kind == STEP_REMOVE;
+	snprintf(params, sizeof params,
+	         removes ? "\"tool\":\"%s\"" : "\"name\":\"%s\",\"shape\":\"hook\"",
+	         sim_tools[TOOLS - 1]);
+	clients_ask(s->a, removes ? ASK_REMOVE : ASK_OTHER, removes ? "tool.remove" : "tool.add", s->b,
+	            TOOLS - 1, true, params);
 }
 
 static void energize_later(const work_step *s)
@@ -350,6 +368,10 @@ static void do_to_session(const work_step *s)
 	case STEP_SPEED:
 		snprintf(params, sizeof params, "\"speed\":%.1f", 0.5 * (1 + s->c));
 		clients_ask(s->a, ASK_OTHER, "session.speed", s->b, -1, true, params);
+		break;
+	case STEP_REMOVE:
+	case STEP_ADD:
+		change_tools(s);
 		break;
 	case STEP_HOLD:
 		of_tool(s, ASK_OTHER, "tool.hold", "");

@@ -17,7 +17,7 @@ enum { STEPS_MOST = 512 };
 	X(BEAT, "beat")           /* client: again */                                                  \
 	X(STOP_READING, "unread") /* client takes nothing */                                           \
 	X(READ, "read")           /* client, frames a round */                                         \
-	X(CREATE, "create")       /* client, session, paused */                                        \
+	X(CREATE, "create")       /* client, session, 1: paused, of 6; 5: ephemeral */                 \
 	X(DESTROY, "destroy")     /* client, sim_session */                                            \
 	X(FORK, "fork")           /* client, session, the session that it makes */                     \
 	X(FORK_PAST, "fork_past") /* the same, from the middle of its ticks */                         \
@@ -41,6 +41,8 @@ enum { STEPS_MOST = 512 };
 	X(PAST, "past")            /* client, session, hundredths of its ticks: it is looked at */     \
 	X(SPEED, "speed")          /* client, session, halves of the clock's, less one */              \
 	X(HOLD, "hold")            /* client, session, tool */                                         \
+	X(REMOVE, "remove")        /* client, session: its last tool */                                \
+	X(ADD, "add")              /* client, session: that tool again */                              \
 	X(AGAIN, "again")          /* client sends its newest change again */                          \
 	X(JOIN, "join")            /* client, sim_session */                                           \
 	X(KEY_FRAME, "key_frame")  /* client, sim_session */                                           \

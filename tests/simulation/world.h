@@ -45,6 +45,7 @@ typedef enum ask {
 	ASK_ON,
 	ASK_OFF,
 	ASK_HAND_OVER,
+	ASK_REMOVE,
 	ASK_GRAVITY,
 	ASK_PAUSE,
 	ASK_RESUME,
@@ -113,11 +114,12 @@ sim_request *clients_request(uint64_t number);
 
 // ---- sessions, by their place
 typedef struct sim_session {
-	int life;    // how often a session of this name was created
-	int machine; // where it should be
-	bool made;   // its creation was answered
-	bool wanted; // it was asked for and not destroyed
-	bool moving; // a courier is at it
+	int life;       // how often a session of this name was created
+	int machine;    // where it should be
+	bool made;      // its creation was answered
+	bool wanted;    // it was asked for and not destroyed
+	bool moving;    // a courier is at it
+	bool ephemeral; // it is not on the disk, and goes with its maker
 } sim_session;
 
 extern sim_session sim_sessions[SESSIONS];

@@ -34,6 +34,7 @@ MUTANTS = (
      "\t\treturn allows_enable(logic, drive, order, action);"),
     ("anybody takes over", "drive.c",
      "asked->asker.role == CAU_ROLE_ADMIN)\n\t\treturn true;", "true)\n\t\treturn true;"),
+    ("a tool is removed lit", "logic.c", "\tif (!drive->lit)\n\t\treturn true;\n", "\treturn true;\n"),
     ("a tool changes hands lit", "drive.c", "\tif (drive->lit)\n\t\treturn false;\n", ""),
     ("a tick begins before the core is told", "logic.c",
      "\tif (cau_drive_next_cut(logic, true, action))\n\t\treturn true;\n\tconst cau_waiting *waits =",

@@ -454,9 +454,12 @@ void oracle_note_cut(world *w)
 		return;
 	uint64_t change =
 		oldest(waits(w, CAU_ASK_TAKE_OVER, drive->tool), waits(w, CAU_ASK_HAND_OVER, drive->tool));
+	uint64_t removal = waits(w, CAU_ASK_TOOL_REMOVE, drive->tool);
 	uint64_t *silent = &tool->silent[tool->enabler];
 	if (strcmp(drive->cut_cause, "another driver") == 0 && change)
 		cut(tool, change);
+	else if (strcmp(drive->cut_cause, "it was removed") == 0 && removal)
+		cut(tool, removal);
 	else if (strcmp(drive->cut_cause, "its driver is silent") == 0 && tool->looked > tool->enable)
 		*silent = tool->looked > *silent ? tool->looked : *silent;
 	else if (strcmp(drive->cut_cause, "its limit of ticks is over") == 0 && is_over(w, tool))
@@ -524,6 +527,8 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		oracle_darken(tool, ticket->came); // it is a new one
 		break;
 	case CAU_ASK_TOOL_REMOVE:
+		if (tool->lit)
+			world_wrong(w, "%s is removed, and the core has its energy on", asked->tool);
 		tool->there = tool->lit = false;
 		cut(tool, ticket->came);
 		tool->driver = 0;
