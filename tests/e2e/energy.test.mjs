@@ -47,6 +47,23 @@ test('an enable that its page overtakes by hiding lights nothing', async () => {
 	await client.close();
 });
 
+test('a tool that is removed while its energy is on is turned off first, and its session goes on', async () => {
+	const session = await smallSession(watcher, 'removed');
+	const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });
+	const client = await daemon.connect();
+	await client.call('tool.take_over', hook(session));
+	await energize(client, session);
+	await watcher.until(() => stream.tools[0].energized, 'energy on');
+	await client.call('tool.remove', hook(session));
+	const { tick } = stream;
+	await watcher.until(() => stream.tools.length === 0 && stream.tick > tick + TICKS_LOOKED, 'ticks without the tool');
+	const { summary } = await client.call('session.describe', { session });
+	assert.equal(summary.state, 'running');
+	const { events } = await client.call('session.timeline', { session });
+	assert.deepEqual(events.map(({ kind }) => kind).filter((kind) => /^energy|tool_removed|fault/.test(kind)), ['energy_on', 'energy_off', 'tool_removed']);
+	await client.close();
+});
+
 test('an enable whose connection is lost lights nothing', async () => {
 	const session = await smallSession(watcher, 'lost');
 	const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });
