@@ -18,6 +18,7 @@ from cautery import ConnectionClosed, ConnectionRefused, NoAnswer, RequestError
 import programs
 
 PACKAGE = os.path.dirname(os.path.dirname(cautery.__file__))
+ATTEMPTS = 5  # beside other programs this one may stand still for as long as the daemon waits
 
 
 class Sessions(programs.Case):
@@ -100,6 +101,25 @@ class Sessions(programs.Case):
         while (state := stream.next(state.tick, programs.PATIENCE_S)).tools["hook"].energized:
             pass
         self.assertEqual(state.tools["hook"].energy_off, "watchdog")
+
+    def test_energy_stays_on_with_heartbeats_alone(self):
+        session = self.paused("alive")
+        stream = self.client.join(session)
+        self.client.tool_take_over(session=session, tool="hook")
+        self.client.session_resume(session=session)
+        silence_s = self.client.server["limits"]["heartbeat_s"]
+        for attempt in range(1, ATTEMPTS + 1):
+            with self.client.heartbeats():
+                self.client.tool_energize(session=session, tool="hook", energized=True)
+                lit = time.monotonic()
+                while time.monotonic() < lit + 8 * silence_s:
+                    state = stream.next(stream.wait().tick, programs.PATIENCE_S)
+            if state.tools["hook"].energized:
+                break
+            self.assertLess(attempt, ATTEMPTS, "energy goes off each time, though heartbeats are sent")
+        tick = state.tick
+        while stream.next(tick, programs.PATIENCE_S).tools["hook"].energized:
+            tick += 1
 
     def test_files_go_both_ways(self):
         session = self.paused("files")
