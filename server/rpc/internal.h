@@ -46,6 +46,7 @@ typedef struct cau_peer {
 	cau_sign_of_life sign;
 	char session[CAU_NAME_BYTES]; // of the URL
 	int malformed;
+	bool told_notification; // the log has one that was refused
 	int64_t motions;
 	cau_subscription streams[STREAMS_OF_PEER];
 	int next_stream; // round robin

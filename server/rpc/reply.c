@@ -46,11 +46,26 @@ static void fail_moved(const cau_call *call, const cau_moved_to *to)
 	cau_peer_fault(call->peer, &call->message->id, &fault);
 }
 
+// Nobody is answered, so the log tells who looks for the reason. One line a connection.
+static void tell_notification(const cau_call *call, const cau_error *error)
+{
+	cau_peer *peer = call->peer;
+	if (peer->told_notification)
+		return;
+	peer->told_notification = true;
+	cau_log(CAU_LOG_WARNING, NULL, "notification_refused",
+	        "connection=%llu name=\"%s\" method=%s path=%s reason=\"%s\"",
+	        (unsigned long long)peer->connection->id, peer->client.asker.name,
+	        cau_method_describe(call->message->method)->name, error->path, error->reason);
+}
+
 void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
 {
 	cau_rpc_fault fault;
-	if (call->message->kind == CAU_RPC_NOTIFICATION)
+	if (call->message->kind == CAU_RPC_NOTIFICATION) {
+		tell_notification(call, error);
 		return;
+	}
 	cau_rpc_fault_of_error(&fault, error);
 	if (code) {
 		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)code, error->reason);

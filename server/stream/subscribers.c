@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a subscriber gets next; on the thread of its transport.
+#include <string.h>
+
 #include "stream/internal.h"
 
 #define KEY_PAUSE_S 1.0 // between key frames of one client
@@ -7,6 +9,8 @@
 static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
                               const cau_ring_frame *frame)
 {
+	if (sub->epoch != stream->epoch)
+		memset(sub->sent, 0, sizeof sub->sent); // their numbers mean nothing any more
 	sub->has_key = true;
 	sub->wants_key = false;
 	sub->epoch = stream->epoch;
@@ -85,16 +89,27 @@ bool cau_streams_has_frame(cau_streams *streams, const cau_subscriber *sub)
 	return behind;
 }
 
+static uint64_t oldest_known(const cau_subscriber *sub)
+{
+	uint64_t oldest = UINT64_MAX;
+	for (size_t i = 0; i < SENT_FRAMES; i++)
+		if (sub->sent[i].sequence && sub->sent[i].sequence < oldest)
+			oldest = sub->sent[i].sequence;
+	return oldest;
+}
+
 void cau_streams_acknowledge(cau_subscriber *sub, uint64_t epoch, uint64_t sequence)
 {
 	if (epoch != sub->epoch || sequence > sub->sequence)
 		return;
 	sub->acknowledges = true;
+	if (sequence < oldest_known(sub))
+		return; // it may lack frames whose bytes are not known any more, so all stay counted
 	sub->in_flight = 0;
 	for (size_t i = 0; i < SENT_FRAMES; i++)
 		if (sub->sent[i].sequence <= sequence)
 			sub->sent[i].bytes = 0; // it is there, whatever is acknowledged later
-		else if (sub->sent[i].sequence <= sub->sequence)
+		else
 			sub->in_flight += sub->sent[i].bytes;
 }
 

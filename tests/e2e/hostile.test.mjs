@@ -137,7 +137,7 @@ async function greetWith(params) {
 	return stranger;
 }
 
-test('a notification with an unknown member does nothing', async () => {
+test('a notification with an unknown member does nothing, and the log says so', async () => {
 	const own = await daemon.connect();
 	const watched = await own.join(session);
 	const applied = () => watched.tools[0].sequence;
@@ -147,6 +147,7 @@ test('a notification with an unknown member does nothing', async () => {
 	const { tick } = watched;
 	await own.until(() => watched.tick > tick + 3, 'frames after it');
 	assert.notEqual(Number(applied()), 900);
+	await daemon.log(new RegExp(`notification_refused .*method=tool.move path=params.${STRANGER}`));
 	await own.close();
 });
 

@@ -214,6 +214,29 @@ static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 	scene_finish(&s);
 }
 
+// More frames are on their way than the server knows the bytes of: none is forgotten.
+static void test_an_old_acknowledgement_frees_nothing(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	s.streams.in_flight_most = SIZE_MAX;
+	cau_subscriber sub = join(&s);
+	size_t bytes = 0;
+	for (int i = 0; i < 3 * SENT_FRAMES; i++) {
+		publish(&s);
+		size_t before = sub.in_flight;
+		take(&s, &sub);
+		bytes = sub.in_flight - before;
+	}
+	size_t all = sub.in_flight;
+	cau_streams_acknowledge(&sub, 7, 2);
+	assert_int_equal(sub.in_flight, all);
+	cau_streams_acknowledge(&sub, 7, sub.sequence - 1);
+	assert_int_equal(sub.in_flight, bytes);
+	scene_finish(&s);
+}
+
 static void test_one_that_keeps_falling_goes_to_half_rate(void **unused)
 {
 	(void)unused;
@@ -347,6 +370,7 @@ int main(void)
 		cmocka_unit_test(test_every_frame_in_order),
 		cmocka_unit_test(test_beyond_the_bound_nothing_is_sent_until_it_acknowledges),
 		cmocka_unit_test(test_an_acknowledgement_of_less_takes_nothing_back),
+		cmocka_unit_test(test_an_old_acknowledgement_frees_nothing),
 		cmocka_unit_test(test_one_that_keeps_falling_goes_to_half_rate),
 		cmocka_unit_test(test_others_keep_the_full_rate),
 		cmocka_unit_test(test_a_last_single_frame_is_not_kept_back),
