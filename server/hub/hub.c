@@ -244,6 +244,11 @@ static void note_undrained(void *user, cau_hosted *hosted)
 	*(int32_t *)user += !cau_hosted_drained(hosted);
 }
 
+void cau_hub_stop_time(cau_hub *hub)
+{
+	cau_hub_each(hub, drain_one, NULL);
+}
+
 void cau_hub_drain(cau_hub *hub, double seconds)
 {
 	double until_s = cau_monotonic_s() + seconds;

@@ -190,5 +190,7 @@ int32_t cau_hub_resuming(cau_hub *hub);
 // A store says that it accepts writes again (takes), or why it refuses them. ephemeral: which of
 // the two stores. Call from the store's thread.
 void cau_hub_store_takes(cau_hub *hub, bool ephemeral, bool takes, const char *reason);
+// The daemon ends: energy goes off in all sessions, and no tick begins any more. Waits for nothing.
+void cau_hub_stop_time(cau_hub *hub);
 // Checkpoints all sessions; returns when they are on the disk or the time is over.
 void cau_hub_drain(cau_hub *hub, double seconds);

@@ -16,6 +16,7 @@ typedef struct session_book {
 	bool made, restarted;               // restarted: its state is still to be compared
 	bool full;                          // its store takes nothing
 	int64_t enabled_ns[TOOLS][CLIENTS]; // arrival of an enable that no cut has voided; 0: none
+	bool in_ticks[CLIENTS];             // silence of a client in lock-step is not of the clock
 	int applied[GRAVITIES_MOST];        // place in the order of taking effect; 0: never
 	bool acknowledged[GRAVITIES_MOST];
 	int last_applied;            // places given

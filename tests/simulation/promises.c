@@ -68,7 +68,8 @@ energy promises_energy(int place, int tool, int64_t at_ns)
 	for (int c = 0; c < CLIENTS; c++) {
 		if (!sim_books[place].enabled_ns[tool][c])
 			continue;
-		if (at_ns - sim_clients[c].heard_ns <= DEADLINE_NS + TICK_NS + SLACK_NS)
+		if (sim_books[place].in_ticks[c] ||
+		    at_ns - sim_clients[c].heard_ns <= DEADLINE_NS + TICK_NS + SLACK_NS)
 			return ENERGY_ALLOWED;
 		found = ENERGY_SILENT;
 	}
@@ -95,7 +96,9 @@ void promises_arriving(uint64_t number)
 	if (!r->met)
 		return;
 	session_book *book = &sim_books[r->session];
-	if (r->what == ASK_ON && !book->full)
+	if (r->what == ASK_ADVANCE)
+		book->in_ticks[r->client] = true;
+	if ((r->what == ASK_ON || r->what == ASK_ADVANCE) && !book->full)
 		book->enabled_ns[r->tool][r->client] = r->arriving_ns;
 	if (r->what == ASK_REWIND || r->what == ASK_RESET)
 		books_line_leaves(book);
@@ -241,6 +244,7 @@ void promises_killed(int machine)
 			books_line_arrives(&sim_books[i]);
 			sim_books[i].restarted = true;
 			sim_books[i].full = false;
+			memset(sim_books[i].in_ticks, 0, sizeof sim_books[i].in_ticks);
 		}
 }
 

@@ -63,6 +63,21 @@ static void drive(maker *m)
 	pass(m, 300);
 }
 
+// Somebody has a paused session in lock-step, with energy on.
+static void drive_by_ticks(maker *m)
+{
+	int client = pick(m, CLIENTS), session = pick(m, SESSIONS), tool = pick(m, TOOLS);
+	add(m, STEP_CONNECT, client, pick(m, m->machines), 0);
+	add(m, STEP_SHOW, client, 0, 0);
+	pass(m, 40);
+	add(m, STEP_TAKE, client, session, tool);
+	add(m, STEP_PAUSE, client, session, 0);
+	for (int left = 1 + pick(m, 6); left > 0; left--) {
+		pass(m, 400);
+		add(m, STEP_ADVANCE, client, session, TOOLS * pick(m, 30) + tool);
+	}
+}
+
 static void befall(maker *m)
 {
 	static const struct {
@@ -85,6 +100,7 @@ static void befall(maker *m)
 		{STEP_GRAVITY_LATER, 4, CLIENTS, SESSIONS, 60},
 		{STEP_CANCEL, 1, CLIENTS, SESSIONS, 0},
 		{STEP_STEP, 4, CLIENTS, SESSIONS, 30},
+		{STEP_ADVANCE, 4, CLIENTS, SESSIONS, 60},
 		{STEP_REWIND, 2, CLIENTS, SESSIONS, 100},
 		{STEP_RESET, 1, CLIENTS, SESSIONS, 0},
 		{STEP_SNAPSHOT, 2, CLIENTS, SESSIONS, 3},
@@ -143,6 +159,8 @@ void workload_make(workload *work, uint64_t seed, const sim_profile *profile)
 	while (m.at_ns < profile->length_ns && work->count < STEPS_MOST) {
 		if (pick(&m, 4) == 0)
 			drive(&m);
+		if (pick(&m, 16) == 0)
+			drive_by_ticks(&m);
 		befall(&m);
 		if (m.moves && pick(&m, 12) == 0)
 			add(&m, STEP_MOVE_SESSION, pick(&m, SESSIONS), 0, 0);
@@ -262,6 +280,17 @@ static void change_tools(const work_step *s)
 	            TOOLS - 1, true, params);
 }
 
+static void advance(const work_step *s)
+{
+	char params[256];
+	int tool = s->c % TOOLS;
+	snprintf(params, sizeof params,
+	         "\"ticks\":%d,\"commands\":[{\"method\":\"tool.energize\",\"tool\":\"%s\","
+	         "\"energized\":true}]",
+	         1 + s->c / 2, sim_tools[tool]);
+	clients_ask(s->a, ASK_ADVANCE, "session.advance", s->b, tool, false, params);
+}
+
 static void energize_later(const work_step *s)
 {
 	char more[64];
@@ -349,6 +378,9 @@ static void do_to_session(const work_step *s)
 	case STEP_STEP:
 		snprintf(params, sizeof params, "\"ticks\":%d", 1 + s->c);
 		clients_ask(s->a, ASK_STEP, "session.step", s->b, -1, true, params);
+		break;
+	case STEP_ADVANCE:
+		advance(s);
 		break;
 	case STEP_REWIND:
 		ask_past(s, ASK_REWIND, "session.rewind", true);

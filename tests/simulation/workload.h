@@ -34,17 +34,18 @@ enum { STEPS_MOST = 512 };
 	X(PAUSE, "pause")                 /* client, sim_session */                                    \
 	X(RESUME, "resume")               /* client, sim_session */                                    \
 	X(STEP, "step")                   /* client, session, ticks */                                 \
-	X(REWIND, "rewind")               /* client, session, hundredths of its ticks */               \
-	X(RESET, "reset")                 /* client, sim_session */                                    \
-	X(SNAPSHOT, "snapshot")           /* client, session, name */                                  \
-	X(RESTORE, "restore")             /* client, session, name */                                  \
-	X(PAST, "past")            /* client, session, hundredths of its ticks: it is looked at */     \
-	X(SPEED, "speed")          /* client, session, halves of the clock's, less one */              \
-	X(HOLD, "hold")            /* client, session, tool */                                         \
-	X(REMOVE, "remove")        /* client, session: its last tool */                                \
-	X(ADD, "add")              /* client, session: that tool again */                              \
-	X(AGAIN, "again")          /* client sends its newest change again */                          \
-	X(JOIN, "join")            /* client, sim_session */                                           \
+	X(ADVANCE, "advance")   /* client, session, twice the ticks and a tool of TOOLS: energy on */  \
+	X(REWIND, "rewind")     /* client, session, hundredths of its ticks */                         \
+	X(RESET, "reset")       /* client, sim_session */                                              \
+	X(SNAPSHOT, "snapshot") /* client, session, name */                                            \
+	X(RESTORE, "restore")   /* client, session, name */                                            \
+	X(PAST, "past")         /* client, session, hundredths of its ticks: it is looked at */        \
+	X(SPEED, "speed")       /* client, session, halves of the clock's, less one */                 \
+	X(HOLD, "hold")         /* client, session, tool */                                            \
+	X(REMOVE, "remove")     /* client, session: its last tool */                                   \
+	X(ADD, "add")           /* client, session: that tool again */                                 \
+	X(AGAIN, "again")       /* client sends its newest change again */                             \
+	X(JOIN, "join")         /* client, sim_session */                                              \
 	X(KEY_FRAME, "key_frame")  /* client, sim_session */                                           \
 	X(MOVE_SESSION, "migrate") /* session: to the other machine */                                 \
 	X(KILL, "kill")            /* machine: kill -9 */                                              \

@@ -12,10 +12,11 @@
 #include <cmocka.h>
 
 #include "cautery/defaults.h"
+#include "hosted_session/internal.h"
 #include "log/log.h"
 #include "server/hub/small_creation.h"
 
-enum { CREATED, WAITING, ANSWERS };
+enum { CREATED, WAITING, TAKEN, ON, ANSWERS };
 
 typedef struct answer {
 	int count;
@@ -159,10 +160,48 @@ static void a_session_that_is_held_outlives_the_hubs_stop(void **state)
 	assert_int_equal(t.answers[WAITING].count, 1);
 }
 
+static cau_order *order_about_hook(int asked, cau_order_kind kind, cau_method method)
+{
+	cau_order *order = calloc(1, sizeof *order);
+	order->kind = kind;
+	order->asker = (cau_asker){.client = 1, .role = CAU_ROLE_OPERATE, .deadline_s = 1000};
+	order->reply = reply_to(asked, method);
+	return order;
+}
+
+// What follows in the daemon's end may wait: for DDS, for moves, for a slow disk.
+static void as_time_stops_energy_goes_off_within_the_call(void **state)
+{
+	(void)state;
+	cau_error error = {0};
+	cau_hosted *held = make_session();
+	cau_order *take = order_about_hook(TAKEN, CAU_ORDER_TAKE_OVER, CAU_METHOD_TOOL_TAKE_OVER);
+	snprintf(take->as.tool.tool, sizeof take->as.tool.tool, "hook");
+	assert_int_equal(cau_hosted_submit(held, take, &error), CAU_OK);
+	assert_int_equal(await(TAKEN)->status, CAU_OK);
+	cau_order *on = order_about_hook(ON, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_ENERGIZE);
+	cau_default_command(&on->as.command, CAU_COMMAND_TOOL_ENERGIZE);
+	snprintf(on->as.command.tool, sizeof on->as.command.tool, "hook");
+	on->as.command.as.energized = true;
+	assert_int_equal(cau_hosted_submit(held, on, &error), CAU_OK);
+	assert_int_equal(await(ON)->status, CAU_OK);
+	pthread_mutex_lock(&held->deciding);
+	assert_true(cau_logic_drive(held->logic, "hook")->enabled);
+	pthread_mutex_unlock(&held->deciding);
+	cau_hub_stop_time(t.hub);
+	pthread_mutex_lock(&held->deciding);
+	assert_false(cau_logic_drive(held->logic, "hook")->enabled);
+	assert_true(held->logic->draining);
+	pthread_mutex_unlock(&held->deciding);
+	cau_hosted_release(held);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_session_that_is_held_outlives_the_hubs_stop, open_hub,
+	                                    close_hub),
+		cmocka_unit_test_setup_teardown(as_time_stops_energy_goes_off_within_the_call, open_hub,
 	                                    close_hub),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
