@@ -334,24 +334,62 @@ static void ask_named(const work_step *s, ask what, const char *method)
 	clients_ask(s->a, what, method, s->b, -1, true, params);
 }
 
-static void do_to_session(const work_step *s)
+static void step_session(const work_step *s)
 {
 	char params[64];
+	snprintf(params, sizeof params, "\"ticks\":%d", 1 + s->c);
+	clients_ask(s->a, ASK_STEP, "session.step", s->b, -1, true, params);
+}
+
+static void set_speed(const work_step *s)
+{
+	char params[64];
+	snprintf(params, sizeof params, "\"speed\":%.1f", 0.5 * (1 + s->c));
+	clients_ask(s->a, ASK_OTHER, "session.speed", s->b, -1, true, params);
+}
+
+// Steps that are one request each, whose params are a tool at most.
+static const struct {
+	step_kind kind;
+	ask what;
+	const char *method;
+	bool of_tool, changes;
+	const char *more;
+} plain[] = {
+	{STEP_TAKE, ASK_TAKE, "tool.take_over", true, true, ""},
+	{STEP_ON, ASK_ON, "tool.energize", true, true, ",\"energized\":true"},
+	{STEP_OFF, ASK_OFF, "tool.energize", true, true, ",\"energized\":false"},
+	{STEP_HAND_OVER, ASK_HAND_OVER, "tool.hand_over", true, true, ""},
+	{STEP_HOLD, ASK_OTHER, "tool.hold", true, true, ""},
+	{STEP_PAUSE, ASK_PAUSE, "session.pause", false, true, ""},
+	{STEP_RESUME, ASK_RESUME, "session.resume", false, true, ""},
+	{STEP_RESET, ASK_RESET, "session.reset", false, true, ""},
+	{STEP_CANCEL, ASK_OTHER, "session.cancel", false, false, ""},
+	{STEP_JOIN, ASK_JOIN, "session.join", false, false, ""},
+	{STEP_KEY_FRAME, ASK_KEY_FRAME, "stream.key_frame", false, false, ""},
+};
+
+static bool ask_plainly(const work_step *s)
+{
+	for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) {
+		if (plain[i].kind != s->kind)
+			continue;
+		if (plain[i].of_tool)
+			of_tool(s, plain[i].what, plain[i].method, plain[i].more);
+		else
+			clients_ask(s->a, plain[i].what, plain[i].method, s->b, -1, plain[i].changes, "");
+		return true;
+	}
+	return false;
+}
+
+static void do_to_session(const work_step *s)
+{
+	if (ask_plainly(s))
+		return;
 	switch (s->kind) {
-	case STEP_TAKE:
-		of_tool(s, ASK_TAKE, "tool.take_over", "");
-		break;
-	case STEP_ON:
-		of_tool(s, ASK_ON, "tool.energize", ",\"energized\":true");
-		break;
-	case STEP_OFF:
-		of_tool(s, ASK_OFF, "tool.energize", ",\"energized\":false");
-		break;
 	case STEP_ON_LATER:
 		energize_later(s);
-		break;
-	case STEP_HAND_OVER:
-		of_tool(s, ASK_HAND_OVER, "tool.hand_over", "");
 		break;
 	case STEP_MOVE:
 		move_tool(s);
@@ -362,31 +400,18 @@ static void do_to_session(const work_step *s)
 	case STEP_GRAVITY_LATER:
 		set_gravity(s->a, s->b, 1 + s->c);
 		break;
-	case STEP_CANCEL:
-		clients_ask(s->a, ASK_OTHER, "session.cancel", s->b, -1, false, "");
-		break;
 	case STEP_BURST:
 		for (int i = 0; i < s->c; i++)
 			set_gravity(s->a, s->b, 0);
 		break;
-	case STEP_PAUSE:
-		clients_ask(s->a, ASK_PAUSE, "session.pause", s->b, -1, true, "");
-		break;
-	case STEP_RESUME:
-		clients_ask(s->a, ASK_RESUME, "session.resume", s->b, -1, true, "");
-		break;
 	case STEP_STEP:
-		snprintf(params, sizeof params, "\"ticks\":%d", 1 + s->c);
-		clients_ask(s->a, ASK_STEP, "session.step", s->b, -1, true, params);
+		step_session(s);
 		break;
 	case STEP_ADVANCE:
 		advance(s);
 		break;
 	case STEP_REWIND:
 		ask_past(s, ASK_REWIND, "session.rewind", true);
-		break;
-	case STEP_RESET:
-		clients_ask(s->a, ASK_RESET, "session.reset", s->b, -1, true, "");
 		break;
 	case STEP_SNAPSHOT:
 		ask_named(s, ASK_SNAPSHOT, "session.snapshot");
@@ -398,21 +423,11 @@ static void do_to_session(const work_step *s)
 		ask_past(s, ASK_OTHER, "session.frame_at", false);
 		break;
 	case STEP_SPEED:
-		snprintf(params, sizeof params, "\"speed\":%.1f", 0.5 * (1 + s->c));
-		clients_ask(s->a, ASK_OTHER, "session.speed", s->b, -1, true, params);
+		set_speed(s);
 		break;
 	case STEP_REMOVE:
 	case STEP_ADD:
 		change_tools(s);
-		break;
-	case STEP_HOLD:
-		of_tool(s, ASK_OTHER, "tool.hold", "");
-		break;
-	case STEP_JOIN:
-		clients_ask(s->a, ASK_JOIN, "session.join", s->b, -1, false, "");
-		break;
-	case STEP_KEY_FRAME:
-		clients_ask(s->a, ASK_KEY_FRAME, "stream.key_frame", s->b, -1, false, "");
 		break;
 	default:
 		assert(false);
