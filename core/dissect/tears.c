@@ -95,7 +95,7 @@ cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_aren
 // What an element's law and its layer make of stretch.
 typedef struct bearing {
 	double young_pa, limit_pa;
-	double free[3];          // stretches that the limit lets go, along the material axes
+	double free[3];          // largest stretches below the strain limit, along the material axes
 	double tear_j_m2;        // its share of G_c
 	double coagulated_share; // of tear_j_m2, where it is coagulated
 } bearing;

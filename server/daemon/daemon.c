@@ -460,7 +460,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 	sd_notify(0, "STOPPING=1");
 	daemon->draining = true;
 	if (daemon->hub)
-		cau_hub_stop_time(daemon->hub); // first, since all else may wait
+		cau_hub_stop_time(daemon->hub); // before anything that may wait
 	if (daemon->service)
 		cau_service_drain(daemon->service);
 	cau_dds_stop(daemon->dds);

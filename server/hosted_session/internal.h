@@ -83,8 +83,8 @@ struct cau_hosted {
 	cau_hosted_origin origin;
 	cau_asker creator;
 	int64_t creator_sequence;
-	cau_reply creator_reply;   // cau_hosted_take_creator gives it to who answers
-	atomic_bool creator_waits; // for an answer to it
+	cau_reply creator_reply;   // read by cau_hosted_take_creator
+	atomic_bool creator_waits; // creator_reply is to be answered
 	cau_session *core;
 	cau_session_info info;
 	bool pause_at_start;
@@ -173,9 +173,11 @@ struct cau_hosted {
 void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order);
 // It could not be brought up or kept: nothing is taken any more. From any thread.
 void cau_hosted_end(cau_hosted *h);
-// The reply to who made the session. False if somebody has taken it before. Any thread.
+// Hands out the reply to the session's creator, once: the caller answers it. False after the first
+// call. Any thread.
 bool cau_hosted_take_creator(cau_hosted *h, cau_reply *reply);
-// Fails that reply, if nobody has taken it.
+// Answers the session's creator with an error. Does nothing if the reply was taken before. Any
+// thread.
 void cau_hosted_fail_creator(cau_hosted *h, const cau_error *error, int32_t code);
 
 // ---- run.c

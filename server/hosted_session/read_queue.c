@@ -33,6 +33,8 @@ static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
 	int64_t most = h->around->config->queue_reads, its_own = 0;
 	if (h->ended)
 		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
+	if (h->drain_wanted) // its last slice serves what waits by now
+		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending");
 	cau_order **end = &h->reads;
 	for (; *end; end = &(*end)->next)
 		its_own += (*end)->asker.client == order->asker.client;

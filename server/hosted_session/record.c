@@ -263,8 +263,8 @@ static void answer_all(cau_pending *list, cau_status status, const char *reason)
 	}
 }
 
-// Its first rows are lost, and with them the session. While its past is replayed no answer is
-// pending.
+// The store has not taken the session's first rows, so there is no session. While its past is
+// replayed, the answer to its creator is not among the pending ones.
 static void end_making(cau_hosted *h, cau_status status, const char *reason)
 {
 	cau_error error = {.status = status};

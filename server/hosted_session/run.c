@@ -249,8 +249,11 @@ static void checkpoint_if_due(cau_hosted *h, double now_s)
 static void drain(cau_hosted *h)
 {
 	cau_event_end_cut(h);
-	if (h->core && !h->starting && h->tick != h->checkpoint_tick)
-		cau_record_checkpoint(h, NULL, NULL);
+	if (h->core && !h->starting) {
+		cau_reads_serve(h, cau_reads_note(h));
+		if (h->tick != h->checkpoint_tick)
+			cau_record_checkpoint(h, NULL, NULL);
+	}
 	cau_record_commit(h);
 	if (h->commits == 0)
 		h->drained = true;

@@ -271,7 +271,8 @@ static void go_on_from_events(cau_hosted *h)
 	cau_events_load(h);
 }
 
-// Behind the last entry of this tick, whose number counts what the store could not take, too.
+// The next log entry follows the last one of this tick. The numbers of a tick have gaps where the
+// store was full, so the count of its entries is not the next number.
 static void go_on_logging(cau_hosted *h)
 {
 	h->logged_order = 0;

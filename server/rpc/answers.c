@@ -20,7 +20,7 @@ void cau_answers_count(cau_service *service, cau_method method, int32_t code)
 	atomic_fetch_add_explicit(&service->answers[method][column], 1, memory_order_relaxed);
 }
 
-static const char *name_of(int method)
+const char *cau_answers_method_name(int method)
 {
 	return method == CAU_METHOD_COUNT ? "none" : cau_method_describe((cau_method)method)->name;
 }
@@ -32,7 +32,7 @@ void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out)
 	cau_metrics_begin(out, format, &family);
 	for (int m = 0; m < CAU_METHOD_COUNT; m++)
 		if (cau_method_describe((cau_method)m)->form != CAU_FORM_PUSH)
-			cau_metrics_sample(out, format, &family, "method", name_of(m),
+			cau_metrics_sample(out, format, &family, "method", cau_answers_method_name(m),
 			                   (double)service->calls[m]);
 }
 
@@ -55,7 +55,8 @@ void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *ou
 	for (int m = 0; m <= CAU_METHOD_COUNT; m++)
 		for (int c = 0; c < CAU_ANSWER_COLUMNS; c++) {
 			uint64_t count = service->answers[m][c];
-			cau_metric_label labels[] = {{"method", name_of(m)}, {"code", columns[c].word}};
+			cau_metric_label labels[] = {{"method", cau_answers_method_name(m)},
+			                             {"code", columns[c].word}};
 			if (is_told(m, c, count))
 				cau_metrics_sample_labelled(out, format, &family, labels, 2, (double)count);
 		}

@@ -46,7 +46,7 @@ typedef struct cau_peer {
 	cau_sign_of_life sign;
 	char session[CAU_NAME_BYTES]; // of the URL
 	int malformed;
-	bool told_notification; // the log has one that was refused
+	bool refusal_logged; // of a notification
 	int64_t motions;
 	cau_subscription streams[STREAMS_OF_PEER];
 	int next_stream; // round robin
@@ -112,6 +112,10 @@ cau_buffer *cau_result_text(const cau_rpc_id *id, cau_method method, const void 
 // Answers with a text that is made; takes it. NULL: memory ran out, and nothing is sent.
 void cau_call_answer(const cau_call *call, cau_buffer *text);
 cau_reply cau_call_reply(const cau_call *call); // for answers that come later
+// Answers a message with a fault, and counts that. A notification goes to the log instead.
+// method: CAU_METHOD_COUNT where the message has none that is known.
+void cau_peer_refuse(cau_peer *peer, const cau_rpc_message *message, cau_method method,
+                     const cau_rpc_fault *fault);
 void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *fault);
 // Counts a message that was none; MALFORMED_MOST of them close the connection.
 void cau_peer_malformed(cau_peer *peer);
@@ -189,6 +193,7 @@ void cau_service_page(void *user, cau_page *page);
 // ---- answers.c
 // `method` CAU_METHOD_COUNT: of none. `code` 0: a result.
 void cau_answers_count(cau_service *service, cau_method method, int32_t code);
+const char *cau_answers_method_name(int method); // "none" for CAU_METHOD_COUNT
 void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *out);
 void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out);
 

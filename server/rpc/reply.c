@@ -31,48 +31,51 @@ void cau_peer_malformed(cau_peer *peer)
 		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
 }
 
+// A notification is never answered, so the log has the reason: one line a connection, after its
+// hello.
+static void log_refused(cau_peer *peer, cau_method method, const cau_rpc_fault *fault)
+{
+	if (!peer->greeted || peer->refusal_logged)
+		return;
+	peer->refusal_logged = true;
+	cau_log(CAU_LOG_WARNING, NULL, "notification_refused",
+	        "connection=%llu name=\"%s\" method=%s path=%s reason=\"%s\"",
+	        (unsigned long long)peer->connection->id, peer->client.asker.name,
+	        cau_answers_method_name(method), fault->path, fault->reason);
+}
+
+void cau_peer_refuse(cau_peer *peer, const cau_rpc_message *message, cau_method method,
+                     const cau_rpc_fault *fault)
+{
+	if (message->kind == CAU_RPC_NOTIFICATION) {
+		log_refused(peer, method, fault);
+		return;
+	}
+	cau_answers_count(peer->service, method, fault->code);
+	cau_peer_fault(peer, &message->id, fault);
+}
+
 static void fail_moved(const cau_call *call, const cau_moved_to *to)
 {
 	cau_rpc_fault fault;
 	char reason[2 * CAU_NAME_BYTES];
-	if (call->message->kind == CAU_RPC_NOTIFICATION)
-		return;
 	snprintf(reason, sizeof reason, "the session is now `%s`", to->session);
 	cau_rpc_fault_of_code(&fault, CAU_RPC_MOVED, reason);
 	snprintf(fault.path, sizeof fault.path, "params.session");
 	memcpy(fault.moved_to, to->session, sizeof fault.moved_to);
 	memcpy(fault.url, to->url, sizeof fault.url);
-	cau_answers_count(call->peer->service, call->message->method, fault.code);
-	cau_peer_fault(call->peer, &call->message->id, &fault);
-}
-
-// Nobody is answered, so the log tells who looks for the reason. One line a connection.
-static void tell_notification(const cau_call *call, const cau_error *error)
-{
-	cau_peer *peer = call->peer;
-	if (peer->told_notification)
-		return;
-	peer->told_notification = true;
-	cau_log(CAU_LOG_WARNING, NULL, "notification_refused",
-	        "connection=%llu name=\"%s\" method=%s path=%s reason=\"%s\"",
-	        (unsigned long long)peer->connection->id, peer->client.asker.name,
-	        cau_method_describe(call->message->method)->name, error->path, error->reason);
+	cau_peer_refuse(call->peer, call->message, call->message->method, &fault);
 }
 
 void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
 {
 	cau_rpc_fault fault;
-	if (call->message->kind == CAU_RPC_NOTIFICATION) {
-		tell_notification(call, error);
-		return;
-	}
 	cau_rpc_fault_of_error(&fault, error);
 	if (code) {
 		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)code, error->reason);
 		snprintf(fault.path, sizeof fault.path, "%s", error->path);
 	}
-	cau_answers_count(call->peer->service, call->message->method, fault.code);
-	cau_peer_fault(call->peer, &call->message->id, &fault);
+	cau_peer_refuse(call->peer, call->message, call->message->method, &fault);
 }
 
 cau_buffer *cau_result_text(const cau_rpc_id *id, cau_method method, const void *result,

@@ -102,10 +102,7 @@ static void refuse_message(cau_peer *peer, const cau_rpc_message *message,
 {
 	if (!peer->greeted && fault->code == CAU_RPC_METHOD_NOT_FOUND)
 		fault = &hello_comes_first;
-	if (message->kind != CAU_RPC_NOTIFICATION) {
-		cau_answers_count(peer->service, CAU_METHOD_COUNT, fault->code);
-		cau_peer_fault(peer, &message->id, fault);
-	}
+	cau_peer_refuse(peer, message, CAU_METHOD_COUNT, fault);
 	if (fault->code == CAU_RPC_PARSE || fault->code == CAU_RPC_INVALID_REQUEST)
 		cau_peer_malformed(peer);
 }

@@ -10,7 +10,7 @@ static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
                               const cau_ring_frame *frame)
 {
 	if (sub->epoch != stream->epoch)
-		memset(sub->sent, 0, sizeof sub->sent); // their numbers mean nothing any more
+		memset(sub->sent, 0, sizeof sub->sent); // each epoch numbers its frames anew
 	sub->has_key = true;
 	sub->wants_key = false;
 	sub->epoch = stream->epoch;
@@ -89,6 +89,7 @@ bool cau_streams_has_frame(cau_streams *streams, const cau_subscriber *sub)
 	return behind;
 }
 
+// The oldest of the last SENT_FRAMES frames, whose bytes are known.
 static uint64_t oldest_known(const cau_subscriber *sub)
 {
 	uint64_t oldest = UINT64_MAX;
@@ -104,11 +105,11 @@ void cau_streams_acknowledge(cau_subscriber *sub, uint64_t epoch, uint64_t seque
 		return;
 	sub->acknowledges = true;
 	if (sequence < oldest_known(sub))
-		return; // it may lack frames whose bytes are not known any more, so all stay counted
+		return; // frames between the two may be on their way, and their bytes are forgotten
 	sub->in_flight = 0;
 	for (size_t i = 0; i < SENT_FRAMES; i++)
 		if (sub->sent[i].sequence <= sequence)
-			sub->sent[i].bytes = 0; // it is there, whatever is acknowledged later
+			sub->sent[i].bytes = 0; // the client has this frame, whatever it acknowledges later
 		else
 			sub->in_flight += sub->sent[i].bytes;
 }

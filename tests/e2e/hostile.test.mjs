@@ -147,8 +147,27 @@ test('a notification with an unknown member does nothing, and the log says so', 
 	const { tick } = watched;
 	await own.until(() => watched.tick > tick + 3, 'frames after it');
 	assert.notEqual(Number(applied()), 900);
+	const refused = (line) => line.includes('event=notification_refused') && line.includes(`path=params.${STRANGER}`);
 	await daemon.log(new RegExp(`notification_refused .*method=tool.move path=params.${STRANGER}`));
+	own.notify('tool.move', { ...move, [STRANGER]: 1 });
+	await own.call('session.list');
+	assert.equal(daemon.lines.filter(refused).length, 1, 'one line a connection');
 	await own.close();
+});
+
+test('who has said no hello writes nothing to the log by notifications', async () => {
+	const stranger = new Client(daemon.url());
+	await stranger.opened;
+	const lines = () => daemon.lines.filter((line) => line.includes('event=notification_refused')).length;
+	const before = lines();
+	stranger.send({ jsonrpc: '2.0', method: 'heartbeat', params: {} });
+	stranger.send({ jsonrpc: '2.0', method: 'unheard.of', params: {} });
+	stranger.send({ jsonrpc: '2.0', id: 'h', method: 'hello', params: { version: 1, client: 'x' } });
+	await stranger.until(() => stranger.stray, 'an answer to hello');
+	assert.equal(lines(), before);
+	stranger.send({ jsonrpc: '2.0', method: 'unheard.of', params: {} });
+	await daemon.log(/notification_refused .*name="x" method=none/);
+	stranger.terminate();
 });
 
 test('a notification gets no answer, whatever the method', async () => {

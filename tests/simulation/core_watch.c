@@ -82,7 +82,7 @@ static void on_made(const cau_session_def *def, const cau_session *core)
 	if (book->place < 0)
 		return;
 	book->life = sim_sessions[book->place].life;
-	sim_books[book->place].full = false; // what a full store did not take is made anew
+	sim_books[book->place].full = false; // a new session begins with a store that takes it
 }
 
 // Its name was not given anew.

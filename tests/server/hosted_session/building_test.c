@@ -252,6 +252,21 @@ static void as_the_daemon_ends_it_ends(void **state)
 	assert_int_equal(hosted_stored_sessions(), 0);
 }
 
+static void as_the_daemon_ends_nothing_waits_to_be_read(void **state)
+{
+	(void)state;
+	cau_error error = {0};
+	hosted_begin(NOWHERE, 0);
+	assert_int_equal(hosted_await(0)->status, CAU_OK);
+	hosted_submit(hosted_new_order(1, CAU_ORDER_DESCRIBE, CAU_METHOD_SESSION_DESCRIBE));
+	cau_hosted_drain(t.h);
+	assert_int_equal(hosted_await(1)->status, CAU_OK);
+	cau_order *late = hosted_new_order(2, CAU_ORDER_DESCRIBE, CAU_METHOD_SESSION_DESCRIBE);
+	assert_int_equal(cau_hosted_submit(t.h, late, &error), CAU_BAD_STATE);
+	assert_string_equal(error.reason, "the daemon is ending");
+	free(late);
+}
+
 // The builder has stopped before it came to the job: nothing of it is left undone.
 static void begun_after_the_builder_stopped_it_is_refused(void **state)
 {
@@ -381,6 +396,7 @@ int main(void)
 		TEST(after_a_restart_it_logs_behind_the_last),
 		TEST(whose_creator_is_gone_for_good_it_ends),
 		TEST(as_the_daemon_ends_it_ends),
+		TEST(as_the_daemon_ends_nothing_waits_to_be_read),
 		TEST(begun_after_the_builder_stopped_it_is_refused),
 		TEST(beyond_a_limit_it_is_refused_by_the_settings_name),
 		TEST(a_large_mesh_is_a_long_job_whatever_it_comes_from),

@@ -193,7 +193,8 @@ static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **u
 	scene_finish(&s);
 }
 
-// A client that begins anew knows no frame. What it took before is not on its way for that.
+// A client whose decoder begins anew acknowledges frame 0. The frames that it has taken are not in
+// flight again.
 static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 {
 	(void)unused;
@@ -214,7 +215,7 @@ static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 	scene_finish(&s);
 }
 
-// More frames are on their way than the server knows the bytes of: none is forgotten.
+// More than SENT_FRAMES frames are in flight. All of their bytes stay counted.
 static void test_an_old_acknowledgement_frees_nothing(void **unused)
 {
 	(void)unused;

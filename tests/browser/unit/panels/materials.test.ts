@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `material.set` replaces a material, and refuses what is not of one: the form has each member and no other.
+// `material.set` replaces a material and refuses other members. So the form has an input for each member of the request, and
+// no further ones.
 import { readFileSync } from 'node:fs';
 
 import { limitMembers } from '../../../../clients/web/src/panels/limits';
