@@ -20,9 +20,9 @@ void cau_answers_count(cau_service *service, cau_method method, int32_t code)
 	atomic_fetch_add_explicit(&service->answers[method][column], 1, memory_order_relaxed);
 }
 
-const char *cau_answers_method_name(int method)
+const char *cau_answers_method_name(cau_method method)
 {
-	return method == CAU_METHOD_COUNT ? "none" : cau_method_describe((cau_method)method)->name;
+	return method == CAU_METHOD_COUNT ? "none" : cau_method_describe(method)->name;
 }
 
 void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out)
@@ -32,8 +32,8 @@ void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out)
 	cau_metrics_begin(out, format, &family);
 	for (int m = 0; m < CAU_METHOD_COUNT; m++)
 		if (cau_method_describe((cau_method)m)->form != CAU_FORM_PUSH)
-			cau_metrics_sample(out, format, &family, "method", cau_answers_method_name(m),
-			                   (double)service->calls[m]);
+			cau_metrics_sample(out, format, &family, "method",
+			                   cau_answers_method_name((cau_method)m), (double)service->calls[m]);
 }
 
 // A series begins with 0 for the result of each method that clients may call, so that the first
@@ -55,7 +55,7 @@ void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *ou
 	for (int m = 0; m <= CAU_METHOD_COUNT; m++)
 		for (int c = 0; c < CAU_ANSWER_COLUMNS; c++) {
 			uint64_t count = service->answers[m][c];
-			cau_metric_label labels[] = {{"method", cau_answers_method_name(m)},
+			cau_metric_label labels[] = {{"method", cau_answers_method_name((cau_method)m)},
 			                             {"code", columns[c].word}};
 			if (is_told(m, c, count))
 				cau_metrics_sample_labelled(out, format, &family, labels, 2, (double)count);

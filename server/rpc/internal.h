@@ -193,7 +193,7 @@ void cau_service_page(void *user, cau_page *page);
 // ---- answers.c
 // `method` CAU_METHOD_COUNT: of none. `code` 0: a result.
 void cau_answers_count(cau_service *service, cau_method method, int32_t code);
-const char *cau_answers_method_name(int method); // "none" for CAU_METHOD_COUNT
+const char *cau_answers_method_name(cau_method method); // "none" for CAU_METHOD_COUNT
 void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *out);
 void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out);
 
