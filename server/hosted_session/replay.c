@@ -95,8 +95,9 @@ static void submit_due(cau_replay *replay, cau_session *core)
 {
 	for (; replay->at < replay->count && replay->commands[replay->at].tick <= replay->tick;
 	     replay->at++)
-		if (replay->commands[replay->at].acts)
-			cau_session_submit(core, &replay->commands[replay->at].command, NULL);
+		if (replay->commands[replay->at].acts &&
+		    cau_session_submit(core, &replay->commands[replay->at].command, NULL))
+			replay->exact = false; // it was taken when it was logged
 }
 
 cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,
