@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +17,8 @@
 // Ends 0 after a drain, 1 if the daemon could not start, 2 for bad settings.
 enum { EXIT_STARTED = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
+enum { FILES = 8192 }; // as deploy/systemd/common.conf
+
 static void block_signals(sigset_t *signals)
 {
 	sigemptyset(signals);
@@ -27,6 +30,17 @@ static void block_signals(sigset_t *signals)
 	pthread_sigmask(SIG_BLOCK, signals, NULL); // every thread made later inherits it
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is the store's to answer
+}
+
+// Connections without hello alone may be thousands (transport_ws/strangers.c), and a shell gives
+// its programs 1,024 descriptors. Whoever wants fewer sets the hard limit.
+static void raise_file_limit(void)
+{
+	struct rlimit files;
+	if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= FILES)
+		return;
+	files.rlim_cur = files.rlim_max < FILES ? files.rlim_max : FILES;
+	setrlimit(RLIMIT_NOFILE, &files);
 }
 
 static int fail(const char *event, const cau_error *error)
@@ -83,6 +97,7 @@ static int run(cau_config *config, bool json, call *called)
 	cau_error error = {0};
 	cau_daemon *daemon;
 	block_signals(&signals);
+	raise_file_limit();
 	if (cau_daemon_start(&daemon, config, &error))
 		return fail("start_failed", &error);
 	if (json)

@@ -4,6 +4,7 @@
 // that, and what the peer still sends is read and dropped until it shuts its
 // own. A peer that does not do so within CLOSE_WITHIN_S, or is one of more than
 // LINGERING_MOST, is reset: no socket of a closed connection stays.
+#include <math.h>
 #include <netinet/in.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -15,7 +16,8 @@
 enum {
 	CLOSE_WITHIN_S = 2, // a round trip around the world and a busy peer
 	LINGERING_MOST = 64,
-	MUTED_S = 1, // between two guesses of a token
+	UNPLACED_S = 1, // for a client that comes back, see cau_connection_has_place
+	MUTED_S = 1,    // between two guesses of a token
 	UNHEARD_PINGS = 3,
 	CLOSE_FRAME = 0x88,
 	CODE_BYTES = 2,
@@ -137,10 +139,6 @@ void cau_connection_timer(cau_connection *c)
 	} else if (c->closing) {
 		cau_connection_leave(c);
 		lws_set_timer_usecs(c->wsi, (c->muted ? MUTED_S : CLOSE_WITHIN_S) * LWS_US_PER_SEC);
-	} else if (!c->served && c->unplaced) {
-		cau_connection_close(c, CAU_CLOSE_FULL, CAU_NO_PLACE);
-	} else if (!c->served) {
-		cau_connection_close(c, CAU_CLOSE_NO_HELLO, NULL);
 	}
 }
 
@@ -185,8 +183,20 @@ void cau_connection_dropped(cau_connection *c)
 	cau_connection_put(c, frame, bytes);
 }
 
+// Not by a timer for each: libwebsockets looks for a timer's place from the first one on.
+static void watch_hello(cau_connection *c, double now_s)
+{
+	double within_s = c->network->def.config->hello_timeout_s, age_s = now_s - c->opened_s;
+	if (c->unplaced && age_s > fmin(within_s, UNPLACED_S))
+		cau_connection_close(c, CAU_CLOSE_FULL, CAU_NO_PLACE);
+	else if (age_s > within_s)
+		cau_connection_close(c, CAU_CLOSE_NO_HELLO, NULL);
+}
+
 void cau_connection_watch(cau_connection *c, double now_s)
 {
+	if (!c->served)
+		watch_hello(c, now_s);
 	if (c->waits && !cau_turns_blocked(c)) // what it has sent waits for its turn
 		c->heard_s = now_s;
 	if (now_s - c->heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)

@@ -3,7 +3,6 @@
 // queues what is written, reading.c reads, closing.c ends.
 #include "transport_ws/connection.h"
 
-#include <math.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdlib.h>
@@ -61,8 +60,6 @@ static int opened(cau_network *network, struct lws *wsi, cau_connection **slot)
 	network->counts.accepted++;
 	const char *asked = lws_get_urlarg_by_name(wsi, "session=", session, sizeof session);
 	c->unplaced = !cau_connection_has_place(c, false);
-	double hello_s = network->def.config->hello_timeout_s;
-	lws_set_timer_usecs(wsi, (lws_usec_t)((c->unplaced ? fmin(hello_s, 1) : hello_s) * 1e6));
 	if (!cau_input_begin(c) ||
 	    !network->def.handler.opened(network->def.handler.user, c, asked ? asked : ""))
 		return -1;

@@ -109,6 +109,8 @@ void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES]);
 // too many of this one's owner or of all.
 void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest);
 void cau_strangers_bound_silent(cau_network *network, const cau_connection *newest);
+// Something else than hello has come of a connection: closes it where there are too many.
+void cau_strangers_bound_talk(cau_connection *connection);
 
 // ---- outsiders.c
 // A connection of `owner` ended without hello.
@@ -172,7 +174,7 @@ void cau_connection_timer(cau_connection *connection);
 int cau_connection_write_close(cau_connection *connection);
 // libwebsockets is about to end the connection.
 void cau_connection_dropped(cau_connection *connection);
-// Closes one that has not been heard of for long.
+// Closes one that has not been heard of for long, or has said no hello in time.
 void cau_connection_watch(cau_connection *connection, double now_s);
 
 // Serves a plain HTTP request.

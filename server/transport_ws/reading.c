@@ -75,6 +75,8 @@ static size_t take(cau_connection *c, const unsigned char *bytes, size_t count, 
 			cau_connection_close(c, CAU_CLOSE_RATE, NULL);
 		else
 			handle(c, event);
+		if (counts && event != CAU_FRAME_FRAGMENT && !c->served)
+			cau_strangers_bound_talk(c);
 		in_time =
 			event == CAU_FRAME_MORE || (cau_thread_cpu_s() < until_s && !cau_turns_blocked(c));
 	}

@@ -2,7 +2,9 @@
 // Connections that have not said hello. Opening one needs no token, so they must not use up
 // max_connections. They have a limit of their own, and a lower one for each address. Those whose
 // request has not come yet are counted apart from WebSocket connections. Beyond a limit the oldest
-// is closed, because a client that means to say hello does so at once.
+// is closed, because a client that means to say hello does so at once. A message may be long on its
+// way, and strangers that are closed come back thousands of times in a second, so a connection that
+// is younger than GRACE_S is closed only beyond GRACE_FACTOR times as many.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <stdio.h>
@@ -16,12 +18,13 @@ enum {
 	STRANGERS_MOST = 256,
 	UNREAD_MOST = 512, // of two addresses whose requests are late
 	OF_ADDRESS_MOST = 128,
+	GRACE_FACTOR = 8,  // 4,000 come back in a second: 512 of them in an eighth of it
 	NETWORK_BYTES = 8, // of an IPv6 address: its owner chooses the rest
 	RESUMES_MOST = 16, // beyond max_connections, for clients that come back to their tools
 };
 
 #define READ_WITHIN_S 0.02 // the thread reads bytes within this time of their arrival
-#define REQUEST_S 1.0      // from connecting to a request, on a busy machine
+#define GRACE_S 1.0        // for the request and for hello, from far away or of a busy machine
 
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
 {
@@ -70,19 +73,21 @@ static cau_unread *find_oldest(const cau_network *network, const char *owner, do
 	return oldest;
 }
 
-// The oldest of which nothing has come; NULL if there are at most `most` of these, or at most twice
-// as many while that one is younger than `young_s`. Only the one that would be closed is asked:
-// many connect at once, and this is called for each of them.
-static cau_unread *find_unread(cau_network *network, const char *owner, int most, double young_s)
+// How many there may be while the oldest is so old.
+static int bound(int most, double age_s)
+{
+	return age_s < GRACE_S ? GRACE_FACTOR * most : most;
+}
+
+// The oldest of which nothing has come; NULL if there are not too many of these. Only the one that
+// would be closed is asked: many connect at once, and this is called for each of them.
+static cau_unread *find_unread(cau_network *network, const char *owner, int most)
 {
 	int count;
 	double now_s = cau_monotonic_s();
 	for (;;) {
 		cau_unread *oldest = find_oldest(network, owner, now_s, &count);
-		if (!oldest)
-			return NULL;
-		bool young = now_s - oldest->since_s < young_s;
-		if (count <= (young ? 2 * most : most))
+		if (!oldest || count <= bound(most, now_s - oldest->since_s))
 			return NULL;
 		if (!has_input((int)(oldest - network->unread)))
 			return oldest;
@@ -94,10 +99,9 @@ static cau_unread *find_unread(cau_network *network, const char *owner, int most
 void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 {
 	bool is_proxy = cau_list_has(network->def.config->trusted_proxies, newest->address);
-	cau_unread *oldest =
-		is_proxy ? NULL : find_unread(network, newest->owner, OF_ADDRESS_MOST, REQUEST_S);
+	cau_unread *oldest = is_proxy ? NULL : find_unread(network, newest->owner, OF_ADDRESS_MOST);
 	if (!oldest)
-		oldest = find_unread(network, NULL, UNREAD_MOST, 0);
+		oldest = find_unread(network, NULL, UNREAD_MOST);
 	if (!oldest)
 		return;
 	network->counts.strangers_closed++;
@@ -112,44 +116,52 @@ static bool is_silent(const cau_connection *c, const char *owner)
 	return !c->served && !c->closing && (!owner || strcmp(c->owner, owner) == 0);
 }
 
-// A client says hello first. Whoever said something else, or says nothing, may be closed.
-static bool says_no_hello(const cau_connection *c)
+// New ones come first in the list.
+static cau_connection *find_silent(const cau_network *network, const char *owner, int *count)
 {
-	return cau_connection_has_spoken(c) || (!c->waits && !has_input(c->descriptor));
+	cau_connection *oldest = NULL;
+	*count = 0;
+	for (cau_connection *c = network->connections; c; c = c->next)
+		if (is_silent(c, owner)) {
+			oldest = c;
+			++*count;
+		}
+	return oldest;
 }
 
-// The oldest that says no hello; NULL if none is to be closed. New ones come first in the list. The
-// newest `most` are never closed: their hello may be on its way. Beyond twice as many the oldest is
-// closed although something of it waits to be read.
-static cau_connection *find_silent(const cau_network *network, const char *owner, int most)
+static void close_silent(cau_connection *c)
 {
-	cau_connection *last = NULL, *oldest = NULL;
-	int count = 0;
-	for (cau_connection *c = network->connections; c; c = c->next) {
-		count += is_silent(c, owner);
-		last = c;
-	}
-	bool too_many = count > 2 * most;
-	for (cau_connection *c = last; c && count > most; c = c->previous) {
-		if (!is_silent(c, owner))
-			continue;
-		count--;
-		oldest = oldest ? oldest : c;
-		if (says_no_hello(c))
-			return c;
-	}
-	return too_many ? oldest : NULL;
+	c->network->counts.strangers_closed++;
+	cau_connection_close(c, CAU_CLOSE_FULL, "too many connections without hello");
+}
+
+// Only the oldest is asked whether something of it waits to be read, which may be its hello: this
+// is called for each that opens, and strangers open many.
+static bool bound_silent(const cau_network *network, const char *owner, int most)
+{
+	int count;
+	cau_connection *oldest = find_silent(network, owner, &count);
+	if (!oldest || count <= bound(most, cau_monotonic_s() - oldest->opened_s))
+		return false;
+	if (count <= bound(most, 0) && (oldest->waits || has_input(oldest->descriptor)))
+		return false;
+	close_silent(oldest);
+	return true;
 }
 
 void cau_strangers_bound_silent(cau_network *network, const cau_connection *newest)
 {
-	cau_connection *oldest = find_silent(network, newest->owner, OF_ADDRESS_MOST);
-	if (!oldest)
-		oldest = find_silent(network, NULL, STRANGERS_MOST);
-	if (!oldest)
-		return;
-	network->counts.strangers_closed++;
-	cau_connection_close(oldest, CAU_CLOSE_FULL, "too many connections without hello");
+	if (!bound_silent(network, newest->owner, OF_ADDRESS_MOST))
+		bound_silent(network, NULL, STRANGERS_MOST);
+}
+
+void cau_strangers_bound_talk(cau_connection *c)
+{
+	int of_owner, all;
+	find_silent(c->network, c->owner, &of_owner);
+	find_silent(c->network, NULL, &all);
+	if (of_owner > OF_ADDRESS_MOST || all > STRANGERS_MOST)
+		close_silent(c);
 }
 
 // ---- places

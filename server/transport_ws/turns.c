@@ -16,13 +16,15 @@ enum { EVENTS_AT_ONCE = 64 };
 #define ROUND_S 4e-3 // then libwebsockets writes and looks for new input
 #define REST_S 5e-3  // the least wait: for less than a millisecond libwebsockets does not sleep
 
-// One that is closing is read to its end, which costs next to nothing and is over soon.
+// One that is closing is read to its end, which costs next to nothing and is over soon. A first
+// turn costs less than the handshake before it, and brings hello: it does not wait for what others
+// of its address have used up.
 static double wait_s(cau_connection *c, double now_s)
 {
 	double seconds = cau_share_wait_s(&c->share, now_s);
 	if (cau_turns_blocked(c))
 		return INFINITY;
-	return c->closing ? 0 : seconds;
+	return c->closing || !cau_connection_has_spoken(c) ? 0 : seconds;
 }
 
 static cau_connection *find_next(const cau_network *network, double now_s)

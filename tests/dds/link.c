@@ -2,16 +2,21 @@
 #include "link.h"
 
 #include <stdio.h>
-#include <stdlib.h>
+#include <unistd.h>
 
 enum { TAKEN_MOST = 32 };
 
+void give_up(const char *reason)
+{
+	fprintf(stderr, "%s\n", reason);
+	fflush(NULL);
+	_exit(1);
+}
+
 dds_entity_t checked(dds_entity_t entity)
 {
-	if (entity < 0) {
-		fprintf(stderr, "%s\n", dds_strretcode(entity));
-		exit(1);
-	}
+	if (entity < 0)
+		give_up(dds_strretcode(entity));
 	return entity;
 }
 

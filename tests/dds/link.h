@@ -6,7 +6,10 @@
 
 enum { NAME_BYTES = 49 };
 
-// The entity, or the program's end with the reason on standard error.
+// Ends the program with the reason on standard error. It does not run the handlers of exit(): those
+// of OpenSSL would take from Cyclone's threads what they still use.
+__attribute__((noreturn)) void give_up(const char *reason);
+// The entity, or the end of the program.
 dds_entity_t checked(dds_entity_t entity);
 // A subscriber or publisher of one partition.
 dds_entity_t subscriber_of(dds_entity_t participant, const char *partition);

@@ -71,10 +71,8 @@ static void follow_stream(observer *o, const cautery_Frame *frame)
 	o->decoder = NULL;
 	o->storage = malloc(cau_frame_decoder_bytes(&def));
 	if (!o->storage || cau_frame_decoder_init(o->storage, cau_frame_decoder_bytes(&def), &def,
-	                                          &o->decoder, &error)) {
-		fprintf(stderr, "observer: no decoder: %s\n", error.reason);
-		exit(1);
-	}
+	                                          &o->decoder, &error))
+		give_up(error.reason);
 }
 
 static void decode(observer *o, const void *bytes, size_t byte_count)

@@ -83,10 +83,8 @@ static void open_writer(requester *r, const char *session)
 	checked(dds_set_status_mask(r->command, DDS_PUBLICATION_MATCHED_STATUS));
 	checked(dds_waitset_attach(match, r->command, 0));
 	while (matched.current_count == 0) {
-		if (checked(dds_waitset_wait(match, NULL, 0, DDS_SECS(MATCH_PATIENCE_S))) == 0) {
-			fputs("nobody matches the writer of commands\n", stderr);
-			exit(1);
-		}
+		if (checked(dds_waitset_wait(match, NULL, 0, DDS_SECS(MATCH_PATIENCE_S))) == 0)
+			give_up("nobody matches the writer of commands");
 		checked(dds_get_publication_matched_status(r->command, &matched));
 	}
 	dds_delete(match);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { fork } from 'node:child_process';
 import { once } from 'node:events';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -61,6 +61,22 @@ for (const kind of ['silent', 'partial', 'upgrade', 'chatty'])
 			t.diagnostic(`longest ${longest.toFixed(3)} s, without strangers ${baseline.toFixed(3)} s, ${failures.length} of ${TRIES} failed`);
 			assert.deepEqual(failures, []);
 			assert.ok(longest < baseline + WITHIN_S, `${longest} s, without strangers ${baseline} s`);
+		});
+
+// A message of such a client takes so long to the daemon: it comes by satellite, or from a busy machine.
+const FAR_MS = 250;
+for (const kind of ['upgrade', 'chatty'])
+	for (const address of ['127.0.0.1', '127.0.0.2'])
+		test(`beside ${STRANGERS} connections (${kind}) of ${address} that never say hello, a driver far away gets in`, async (t) => {
+			await crowd(t, address, kind);
+			await Promise.all(Array.from({ length: 8 }, async () => {
+				const client = new Client(daemon.url());
+				await client.opened;
+				await new Promise((resolve) => setTimeout(resolve, FAR_MS));
+				assert.equal(client.closeCode, undefined, 'it is closed before its hello comes');
+				await client.call('hello', { version: 1, client: 'e2e', token: TOKEN });
+				await client.close();
+			}));
 		});
 
 test(`${CLASS} drivers of one address get in at once, beside the strangers of another`, async (t) => {
@@ -127,6 +143,15 @@ function comeAndGo(port, address, request) {
 		socket.on('close', resolve);
 	});
 }
+
+test('a shell that gives 1,024 descriptors does not limit the daemon to them', async (t) => {
+	const program = join(folder, 'few-files');
+	writeFileSync(program, `#!/bin/sh\nulimit -S -n 1024\nexec '${process.env.CAUTERYD}' "$@"\n`, { mode: 0o755 });
+	const own = await Daemon.start({ program });
+	t.after(() => own.end());
+	const most = /^Max open files +(\d+) +(\d+)/m.exec(readFileSync(`/proc/${own.process.pid}/limits`, 'utf8'));
+	assert.equal(Number(most[1]), Math.min(8192, Number(most[2])));
+});
 
 test('whoever says no hello writes one line a minute, and all beyond 63 addresses write one together', async (t) => {
 	const own = await Daemon.start();
