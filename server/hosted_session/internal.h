@@ -104,6 +104,7 @@ struct cau_hosted {
 	cau_store_batch *batch; // of this slice; NULL: nothing to write
 	uint64_t batch_tick;    // when it was begun
 	uint64_t batch_lost;    // a log that is lost from here on ends with this batch's checkpoint
+	bool batch_acts;        // it has log entries since its last checkpoint
 	cau_pending *pending;   // answers that wait for it
 	double checkpoint_s;
 	bool touched;              // since then by commands or cuts

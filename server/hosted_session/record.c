@@ -46,6 +46,7 @@ static cau_store_command next_entry(cau_hosted *h, int32_t kind)
 	}
 	h->logged_tick = h->tick;
 	h->logged_acts |= kind != CAU_STORE_REACHED;
+	h->batch_acts = true;
 	return (cau_store_command){.session = h->id,
 	                           .branch = h->branch,
 	                           .tick = h->tick,
@@ -147,7 +148,7 @@ void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 		status = cau_store_lend_checkpoint(batch, &row, cau_shelf_give_back, &error);
 	if (status)
 		cau_shelf_give_back(snapshot);
-	h->checkpoint_wanted = false;
+	h->checkpoint_wanted = h->batch_acts = false;
 	if (!status)
 		status = end_gap(h, batch, &error);
 	if (status)
@@ -300,6 +301,17 @@ static void committed(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
+// What the log has of a tick is the first of what it was sent, whatever was lost: so a restart has
+// a place for each command that was acknowledged. After a loss the log goes on from a checkpoint. A
+// paused session gets none before it is stepped, and is told so.
+static cau_status check_gap(const cau_hosted *h, cau_error *error)
+{
+	if (!h->batch_acts || h->lost_from > h->tick)
+		return CAU_OK;
+	return cau_fail(error, CAU_IO, NULL,
+	                "an earlier command of this tick was not stored: step or resume the session");
+}
+
 static bool is_being_made(const cau_hosted *h)
 {
 	return h->unanswered && h->origin.kind != CAU_ORIGIN_STORE;
@@ -314,9 +326,11 @@ void cau_record_commit(cau_hosted *h)
 		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "no command could be stored");
 		return;
 	}
-	commit *travelling = malloc(sizeof *travelling);
-	cau_status status = CAU_NO_MEMORY;
-	if (travelling) {
+	cau_status status = check_gap(h, &error);
+	commit *travelling = status ? NULL : malloc(sizeof *travelling);
+	if (!status && !travelling)
+		status = cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a commit");
+	if (!status) {
 		uint64_t from = h->batch_tick < h->batch_lost ? h->batch_tick : h->batch_lost;
 		*travelling = (commit){cau_hosted_share(h), pending, from, is_being_made(h)};
 		atomic_fetch_add(&h->commits, 1);
@@ -336,6 +350,7 @@ void cau_record_commit(cau_hosted *h)
 		free(travelling);
 	}
 	h->batch = NULL;
+	h->batch_acts = false;
 	h->batch_lost = UINT64_MAX;
 }
 

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A paused session whose store was full for a while: what its log has of the tick is the first of
+// what it was sent, so that a restart can take each command that was acknowledged.
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "cautery/defaults.h"
+#include "server/hosted_session/hosted_fixture.h"
+
+enum { CREATED, BEFORE, LOST, BEHIND, STEPPED, AFTER };
+
+static void limit_files(rlim_t bytes)
+{
+	struct rlimit limit;
+	assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+	limit.rlim_cur = bytes < limit.rlim_max ? bytes : limit.rlim_max;
+	assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+}
+
+static const hosted_answer *set_gravity(int asked)
+{
+	cau_order *order = hosted_new_order(asked, CAU_ORDER_COMMAND, CAU_METHOD_SET_GRAVITY);
+	cau_default_command(&order->as.command, CAU_COMMAND_SET_GRAVITY);
+	hosted_submit(order);
+	return hosted_await(asked);
+}
+
+static cau_status count_command(void *user, const cau_store_command *command)
+{
+	*(int *)user += command->kind == CAU_COMMAND_SET_GRAVITY;
+	return CAU_OK;
+}
+
+static int logged(void)
+{
+	int count = 0;
+	cau_store_flush(t.around.store);
+	assert_int_equal(cau_store_read_log(t.around.store, t.h->id, 0, 0, 1000,
+	                                    count_command, &count, NULL),
+	                 CAU_OK);
+	return count;
+}
+
+static void await_store(cau_store_state state)
+{
+	cau_store_health health;
+	do {
+		usleep(1000);
+		cau_store_get_health(t.around.store, &health);
+	} while (health.state != state);
+}
+
+static void what_comes_behind_a_lost_command_is_not_acknowledged(void **state)
+{
+	(void)state;
+	hosted_begin(NOWHERE, CREATED);
+	assert_int_equal(hosted_await(CREATED)->status, CAU_OK);
+	assert_int_equal(set_gravity(BEFORE)->status, CAU_OK);
+	limit_files(0);
+	assert_int_equal(set_gravity(LOST)->code, CAU_RPC_STORE_FULL);
+	limit_files(RLIM_INFINITY);
+	await_store(CAU_STORE_READY);
+	const hosted_answer *behind = set_gravity(BEHIND);
+	assert_int_equal(behind->code, CAU_RPC_STORE_FULL);
+	assert_non_null(strstr(behind->reason, "step or resume the session"));
+	assert_int_equal(logged(), 1);
+	cau_order *order = hosted_new_order(STEPPED, CAU_ORDER_STEP, CAU_METHOD_SESSION_STEP);
+	order->as.ticks = 1;
+	hosted_submit(order);
+	assert_int_equal(hosted_await(STEPPED)->status, CAU_OK);
+	assert_int_equal(set_gravity(AFTER)->status, CAU_OK);
+	assert_int_equal(logged(), 2);
+}
+
+int main(void)
+{
+	signal(SIGXFSZ, SIG_IGN);
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(what_comes_behind_a_lost_command_is_not_acknowledged,
+	                                    hosted_open_surroundings, hosted_close_surroundings),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
