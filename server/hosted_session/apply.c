@@ -68,12 +68,27 @@ static void answer_command(cau_hosted *h, cau_order *order)
 		cau_record_reply(h, &order->reply, text, bytes);
 }
 
+// Energy off acts, whatever the store has; nothing else does that a restart would not know of.
+static cau_outcome_kind apply_unstored(cau_hosted *h, cau_order *order, const cau_error *error)
+{
+	cau_command *command = &order->as.command;
+	if (command->kind != CAU_COMMAND_TOOL_ENERGIZE || command->as.energized) {
+		cau_hosted_refuse_order(h, order, error, CAU_RPC_STORE_FULL);
+		return CAU_NOT_DONE;
+	}
+	cau_drive_does(h, command);
+	cau_hosted_answer_unstored(h, order);
+	return CAU_DONE;
+}
+
 cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	cau_error error = {0};
 	cau_command *command = &order->as.command;
 	if (command->tick < h->tick)
 		command->tick = h->tick;
+	if (!is_off_of_faulted(h, command) && cau_record_check(h, &error))
+		return apply_unstored(h, order, &error);
 	if (!cau_drive_does(h, command) && cau_session_submit(h->core, command, &error)) {
 		cau_hosted_refuse_order(h, order, &error, 0);
 		return CAU_NOT_DONE;

@@ -22,8 +22,7 @@ static void tell(cau_hosted *h, const cau_effects *effects)
 			cau_drive_tell(h, &effects->list[i].drive);
 }
 
-// It acts at the next tick border, whatever the store says; the log will not show it.
-static void answer_unstored(cau_hosted *h, cau_order *order)
+void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
 	cau_outcome outcome = {0};
@@ -67,7 +66,7 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 			free(order_of(effect->ticket));
 			break;
 		case CAU_EFFECT_UNSTORED:
-			answer_unstored(h, order_of(effect->ticket));
+			cau_hosted_answer_unstored(h, order_of(effect->ticket));
 			break;
 		case CAU_EFFECT_WAKE:
 			cau_worker_pool_wake(h->around->pool, &h->task);

@@ -262,6 +262,9 @@ bool cau_decide_broken(cau_hosted *h, char *reason, size_t bytes);
 void cau_decide_next(cau_hosted *h, cau_action *action);
 void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome);
 void cau_decide_stepped(cau_hosted *h, const char *fault);
+// Answers an off or a pause, and frees it. It acts at the next tick border, whatever the store
+// says; the log will not show it.
+void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order);
 // Opens the trace, where one is wanted; before anything is decided.
 void cau_decide_trace(cau_hosted *h);
 void cau_decide_flush_trace(cau_hosted *h); // worker
@@ -371,6 +374,11 @@ void cau_times_published(cau_hosted *h, bool made);
 
 // ---- record.c: the store
 cau_store_batch *cau_record_batch(cau_hosted *h); // of this slice; NULL if memory ran out
+// Whether a command of now can be logged. What the log has of a tick is the first of what it was
+// sent, whatever was lost, so that a restart has a place for each command that was acknowledged.
+// After a loss it goes on from a checkpoint, which is made here unless commands of this tick are
+// with the core already. CAU_IO: they are, and a paused session must be stepped first.
+cau_status cau_record_check(cau_hosted *h, cau_error *error);
 // Logs a command that the core has taken, with the answer to its request if `order` has one.
 void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,
                         const char *text, size_t text_bytes);

@@ -54,15 +54,24 @@ static cau_store_command next_entry(cau_hosted *h, int32_t kind)
 	                           .kind = kind};
 }
 
+// A checkpoint at tick T comes before the commands logged at T. Once some are with the core, this
+// border is past that: the log leads here from the checkpoint before, and the next border gets one.
+static bool is_past_commands(const cau_hosted *h)
+{
+	return h->logged_tick == h->tick && h->logged_acts;
+}
+
 void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,
                         const char *text, size_t text_bytes)
 {
 	char json[CAU_COMMAND_JSON_MAX_BYTES];
 	size_t json_bytes = 0;
+	h->touched = true;
+	if (h->lost_from <= h->tick && is_past_commands(h))
+		return; // a cut, behind a command that was lost
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
 	cau_store_command row = next_entry(h, command->kind);
-	h->touched = true;
 	if (order && order->client_sequence && text) {
 		row.client = order->asker.client_id;
 		row.sequence = (uint64_t)order->client_sequence;
@@ -95,13 +104,6 @@ void cau_record_state(cau_hosted *h)
 	const char *state = cau_decided_state(h) == CAU_SESSION_RUNNING ? "running" : "paused";
 	if (batch && cau_store_put_session_state(batch, h->id, state, &error))
 		gap(h, &error);
-}
-
-// A checkpoint at tick T comes before the commands logged at T. Once some are with the core, this
-// border is past that: the log leads here from the checkpoint before, and the next border gets one.
-static bool is_past_commands(const cau_hosted *h)
-{
-	return h->logged_tick == h->tick && h->logged_acts;
 }
 
 // What was lost ends with the checkpoint of this tick, in the same batch: nobody is led through it.
@@ -301,14 +303,13 @@ static void committed(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// What the log has of a tick is the first of what it was sent, whatever was lost: so a restart has
-// a place for each command that was acknowledged. After a loss the log goes on from a checkpoint. A
-// paused session gets none before it is stepped, and is told so.
-static cau_status check_gap(const cau_hosted *h, cau_error *error)
+cau_status cau_record_check(cau_hosted *h, cau_error *error)
 {
-	if (!h->batch_acts || h->lost_from > h->tick)
+	if (h->lost_from <= h->tick && !is_past_commands(h))
+		cau_record_checkpoint(h, NULL, NULL);
+	if (h->lost_from > h->tick)
 		return CAU_OK;
-	return cau_fail(error, CAU_IO, NULL,
+	return cau_fail(error, CAU_IO, "",
 	                "an earlier command of this tick was not stored: step or resume the session");
 }
 
@@ -326,7 +327,8 @@ void cau_record_commit(cau_hosted *h)
 		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "no command could be stored");
 		return;
 	}
-	cau_status status = check_gap(h, &error);
+	// The store may have failed meanwhile what comes before the entries of this batch.
+	cau_status status = h->batch_acts ? cau_record_check(h, &error) : CAU_OK;
 	commit *travelling = status ? NULL : malloc(sizeof *travelling);
 	if (!status && !travelling)
 		status = cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a commit");

@@ -14,7 +14,7 @@
 #include "cautery/defaults.h"
 #include "server/hosted_session/hosted_fixture.h"
 
-enum { CREATED, BEFORE, LOST, BEHIND, STEPPED, AFTER };
+enum { CREATED, BEFORE, LOST, BEHIND, OFF, STEPPED, AFTER };
 
 static void limit_files(rlim_t bytes)
 {
@@ -32,6 +32,15 @@ static const hosted_answer *set_gravity(int asked)
 	return hosted_await(asked);
 }
 
+static const hosted_answer *turn_off(int asked)
+{
+	cau_order *order = hosted_new_order(asked, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_ENERGIZE);
+	cau_default_command(&order->as.command, CAU_COMMAND_TOOL_ENERGIZE);
+	strcpy(order->as.command.tool, "hook");
+	hosted_submit(order);
+	return hosted_await(asked);
+}
+
 static cau_status count_command(void *user, const cau_store_command *command)
 {
 	*(int *)user += command->kind == CAU_COMMAND_SET_GRAVITY;
@@ -42,9 +51,9 @@ static int logged(void)
 {
 	int count = 0;
 	cau_store_flush(t.around.store);
-	assert_int_equal(cau_store_read_log(t.around.store, t.h->id, 0, 0, 1000,
-	                                    count_command, &count, NULL),
-	                 CAU_OK);
+	assert_int_equal(
+		cau_store_read_log(t.around.store, t.h->id, 0, 0, 1000, count_command, &count, NULL),
+		CAU_OK);
 	return count;
 }
 
@@ -70,6 +79,8 @@ static void what_comes_behind_a_lost_command_is_not_acknowledged(void **state)
 	const hosted_answer *behind = set_gravity(BEHIND);
 	assert_int_equal(behind->code, CAU_RPC_STORE_FULL);
 	assert_non_null(strstr(behind->reason, "step or resume the session"));
+	assert_int_equal(turn_off(OFF)->status, CAU_OK);
+	assert_non_null(strstr(t.answers[OFF].text, "\"stored\":false"));
 	assert_int_equal(logged(), 1);
 	cau_order *order = hosted_new_order(STEPPED, CAU_ORDER_STEP, CAU_METHOD_SESSION_STEP);
 	order->as.ticks = 1;
