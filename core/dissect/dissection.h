@@ -116,3 +116,5 @@ void cau_dissection_recount(cau_dissection *dissection);
 
 // Largest exposure / ignition over the layers of an edge, 0 to 1.
 double cau_dissection_heated(const cau_dissection *dissection, int32_t edge);
+// 0 where all edges of an element are fresh, 1 where all are coagulated.
+double cau_dissection_coagulated(const cau_dissection *dissection, int primitive, int32_t index);

@@ -7,6 +7,7 @@
 #include "cautery/assert.h"
 
 static const double ramp_s = 0.2;
+static const double denatured_share = 0.5; // an element shrinks whole, once half of it would
 
 // All elements, or an eighth of them where that is plenty.
 static int32_t most_active(const cau_tissue *tissue)
@@ -84,13 +85,10 @@ static void sandwich2(const double root[3], double c, double s, const double shr
 	out[2] = p00 * root[2] + p01 * root[1];
 }
 
-static bool triangle_target(const cau_tissue *tissue, const double *position, int32_t triangle,
-                            const cau_tool_def *tool, const cau_pose *pose, double jaw,
-                            const double from[6], double to[6])
+// F^T N_c of a triangle, as N_c where that stands on the sheet.
+static cau_vec3 triangle_axis(const cau_tissue *tissue, const double *position, int32_t triangle,
+                              const cau_tool_def *tool, const cau_pose *pose, double jaw)
 {
-	const cau_sheet_material *material = cau_triangle_material(tissue, triangle);
-	if (material->shrink[0] == 1 && material->shrink[1] == 1)
-		return false;
 	const int32_t *v = tissue->triangle + 3 * (size_t)triangle;
 	cau_vec3 f[2],
 		sum = cau_add(cau_add(at(position, v[0]), at(position, v[1])), at(position, v[2]));
@@ -102,13 +100,19 @@ static bool triangle_target(const cau_tissue *tissue, const double *position, in
 		x = cau_dot(f[0], frame.away);
 		y = cau_dot(f[1], frame.away);
 	}
-	double length = hypot(x, y), target[3];
+	return (cau_vec3){x, y, 0};
+}
+
+static void triangle_target(const cau_tissue *tissue, int32_t triangle, cau_vec3 axis,
+                            const double from[6], double to[6])
+{
+	double length = hypot(axis.x, axis.y), target[3];
 	if (!(length > 0))
-		x = length = 1, y = 0;
-	sandwich2(from, x / length, y / length, material->shrink, target);
+		axis.x = length = 1, axis.y = 0;
+	sandwich2(from, axis.x / length, axis.y / length,
+	          cau_triangle_material(tissue, triangle)->shrink, target);
 	cau_symmetric_power2(target, 0.5, 1e-6, to);
 	CAU_ASSERT(to[0] > 0 && to[1] > 0, "triangle %d shrinks to %g, %g", triangle, to[0], to[1]);
-	return true;
 }
 
 // ---- tetrahedra
@@ -139,27 +143,30 @@ static void sandwich3(const double root[6], const double a[6], double out[6])
 	}
 }
 
-static bool tetrahedron_target(const cau_tissue *tissue, const double *position,
-                               int32_t tetrahedron, cau_vec3 face_normal, const cau_tool_def *tool,
-                               const cau_pose *pose, double jaw, const double from[6], double to[6])
+// F^T N_c and F^T N_a of a tetrahedron, N_a = N_f x N_c.
+static void tetrahedron_axes(const cau_tissue *tissue, const double *position, int32_t tetrahedron,
+                             cau_vec3 face_normal, const cau_tool_def *tool, const cau_pose *pose,
+                             double jaw, cau_vec3 axis[2])
 {
-	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
-	const cau_fat_material *material = cau_tetrahedron_material(tissue, tetrahedron);
-	const double *s = material->shrink;
-	if (s[0] == 1 && s[1] == 1 && s[2] == 1)
-		return false;
 	const int32_t *v = tissue->tetrahedron + 4 * (size_t)tetrahedron;
 	cau_vec3 sum = cau_add(cau_add(at(position, v[0]), at(position, v[1])),
 	                       cau_add(at(position, v[2]), at(position, v[3])));
 	contact_frame frame = contact_of(cau_scale(0.25, sum), tool, pose, jaw);
-	cau_vec3 a = tetrahedron_transpose_times(tissue, position, tetrahedron, frame.normal);
-	if (!(cau_length(a) > 1e-6))
-		a = tetrahedron_transpose_times(tissue, position, tetrahedron, frame.away);
-	a = cau_unit_or(a, (cau_vec3){1, 0, 0});
-	// N_a = N_f x N_c, brought to the material and made orthogonal
-	cau_vec3 b = tetrahedron_transpose_times(tissue, position, tetrahedron,
-	                                         cau_cross(face_normal, frame.normal));
-	b = cau_add_scaled(b, -cau_dot(a, b), a);
+	axis[0] = tetrahedron_transpose_times(tissue, position, tetrahedron, frame.normal);
+	if (!(cau_length(axis[0]) > 1e-6))
+		axis[0] = tetrahedron_transpose_times(tissue, position, tetrahedron, frame.away);
+	axis[1] = tetrahedron_transpose_times(tissue, position, tetrahedron,
+	                                      cau_cross(face_normal, frame.normal));
+}
+
+// The axes are made orthogonal.
+static void tetrahedron_target(const cau_tissue *tissue, int32_t tetrahedron,
+                               const cau_vec3 axis[2], const double from[6], double to[6])
+{
+	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+	const double *s = cau_tetrahedron_material(tissue, tetrahedron)->shrink;
+	cau_vec3 a = cau_unit_or(axis[0], (cau_vec3){1, 0, 0});
+	cau_vec3 b = cau_add_scaled(axis[1], -cau_dot(a, axis[1]), a);
 	if (!(cau_length(b) > 1e-6))
 		b = cau_cross(fabs(a.x) < 0.9 ? (cau_vec3){1, 0, 0} : (cau_vec3){0, 1, 0}, a);
 	b = cau_unit_or(b, (cau_vec3){0, 1, 0});
@@ -175,7 +182,74 @@ static bool tetrahedron_target(const cau_tissue *tissue, const double *position,
 	cau_symmetric_power3(target, 0.5, 1e-6, to);
 	CAU_ASSERT(to[0] > 0 && to[1] > 0 && to[2] > 0, "tetrahedron %d shrinks to %g, %g, %g",
 	           tetrahedron, to[0], to[1], to[2]);
-	return true;
+}
+
+// ---- one element
+static bool may_shrink(const cau_shrink *shrink, const cau_dissection *dissection, int kind,
+                       int32_t element)
+{
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "element %d of kind %d shrinks", element, kind);
+	if (!dissection->alive.element[kind][element] || shrink->shrunk[kind][element])
+		return false;
+	const cau_tissue *tissue = dissection->tissue;
+	if (kind == CAU_ELEMENT_TRIANGLE) {
+		const double *s = cau_triangle_material(tissue, element)->shrink;
+		return s[0] != 1 || s[1] != 1;
+	}
+	const double *s = cau_tetrahedron_material(tissue, element)->shrink;
+	return s[0] != 1 || s[1] != 1 || s[2] != 1;
+}
+
+// `axis`: what S is along, in the element at rest; of a triangle the first counts.
+static void start_shrinking(cau_shrink *shrink, const cau_tissue *tissue, int kind, int32_t element,
+                            const cau_vec3 axis[2], cau_elements *elements,
+                            const cau_element_slots *slots)
+{
+	cau_shrinking shrinking = {.kind = kind, .element = element};
+	cau_elements_target(elements, slots, kind, element, shrinking.from);
+	if (!(shrinking.from[0] > 0)) { // it had no target: T = I
+		shrinking.from[0] = shrinking.from[1] = 1;
+		shrinking.from[2] = kind == CAU_ELEMENT_TETRAHEDRON;
+	}
+	if (kind == CAU_ELEMENT_TRIANGLE)
+		triangle_target(tissue, element, axis[0], shrinking.from, shrinking.to);
+	else
+		tetrahedron_target(tissue, element, axis, shrinking.from, shrinking.to);
+	shrink->shrunk[kind][element] = 1;
+	if (shrink->active_count < shrink->active_capacity)
+		shrink->active[shrink->active_count++] = shrinking;
+	else
+		cau_elements_set_target(elements, slots, tissue, kind, element, shrinking.to);
+}
+
+// ---- what is denatured
+
+// Of a field with these values at the element's corners, in the element at rest.
+static cau_vec3 gradient(const cau_tissue *tissue, int kind, int32_t element, const double value[4])
+{
+	if (kind == CAU_ELEMENT_TRIANGLE) {
+		const double *m = tissue->triangle_dm_inverse + 4 * (size_t)element;
+		double along[2] = {value[1] - value[0], value[2] - value[0]};
+		return (cau_vec3){m[0] * along[0] + m[2] * along[1], m[1] * along[0] + m[3] * along[1], 0};
+	}
+	const double *m = tissue->tetrahedron_dm_inverse + 9 * (size_t)element;
+	double out[3] = {0, 0, 0};
+	for (int i = 0; i < 3; i++)
+		for (int c = 0; c < 3; c++)
+			out[c] += m[3 * i + c] * (value[i + 1] - value[0]);
+	return cau_vec3_of(out);
+}
+
+void cau_shrink_denatured(cau_shrink *shrink, const cau_dissection *dissection, int kind,
+                          int32_t element, const double temperature[4], cau_elements *elements,
+                          const cau_element_slots *slots)
+{
+	if (!may_shrink(shrink, dissection, kind, element) ||
+	    cau_dissection_coagulated(dissection, kind, element) < denatured_share)
+		return;
+	const cau_vec3 axis[2] = {gradient(dissection->tissue, kind, element, temperature)};
+	start_shrinking(shrink, dissection->tissue, kind, element, axis, elements, slots);
 }
 
 // ---- exposed elements
@@ -190,32 +264,18 @@ typedef struct expose {
 	const cau_element_slots *slots;
 } expose;
 
-static void start_shrinking(const expose *work, int kind, int32_t element, cau_vec3 face_normal)
+static void expose_element(const expose *work, int kind, int32_t element, cau_vec3 face_normal)
 {
-	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
-	           "element %d of kind %d shrinks", element, kind);
 	const cau_tissue *tissue = work->dissection->tissue;
-	if (!work->dissection->alive.element[kind][element] || work->shrink->shrunk[kind][element])
+	cau_vec3 axis[2] = {{0, 0, 0}};
+	if (!may_shrink(work->shrink, work->dissection, kind, element))
 		return;
-	cau_shrinking shrinking = {.kind = kind, .element = element};
-	cau_elements_target(work->elements, work->slots, kind, element, shrinking.from);
-	if (!(shrinking.from[0] > 0)) { // it had no target: T = I
-		shrinking.from[0] = shrinking.from[1] = 1;
-		shrinking.from[2] = kind == CAU_ELEMENT_TETRAHEDRON;
-	}
-	bool shrinks =
-		kind == CAU_ELEMENT_TRIANGLE
-			? triangle_target(tissue, work->position, element, work->tool, work->pose, work->jaw,
-	                          shrinking.from, shrinking.to)
-			: tetrahedron_target(tissue, work->position, element, face_normal, work->tool,
-	                             work->pose, work->jaw, shrinking.from, shrinking.to);
-	if (!shrinks)
-		return;
-	work->shrink->shrunk[kind][element] = 1;
-	if (work->shrink->active_count < work->shrink->active_capacity)
-		work->shrink->active[work->shrink->active_count++] = shrinking;
+	if (kind == CAU_ELEMENT_TRIANGLE)
+		axis[0] = triangle_axis(tissue, work->position, element, work->tool, work->pose, work->jaw);
 	else
-		cau_elements_set_target(work->elements, work->slots, tissue, kind, element, shrinking.to);
+		tetrahedron_axes(tissue, work->position, element, face_normal, work->tool, work->pose,
+		                 work->jaw, axis);
+	start_shrinking(work->shrink, tissue, kind, element, axis, work->elements, work->slots);
 }
 
 static void expose_triangle(const expose *work, int32_t triangle)
@@ -229,7 +289,7 @@ static void expose_triangle(const expose *work, int32_t triangle)
 		for (int32_t k = first[e]; k < first[e + 1]; k++) {
 			int32_t other = edges->sharer[CAU_PRIMITIVE_TRIANGLE][k];
 			if (tissue->triangle_layer[other] == tissue->triangle_layer[triangle])
-				start_shrinking(work, CAU_ELEMENT_TRIANGLE, other, (cau_vec3){0, 0, 0});
+				expose_element(work, CAU_ELEMENT_TRIANGLE, other, (cau_vec3){0, 0, 0});
 		}
 	}
 }
@@ -247,7 +307,7 @@ static void expose_tetrahedron(const expose *work, int32_t tetrahedron)
 		for (int o = 0; o < 2; o++) {
 			int32_t other = faces->owner[2 * (size_t)face + (size_t)o];
 			if (other >= 0 && other != tetrahedron)
-				start_shrinking(work, CAU_ELEMENT_TETRAHEDRON, other, normal);
+				expose_element(work, CAU_ELEMENT_TETRAHEDRON, other, normal);
 		}
 	}
 }

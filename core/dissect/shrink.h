@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shrinkage of what a cut lays bare (section 6.3, eq. 21).
+// Shrinkage of what a cut lays bare, or of what heat has denatured (section 6.3, eq. 21).
 #pragma once
 
 #include "constraint/elements_make.h"
@@ -32,6 +32,13 @@ cau_status cau_shrink_create(cau_shrink *shrink, const cau_tissue *tissue, cau_a
 void cau_shrink_expose(cau_shrink *shrink, const cau_dissection *dissection, int32_t first,
                        const double *position, const cau_tool_def *tool, const cau_pose *pose,
                        double jaw, cau_elements *elements, const cau_element_slots *slots);
+
+// Gives a live element its target once it is denatured. R's first axis is the gradient of the
+// temperature, which it has at its corners, degC: towards a hot part this is N_c. The second is any
+// axis that is normal to it.
+void cau_shrink_denatured(cau_shrink *shrink, const cau_dissection *dissection, int kind,
+                          int32_t element, const double temperature[4], cau_elements *elements,
+                          const cau_element_slots *slots);
 
 // Moves the targets on by one tick; they arrive after 0.2 s.
 void cau_shrink_advance(cau_shrink *shrink, const cau_tissue *tissue, double step_s,

@@ -196,8 +196,7 @@ static double least_squared(const bearing *b, double widest_m)
 	return most * most;
 }
 
-// 0 where all of the element's edges are fresh, 1 where all are coagulated.
-static double coagulation_of(const cau_dissection *dissection, int primitive, int32_t index)
+double cau_dissection_coagulated(const cau_dissection *dissection, int primitive, int32_t index)
 {
 	int count, edges = 0;
 	const int32_t *v = cau_tissue_vertices_of(dissection->tissue, primitive, index, &count);
@@ -217,7 +216,7 @@ static double strength_of(const cau_dissection *dissection, const bearing *b, in
                           int32_t index)
 {
 	double lost = 1 - b->coagulated_share;
-	return lost > 0 ? 1 - lost * coagulation_of(dissection, primitive, index) : 1;
+	return lost > 0 ? 1 - lost * cau_dissection_coagulated(dissection, primitive, index) : 1;
 }
 
 static double load_of(const cau_dissection *dissection, const bearing *b, int primitive,

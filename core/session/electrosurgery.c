@@ -217,42 +217,41 @@ static edge_visit look_around(cau_session *session, const cau_tool *tool)
 	return visit;
 }
 
-static bool is_warm(const cau_session *session, int32_t vertex)
-{
-	return cau_tissue_cells_temperature(session->cells, vertex) >
-	       session->scene->ambient_c + warm_k;
-}
-
 static void follow_element(edge_visit *visit, int32_t element)
 {
 	cau_session *session = visit->session;
 	int32_t index, count;
 	int primitive = cau_tissue_cells_primitive(&session->tissue, element, &index);
 	const int32_t *vertex = cau_tissue_vertices_of(&session->tissue, primitive, index, &count);
-	bool warm[4];
+	double temperature[4], warm_c = session->scene->ambient_c + warm_k;
 	CAU_ASSERT(count <= 4, "an element of %d corners", count);
 	for (int i = 0; i < count; i++)
-		warm[i] = is_warm(session, vertex[i]);
+		temperature[i] = cau_tissue_cells_temperature(session->cells, vertex[i]);
 	for (int i = 0; i < count; i++)
 		for (int j = i + 1; j < count; j++) {
-			if (!warm[i] && !warm[j])
+			if (temperature[i] <= warm_c && temperature[j] <= warm_c)
 				continue;
 			int32_t edge = cau_edge_table_find(&session->tissue.edges, vertex[i], vertex[j]);
 			fill_sharers(visit, edge, false);
 			show_heat(session, edge);
 		}
+	if (primitive != CAU_PRIMITIVE_LINK)
+		cau_shrink_denatured(&session->shrink, &session->dissection, primitive, index, temperature,
+		                     &session->solver.elements, &session->solver.slots);
 }
 
 // Gives cells to the elements that share an edge with a warm one. Otherwise heat would end 3 mm
-// from where a tool was.
+// from where a tool was. What heat has denatured begins to shrink.
 static void follow_heat(cau_session *session)
 {
 	const cau_tissue_cells *cells = session->cells;
 	edge_visit visit = {.session = session, .left = ADDED_A_TICK};
 	int32_t known = cells->filled_count;
 	for (int32_t k = (int32_t)(session->tick % FOLLOW_TURNS); k < known; k += FOLLOW_TURNS)
-		if (cells->bioheat.cells.count < FOLLOWED_MOST && lives(session, cells->filled[k]))
+		if (lives(session, cells->filled[k])) {
+			visit.full = visit.full || cells->bioheat.cells.count >= FOLLOWED_MOST;
 			follow_element(&visit, cells->filled[k]);
+		}
 }
 
 static bool is_in_box(const cau_cells *grid, int32_t cell, const edge_visit *visit)
@@ -502,9 +501,5 @@ void cau_session_operate(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		tool->state.touched_layers = sparks(tool) ? (int32_t)layers : 0;
-		if (sparks(tool))
-			cau_shrink_expose(&session->shrink, &session->dissection, first, session->position,
-			                  &tool->state.definition, &tool->state.pose, tool->state.jaw,
-			                  &session->solver.elements, &session->solver.slots); // eq. 21
 	}
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shrinkage of what a cut lays bare against T' = T^(1/2) R^T diag(S) R T^(1/2) by hand, its ramp,
-// and that it is set once.
+// Shrinkage of what a cut lays bare, or heat has denatured, against T' = T^(1/2) R^T diag(S) R
+// T^(1/2) by hand, its ramp, and that it is set once.
 #include <string.h>
 
 #include "base/symmetric.h"
@@ -140,70 +140,113 @@ static void first_axis(const burnt *b, int kind, int32_t element, double axis[3]
 		axis[c] /= sqrt(length);
 }
 
-static void test_triangles_by_hand(void **state)
+static void assert_triangle_target(const cau_shrinking *active, int targeted, const double axis[3])
 {
-	(void)state;
-	for (int targeted = 0; targeted < 2; targeted++) {
-		burnt b;
-		make(&b, 0, targeted);
-		burn(&b);
-		for (int32_t k = 0; k < b.r.shrink.active_count; k++) {
-			const cau_shrinking *active = &b.r.shrink.active[k];
-			double axis[3], root3[3] = {1, 1, 0}, root[3][3] = {{0}}, s[3][3] = {{0}}, got[3][3];
-			if (targeted)
-				cau_symmetric_power2(SHEET_TARGET, 0.5, 0, root3);
-			root[0][0] = root3[0], root[1][1] = root3[1], root[0][1] = root[1][0] = root3[2];
-			first_axis(&b, CAU_ELEMENT_TRIANGLE, active->element, axis);
-			const double r[2][2] = {{axis[0], axis[1]}, {-axis[1], axis[0]}};
-			for (int i = 0; i < 4; i++) // R^T diag(S) R
-				s[i / 2][i % 2] = SHEET_SHRINK[0] * r[0][i / 2] * r[0][i % 2] +
-				                  SHEET_SHRINK[1] * r[1][i / 2] * r[1][i % 2];
-			mat_multiply(root, s, s);
-			mat_multiply(s, root, s);
-			double to[3][3] = {{active->to[0], active->to[2], 0},
-			                   {active->to[2], active->to[1], 0}};
-			mat_multiply(to, to, got);
-			assert_near(mat_distance(got, s), 0, TARGET_TOLERANCE);
-		}
-		rig_finish(&b.r);
-	}
+	double root3[3] = {1, 1, 0}, root[3][3] = {{0}}, s[3][3] = {{0}}, got[3][3];
+	if (targeted)
+		cau_symmetric_power2(SHEET_TARGET, 0.5, 0, root3);
+	root[0][0] = root3[0], root[1][1] = root3[1], root[0][1] = root[1][0] = root3[2];
+	const double r[2][2] = {{axis[0], axis[1]}, {-axis[1], axis[0]}};
+	for (int i = 0; i < 4; i++) // R^T diag(S) R
+		s[i / 2][i % 2] = SHEET_SHRINK[0] * r[0][i / 2] * r[0][i % 2] +
+		                  SHEET_SHRINK[1] * r[1][i / 2] * r[1][i % 2];
+	mat_multiply(root, s, s);
+	mat_multiply(s, root, s);
+	double to[3][3] = {{active->to[0], active->to[2], 0}, {active->to[2], active->to[1], 0}};
+	mat_multiply(to, to, got);
+	assert_near(mat_distance(got, s), 0, TARGET_TOLERANCE);
 }
 
 // The second axis depends on the face laid bare; what does not: det T' = det T S_x S_y S_z, and the
 // length along the first axis.
-static void test_tetrahedra_by_hand(void **state)
+static void assert_tetrahedron_target(const cau_shrinking *active, int targeted,
+                                      const double axis[3])
+{
+	double six[6] = {1, 1, 1, 0, 0, 0}, root[3][3], inverse[3][3], s[3][3], v[3][3], value[3];
+	if (targeted)
+		cau_symmetric_power3(FAT_TARGET, 0.5, 0, six);
+	mat_of_symmetric(six, root);
+	mat_inverse(root, inverse);
+	mat_of_symmetric(active->to, s);
+	mat_multiply(s, s, s); // T'
+	mat_multiply(inverse, s, s);
+	mat_multiply(s, inverse, s); // R^T diag(S) R
+	double along[3];
+	mat_apply(s, axis, along);
+	for (int c = 0; c < 3; c++)
+		assert_near(along[c], FAT_SHRINK[0] * axis[c], TARGET_TOLERANCE);
+	const double packed[6] = {s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]};
+	cau_symmetric_eigen3(packed, value, v);
+	double sum = value[0] + value[1] + value[2], product = value[0] * value[1] * value[2];
+	assert_near(sum, FAT_SHRINK[0] + FAT_SHRINK[1] + FAT_SHRINK[2], TARGET_TOLERANCE);
+	assert_near(product, FAT_SHRINK[0] * FAT_SHRINK[1] * FAT_SHRINK[2], TARGET_TOLERANCE);
+}
+
+static void assert_target(const cau_shrinking *active, int targeted, const double axis[3])
+{
+	if (active->kind == CAU_ELEMENT_TRIANGLE)
+		assert_triangle_target(active, targeted, axis);
+	else
+		assert_tetrahedron_target(active, targeted, axis);
+}
+
+static void test_targets_by_hand(void **state)
 {
 	(void)state;
-	for (int targeted = 0; targeted < 2; targeted++) {
-		burnt b;
-		make(&b, 1, targeted);
-		burn(&b);
-		for (int32_t k = 0; k < b.r.shrink.active_count; k++) {
-			const cau_shrinking *active = &b.r.shrink.active[k];
-			double axis[3], six[6] = {1, 1, 1, 0, 0, 0}, root[3][3], inverse[3][3], s[3][3],
-							v[3][3];
-			double value[3];
-			if (targeted)
-				cau_symmetric_power3(FAT_TARGET, 0.5, 0, six);
-			mat_of_symmetric(six, root);
-			mat_inverse(root, inverse);
-			mat_of_symmetric(active->to, s);
-			mat_multiply(s, s, s); // T'
-			mat_multiply(inverse, s, s);
-			mat_multiply(s, inverse, s); // R^T diag(S) R
-			first_axis(&b, CAU_ELEMENT_TETRAHEDRON, active->element, axis);
-			double along[3];
-			mat_apply(s, axis, along);
-			for (int c = 0; c < 3; c++)
-				assert_near(along[c], FAT_SHRINK[0] * axis[c], TARGET_TOLERANCE);
-			const double packed[6] = {s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]};
-			cau_symmetric_eigen3(packed, value, v);
-			double sum = value[0] + value[1] + value[2], product = value[0] * value[1] * value[2];
-			assert_near(sum, FAT_SHRINK[0] + FAT_SHRINK[1] + FAT_SHRINK[2], TARGET_TOLERANCE);
-			assert_near(product, FAT_SHRINK[0] * FAT_SHRINK[1] * FAT_SHRINK[2], TARGET_TOLERANCE);
+	for (int fat = 0; fat < 2; fat++)
+		for (int targeted = 0; targeted < 2; targeted++) {
+			burnt b;
+			double axis[3];
+			make(&b, fat, targeted);
+			burn(&b);
+			for (int32_t k = 0; k < b.r.shrink.active_count; k++) {
+				first_axis(&b, b.r.shrink.active[k].kind, b.r.shrink.active[k].element, axis);
+				assert_target(&b.r.shrink.active[k], targeted, axis);
+			}
+			rig_finish(&b.r);
 		}
-		rig_finish(&b.r);
+}
+
+// ---- what heat has denatured
+
+// Heats the first `count` edges of the element by `share`, and offers it to the shrinkage in a
+// temperature that rises along `axis` at rest.
+static void denature(burnt *b, int kind, int32_t element, int count, double share,
+                     const double axis[3])
+{
+	int corners;
+	const int32_t *v = cau_tissue_vertices_of(&b->r.tissue, kind, element, &corners);
+	double temperature[4];
+	for (int i = 0; i < corners; i++) {
+		const double *x = b->r.tissue.rest + 3 * v[i];
+		temperature[i] = 60 + 1e3 * (axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2]);
+		for (int j = i + 1; j < corners && count-- > 0; j++)
+			cau_dissection_show_heated(&b->r.dissection,
+			                           cau_edge_table_find(&b->r.tissue.edges, v[i], v[j]), share);
 	}
+	cau_shrink_denatured(&b->r.shrink, &b->r.dissection, kind, element, temperature,
+	                     &b->r.solver.elements, &b->r.solver.slots);
+}
+
+// From half of an element on all of it shrinks, by the gradient of the temperature.
+static void test_denatured_elements(void **state)
+{
+	(void)state;
+	static const double AXIS[2][3] = {{0.6, -0.8, 0}, {0.36, 0.48, -0.8}};
+	for (int fat = 0; fat < 2; fat++)
+		for (int targeted = 0; targeted < 2; targeted++) {
+			burnt b;
+			make(&b, fat, targeted);
+			int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE, edges = fat ? 6 : 3;
+			denature(&b, kind, 7, edges, 0.24, AXIS[fat]); // 0.5: coagulated
+			assert_int_equal(b.r.shrink.active_count, 0);
+			denature(&b, kind, 7, edges, 0.26, AXIS[fat]);
+			assert_int_equal(b.r.shrink.active_count, 1);
+			assert_target(&b.r.shrink.active[0], targeted, AXIS[fat]);
+			denature(&b, kind, 7, edges, 1, AXIS[fat]); // once for ever
+			assert_int_equal(b.r.shrink.active_count, 1);
+			rig_finish(&b.r);
+		}
 }
 
 static void test_ramp(void **state)
@@ -291,8 +334,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_exposed_elements_and_no_others),
-		cmocka_unit_test(test_triangles_by_hand),
-		cmocka_unit_test(test_tetrahedra_by_hand),
+		cmocka_unit_test(test_targets_by_hand),
+		cmocka_unit_test(test_denatured_elements),
 		cmocka_unit_test(test_ramp),
 		cmocka_unit_test(test_set_once),
 		cmocka_unit_test(test_no_room),

@@ -159,6 +159,34 @@ static void soft_coagulation_heats_and_parts_nothing(void **state)
 	cau_session_destroy(session);
 }
 
+// Coagulated tissue shrinks by its layer's S, and fresh tissue does not.
+static void coagulated_tissue_shrinks(void **state)
+{
+	(void)state;
+	static const double SQUARED = 0.67;
+	cau_scene_def *scene = needle_over_sheet(30);
+	scene->tools[0].peak_v = 150;
+	scene->layers[0].sheet[0].target[0] = scene->layers[0].sheet[0].target[1] = 1;
+	scene->layers[0].sheet[0].shrink[0] = scene->layers[0].sheet[0].shrink[1] = SQUARED;
+	cau_session *session = stage_open(scene, 1);
+	go(session, 0, DWELL_TICKS);
+	stage_energize(session, "hook", 0);
+	stage_step(session,
+	           60 + 12); // each element is looked at within a second, and shrinks for 0.2 s
+	int32_t shrunk = 0;
+	for (int32_t t = 0; t < session->tissue.triangle_count; t++) {
+		double root[6], share = cau_dissection_coagulated(&session->dissection, 0, t);
+		cau_elements_target(&session->solver.elements, &session->solver.slots, 0, t, root);
+		assert_int_equal(session->shrink.shrunk[0][t], share >= 0.5);
+		if (share >= 0.5)
+			assert_true(fabs(root[0] - sqrt(SQUARED)) < 1e-6 && fabs(root[2]) < 1e-6);
+		shrunk += share >= 0.5;
+	}
+	assert_true(shrunk > 0 && shrunk < session->tissue.triangle_count / 4);
+	free(scene);
+	cau_session_destroy(session);
+}
+
 // Cells are those of the thickness that the sheet was made with, also where it has changed since.
 static void a_changed_thickness_is_restored(void **state)
 {
@@ -336,6 +364,7 @@ int main(void)
 		cmocka_unit_test(threads_and_a_restore_change_no_bit),
 		cmocka_unit_test(heat_goes_on_beyond_the_tool),
 		cmocka_unit_test(soft_coagulation_heats_and_parts_nothing),
+		cmocka_unit_test(coagulated_tissue_shrinks),
 		cmocka_unit_test(a_changed_thickness_is_restored),
 		cmocka_unit_test(bipolar_jaws_heat_what_lies_between),
 		cmocka_unit_test(a_rubbing_blade_heats_tissue),
