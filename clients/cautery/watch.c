@@ -26,6 +26,10 @@ static void write_tool_line(FILE *out, const cau_stream_tool *tool)
 {
 	fprintf(out, "  %s %s%s %.0f degC %.2f N", tool->name, tool->energized ? "on" : "off",
 	        tool->frozen ? " (watchdog)" : "", tool->tip_temperature_c, length(tool->force_n));
+	if (tool->delivered_w > 0)
+		fprintf(out, "  %.1f W", tool->delivered_w);
+	if (tool->load_ohm > 0)
+		fprintf(out, "  %.0f ohm", tool->load_ohm);
 	if (tool->grasping && !tool->grasped_vertices)
 		fprintf(out, "  jaws empty");
 	else if (tool->grasping)
@@ -87,6 +91,8 @@ static void write_tool(cau_json_writer *writer, const cau_stream_tool *tool)
 	cau_json_numbers(writer, "asked_m", tool->asked_pose.position_m, 3);
 	cau_json_numbers(writer, "force_n", tool->force_n, 3);
 	cau_json_number(writer, "tip_temperature_c", tool->tip_temperature_c);
+	cau_json_number(writer, "delivered_w", tool->delivered_w);
+	cau_json_number(writer, "load_ohm", tool->load_ohm);
 	cau_json_close(writer);
 }
 

@@ -140,29 +140,42 @@ static const char *read_array(cau_frame_decoder *decoder, const section_cursor *
 	return wrong;
 }
 
+static bool is_of_tools(int type)
+{
+	return type == CAU_SECTION_TOOL_NAMES || type == CAU_SECTION_TOOLS_ASKED ||
+	       type == CAU_SECTION_TOOL_JAWS || type == CAU_SECTION_TOOL_POWER;
+}
+
+static const char *read_tools(cau_frame_decoder *decoder, const section_cursor *cursor)
+{
+	const uint8_t *payload = cursor->payload;
+	size_t bytes = cursor->payload_bytes;
+	int32_t *count = &decoder->state.tool_count;
+	switch (cursor->type) {
+	case CAU_SECTION_TOOL_NAMES:
+		return cau_tool_names_read(payload, bytes, decoder->tools, count);
+	case CAU_SECTION_TOOLS_ASKED:
+		return cau_tools_asked_read(payload, bytes, decoder->tools, *count);
+	case CAU_SECTION_TOOL_JAWS:
+		return cau_tool_jaws_read(payload, bytes, decoder->tools, *count);
+	case CAU_SECTION_TOOL_POWER:
+		return cau_tool_power_read(payload, bytes, decoder->tools, *count);
+	default:
+		return cau_tools_read(payload, bytes, decoder->tools, *count);
+	}
+}
+
 // Sections of channels that the stream has not are skipped, like unknown ones.
 static const char *read_section(cau_frame_decoder *decoder, const section_cursor *cursor, bool key)
 {
 	cau_stream_state *state = &decoder->state;
-	bool names = cursor->type == CAU_SECTION_TOOL_NAMES;
-	bool asked = cursor->type == CAU_SECTION_TOOLS_ASKED,
-		 jaws = cursor->type == CAU_SECTION_TOOL_JAWS;
 	int channel =
-		names || asked || jaws ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
+		is_of_tools(cursor->type) ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
 	if (channel == CAU_CHANNEL_COUNT || !cau_stream_has(&decoder->def, channel))
 		return NULL;
 	switch (channel) {
 	case CAU_CHANNEL_INDEX_TOOLS:
-		if (asked)
-			return cau_tools_asked_read(cursor->payload, cursor->payload_bytes, decoder->tools,
-			                            state->tool_count);
-		if (jaws)
-			return cau_tool_jaws_read(cursor->payload, cursor->payload_bytes, decoder->tools,
-			                          state->tool_count);
-		return names ? cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
-		                                   &state->tool_count)
-		             : cau_tools_read(cursor->payload, cursor->payload_bytes, decoder->tools,
-		                              state->tool_count);
+		return read_tools(decoder, cursor);
 	case CAU_CHANNEL_INDEX_STATISTICS:
 		return cau_statistics_read(cursor->payload, cursor->payload_bytes, &state->statistics);
 	default:

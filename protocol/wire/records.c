@@ -105,7 +105,8 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 		return "its shape or its reason for energy off is none";
 	if (!is_finite(tool->pose.position_m, 3) || !is_finite(tool->pose.rotation, 4) ||
 	    !is_finite(&tool->jaw, 1) || !is_finite(&tool->asked_jaw, 1) ||
-	    !is_finite(&tool->jaw_force_n, 1) || !is_finite(tool->force_n, 3) ||
+	    !is_finite(&tool->jaw_force_n, 1) || !is_finite(&tool->delivered_w, 1) ||
+	    !is_finite(&tool->load_ohm, 1) || !is_finite(tool->force_n, 3) ||
 	    !is_finite(tool->torque_nm, 3) || !is_finite(&tool->tip_temperature_c, 1) ||
 	    !is_finite(&tool->energy_j, 1) ||
 	    (tool->behind &&
@@ -151,6 +152,20 @@ size_t cau_tool_jaws_write(uint8_t *out, const cau_stream_tool *tools, int32_t c
 	return (size_t)(at - out);
 }
 
+size_t cau_tool_power_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
+{
+	CAU_RULE(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool any = false;
+	for (int32_t i = 0; i < count; i++)
+		any = any || tools[i].delivered_w > 0 || tools[i].load_ohm > 0;
+	uint8_t *at = out;
+	for (int32_t i = 0; i < count && any; i++) {
+		at = store_vector(at, &tools[i].delivered_w, 1);
+		at = store_vector(at, &tools[i].load_ohm, 1);
+	}
+	return (size_t)(at - out);
+}
+
 static const uint8_t *load_vector(const uint8_t *at, double *value, int count, bool *finite)
 {
 	for (int i = 0; i < count; i++, at += 4) {
@@ -174,7 +189,7 @@ static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
 	tool->behind = false;
 	tool->asked_pose = tool->pose;
 	tool->asked_jaw = tool->jaw;
-	tool->jaw_force_n = 0;
+	tool->jaw_force_n = tool->delivered_w = tool->load_ohm = 0;
 	tool->driver = load_u32(at);
 	tool->energized = at[4] & TOOL_ENERGIZED;
 	tool->grasping = at[4] & TOOL_GRASPING;
@@ -230,6 +245,20 @@ const char *cau_tool_jaws_read(const uint8_t *payload, size_t bytes, cau_stream_
 		payload = load_vector(payload, &tools[i].jaw_force_n, 1, &finite);
 	}
 	return finite ? NULL : "a number of jaws is not finite";
+}
+
+const char *cau_tool_power_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                int32_t count)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool finite = true;
+	if (bytes != (size_t)count * TOOL_POWER_BYTES)
+		return "there is not as much power as tools";
+	for (int32_t i = 0; i < count; i++) {
+		payload = load_vector(payload, &tools[i].delivered_w, 1, &finite);
+		payload = load_vector(payload, &tools[i].load_ohm, 1, &finite);
+	}
+	return finite ? NULL : "a tool's power is not finite";
 }
 
 static int is_float_word(size_t word)

@@ -30,6 +30,8 @@ static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
 		.jaw = from->jaw,
 		.asked_jaw = from->asked_jaw,
 		.jaw_force_n = from->jaw_force_n,
+		.delivered_w = from->delivered_w,
+		.load_ohm = from->load_ohm,
 		.tip_temperature_c = from->tip_temperature_c,
 		.energy_j = from->energy_j,
 		.sequence = from->sequence,

@@ -47,6 +47,32 @@ test('an enable that its page overtakes by hiding lights nothing', async () => {
 	await client.close();
 });
 
+test('a stream tells what a generator gives, and what it finds', async () => {
+	const client = await daemon.connect();
+	const { summary: { session } } = await client.call('session.create', { name: 'power', scene: 'fascia-power', paused: true });
+	const stream = await client.join(session, { rate_hz: 1000, channels: ['tools'] });
+	const needle = { session, tool: 'needle' };
+	await client.call('tool.take_over', needle);
+	await client.call('tool.energize', { ...needle, energized: true });
+	const step = async (ticks) => {
+		const { tick } = await client.call('session.step', { session, ticks });
+		await client.until(() => stream.tick === tick, 'the frame of the step');
+		return stream.tools[0];
+	};
+	const inAir = await step(1);
+	assert.deepEqual([inAir.deliveredW, inAir.loadOhm], [0, 0]);
+	await client.call('tool.move', { ...needle, position_m: [-0.02, 0, -0.002], rotation: [1, 0, 0, 0] });
+	let on = await step(1);
+	while (!(on.deliveredW > 0) && stream.tick < 200)
+		on = await step(1);
+	assert.ok(on.deliveredW > 0 && on.deliveredW <= 30, `${on.deliveredW} W`);
+	assert.ok(on.loadOhm > 10 && on.loadOhm < 1e5, `${on.loadOhm} ohm`);
+	await client.call('tool.energize', { ...needle, energized: false });
+	const off = await step(1);
+	assert.deepEqual([off.energized, off.deliveredW, off.loadOhm], [false, 0, 0]);
+	await client.close();
+});
+
 test('a tool that is removed while its energy is on is turned off first, and its session goes on', async () => {
 	const session = await smallSession(watcher, 'removed');
 	const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });

@@ -84,6 +84,7 @@ SECTION = {
     "rest": 19,
     "tools_asked": 32,
     "tool_jaws": 33,
+    "tool_power": 34,
 }
 
 # Words that frames have as numbers.

@@ -6,7 +6,7 @@ from __future__ import annotations
 import struct
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Iterator, Mapping
 
 import numpy as np
@@ -58,6 +58,8 @@ class Tool:
     slipping: bool
     energy_off: str  # why energy went off last
     sequence: int  # of the last command that was applied
+    delivered_w: float = 0.0  # into tissue in the last step
+    load_ohm: float = 0.0  # that its generator finds; 0: no current flows
 
 
 @dataclass(frozen=True)
@@ -283,6 +285,8 @@ class Stream:
             self._names = _tool_names(payload)
         elif number == SECTION["tools"]:
             self._tools = _tools(payload, self._names)
+        elif number == SECTION["tool_power"]:
+            self._tools = _with_power(payload, self._tools)
         elif number == SECTION["statistics"]:
             self._statistics = _statistics(payload)
 
@@ -327,6 +331,12 @@ def _tools(payload: bytes, names: list[tuple[str, str]]) -> dict[str, Tool]:
             energy_off=ENERGY_OFF_REASONS[off] if off < len(ENERGY_OFF_REASONS) else str(off),
             sequence=int(record["sequence"]))
     return tools
+
+
+def _with_power(payload: bytes, tools: dict[str, Tool]) -> dict[str, Tool]:
+    power = np.frombuffer(payload, "<f4", 2 * len(tools)).reshape(-1, 2)
+    return {name: replace(tool, delivered_w=float(watts), load_ohm=float(ohm))
+            for (name, tool), (watts, ohm) in zip(tools.items(), power)}
 
 
 def _statistics(payload: bytes) -> dict[str, float]:

@@ -91,6 +91,8 @@ typedef struct cau_stream_tool {
 	double torque_nm[3];       // about the tip
 	double tip_temperature_c;  // of the hot part
 	double energy_j;           // heat taken up by tissue, rough
+	double delivered_w;        // into tissue in the last step, with energy `tissue`
+	double load_ohm;           // that its generator finds; 0: no current flows
 	uint64_t sequence;         // of the last applied command
 	uint32_t driver;           // the driving client's number; 0: no driver
 	bool energized;            // energy is on

@@ -153,6 +153,8 @@ function toolRecords(payload, names) {
 			grasping: (view.getUint8(at + 76) & 2) !== 0,
 			frozen: (view.getUint8(at + 76) & 4) !== 0,
 			energyOff: OFF[view.getUint8(at + 77)],
+			deliveredW: 0,
+			loadOhm: 0,
 		};
 	});
 }
@@ -215,7 +217,10 @@ export class Decoder {
 			this.names = toolNames(payload);
 		else if (type === 7)
 			this.tools = toolRecords(payload, this.names);
-		else if (type === 8) {
+		else if (type === 34) {
+			const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+			this.tools.forEach((tool, i) => Object.assign(tool, { deliveredW: view.getFloat32(8 * i, true), loadOhm: view.getFloat32(8 * i + 4, true) }));
+		} else if (type === 8) {
 			const view = new DataView(payload.buffer, payload.byteOffset);
 			this.realtimeFactor = view.getFloat32(0, true);
 			this.stepCost = view.getFloat32(4, true);

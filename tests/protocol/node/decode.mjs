@@ -177,6 +177,8 @@ function readTool(view, at, name) {
     jaw: floats(36, 1),
     askedJaw: floats(36, 1),
     jawForce: [0],
+    power: [0],
+    load: [0],
     force: floats(40, 3),
     torque: floats(52, 3),
     temperature: floats(64, 1),
@@ -246,6 +248,10 @@ export class StreamDecoder {
       if (payload.length !== 8 * this.tools.length) fail('not as many jaws as tools');
       const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
       this.tools.forEach((tool, i) => Object.assign(tool, { askedJaw: [view.getFloat32(8 * i, true)], jawForce: [view.getFloat32(8 * i + 4, true)] }));
+    } else if (type === 34) {
+      if (payload.length !== 8 * this.tools.length) fail('not as much power as tools');
+      const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+      this.tools.forEach((tool, i) => Object.assign(tool, { power: [view.getFloat32(8 * i, true)], load: [view.getFloat32(8 * i + 4, true)] }));
     } else if (type === 8) {
       this.statistics = readStatistics(payload);
     }

@@ -9,7 +9,7 @@ import { Corrupt, Refused, SCALARS, StreamDecoder, decodeTopology } from './deco
 const folder = process.env.CAUTERY_GOLDEN;
 const read = (name) => new Uint8Array(readFileSync(join(folder, name)));
 const manifest = JSON.parse(readFileSync(join(folder, 'streams.json'), 'utf8'));
-const FLOATS = ['position', 'rotation', 'asked', 'askedRotation', 'jaw', 'askedJaw', 'jawForce', 'force', 'torque', 'temperature', 'energy'];
+const FLOATS = ['position', 'rotation', 'asked', 'askedRotation', 'jaw', 'askedJaw', 'jawForce', 'force', 'torque', 'temperature', 'energy', 'power', 'load'];
 
 function compareTools(tools, expected) {
   assert.equal(tools.length, expected.length);

@@ -87,6 +87,8 @@ static void write_tool(FILE *out, const cau_stream_tool *tool)
 	write_floats(out, "torque", tool->torque_nm, 3);
 	write_floats(out, "temperature", &tool->tip_temperature_c, 1);
 	write_floats(out, "energy", &tool->energy_j, 1);
+	write_floats(out, "power", &tool->delivered_w, 1);
+	write_floats(out, "load", &tool->load_ohm, 1);
 	fputc('}', out);
 }
 

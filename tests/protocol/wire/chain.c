@@ -77,6 +77,8 @@ static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *
 	}
 	assert_true((float)a->jaw == (float)b->jaw && (float)a->asked_jaw == (float)b->asked_jaw);
 	assert_true((float)a->jaw_force_n == (float)b->jaw_force_n);
+	assert_true((float)a->delivered_w == (float)b->delivered_w);
+	assert_true((float)a->load_ohm == (float)b->load_ohm);
 	assert_true((float)a->tip_temperature_c == (float)b->tip_temperature_c);
 }
 

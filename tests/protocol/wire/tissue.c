@@ -81,6 +81,8 @@ static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_
 		.jaw = 0.25,
 		.asked_jaw = tick % 4 == 1 ? 0.0 : 0.25,
 		.jaw_force_n = tick % 4 == 2 ? 4.5 : 0.0,
+		.delivered_w = tick % 3 == 2 ? 27.5 : 0.0,
+		.load_ohm = tick % 3 == 2 ? 640.0 : 0.0,
 		.force_n = {0.1, -0.2, 0.0625 * (tick % 5)},
 		.torque_nm = {0.0, 0.001, -0.002},
 		.tip_temperature_c = 37.0 + tick,

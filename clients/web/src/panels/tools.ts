@@ -123,7 +123,8 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
     const force = Math.hypot(...tool.forceN);
     const pressed = tool.jawForceN < LEAST_FORCE_N ? '' : ` pressed with ${short(tool.jawForceN, 2)} N`;
     const grasp = !tool.grasping ? '' : tool.graspedVertices === 0 ? ', jaws empty' : `, holds ${tool.graspedVertices} points${pressed}${tool.slipping ? ', slipping' : ''}`;
-    const text = `${energy}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
+    const power = tool.deliveredW > 0 ? ` at ${short(tool.deliveredW, 2)} W${tool.loadOhm > 0 ? ` into ${short(tool.loadOhm, 3)} Ω` : ''}` : '';
+    const text = `${energy}${power}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
     if (state.value !== text) state.value = text;
   });
   const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, field('Moves', guide), jawField, edit.form, addForm(control));

@@ -3,7 +3,7 @@
 import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
 import { SCALARS, SECTION, type ScalarName } from './messages.gen';
-import { readAsked, readJaws, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
+import { readAsked, readJaws, readPower, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
 
 export interface StreamShape {
   session_number: number;
@@ -154,6 +154,8 @@ export class FrameDecoder {
     if (asked) this.state.tools = readAsked(asked, this.state.tools);
     const jaws = sections.get(SECTION.tool_jaws);
     if (jaws) this.state.tools = readJaws(jaws, this.state.tools);
+    const power = sections.get(SECTION.tool_power);
+    if (power) this.state.tools = readPower(power, this.state.tools);
     const statistics = sections.get(SECTION.statistics);
     if (statistics) this.state.statistics = readStatistics(statistics);
   }

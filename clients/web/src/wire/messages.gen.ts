@@ -2298,6 +2298,7 @@ export const SECTION = {
   rest: 19,
   tools_asked: 32,
   tool_jaws: 33,
+  tool_power: 34,
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.

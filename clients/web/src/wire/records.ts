@@ -25,6 +25,8 @@ export interface ToolState extends ToolName {
   torqueNm: Vector;
   tipTemperatureC: number;
   energyJ: number;
+  deliveredW: number; // into tissue in the last step; 0 from servers that do not tell it
+  loadOhm: number; // that its generator finds; 0: no current flows
   driver: number;
   energized: boolean;
   grasping: boolean;
@@ -65,6 +67,7 @@ export interface Statistics {
 const TOOL_BYTES = 84;
 const ASKED_BYTES = 28;
 const JAW_BYTES = 8;
+const POWER_BYTES = 8;
 const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn, touchingCutShort
 const TOOLS_MAX = 8;
 
@@ -112,6 +115,8 @@ function readTool(view: DataView, offset: number, name: ToolName): ToolState {
     torqueNm: readVector(view, offset + 52),
     tipTemperatureC: view.getFloat32(offset + 64, true),
     energyJ: view.getFloat32(offset + 68, true),
+    deliveredW: 0,
+    loadOhm: 0,
     driver: view.getUint32(offset + 72, true),
     energized: (flags & 1) !== 0,
     grasping: (flags & 2) !== 0,
@@ -135,6 +140,13 @@ export function readJaws(payload: Uint8Array, tools: readonly ToolState[]): Tool
   if (payload.byteLength !== tools.length * JAW_BYTES) throw new WireError('jaws do not match their tools');
   const view = viewOf(payload);
   return tools.map((tool, i) => ({ ...tool, askedJaw: view.getFloat32(i * JAW_BYTES, true), jawForceN: view.getFloat32(i * JAW_BYTES + 4, true) }));
+}
+
+/** Without the section no generator gives power, as readTools tells. */
+export function readPower(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
+  if (payload.byteLength !== tools.length * POWER_BYTES) throw new WireError('power does not match the tools');
+  const view = viewOf(payload);
+  return tools.map((tool, i) => ({ ...tool, deliveredW: view.getFloat32(i * POWER_BYTES, true), loadOhm: view.getFloat32(i * POWER_BYTES + 4, true) }));
 }
 
 // Without the section every tool is where it is asked to be, as readTools tells.
