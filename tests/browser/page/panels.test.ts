@@ -7,6 +7,7 @@ import { Stage } from './stage';
 import { ViewerPage } from './viewer_page';
 
 const LIFTED_M = 0.003;
+const LIST_READ_AGAIN_MS = 5500; // REFRESH_MS of panels/sessions.ts, and a little
 
 describe('panels', () => {
   const stage = new Stage(['--demo', 'fascia']);
@@ -27,6 +28,8 @@ describe('panels', () => {
     const problem = page.locator('#panel-sessions > .problem');
     await problem.waitFor({ state: 'visible' });
     expect(await problem.textContent()).toMatch(/^A name begins with a small letter[^[\]*()]*\.$/);
+    await page.waitForTimeout(LIST_READ_AGAIN_MS);
+    expect(await problem.isVisible()).toBe(true);
     await page.getByLabel('Name of the fork').fill('');
     await page.getByRole('tab', { name: 'Tools' }).click();
     expect(await page.getByLabel('Hot radius').inputValue()).toBe('3');

@@ -49,6 +49,7 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
   const seed = element('input', { type: 'number', name: 'seed', min: '0', step: '1' });
   const about = element('p', { class: 'about' });
+  const unread = problemPlace(); // a scene is also read by itself, which must not take away what the user is told
   const submit = element('button', { type: 'submit' }, 'Create');
   let definition: Scene | null = null;
   const load = async (): Promise<void> => {
@@ -59,11 +60,11 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
     gravity.value = String(definition.gravity_m_s2?.[2] ?? -9.81);
     seed.value = String(definition.seed ?? 0);
   };
-  scene.addEventListener('change', () => void attempt(problem, load));
+  scene.addEventListener('change', () => void attempt(unread, load));
   const fill = (): void => {
     if (scene.options.length === model.scenes.length) return;
     scene.replaceChildren(...model.scenes.map((other) => element('option', { value: other.name }, other.name)));
-    if (model.scenes.length > 0) void attempt(problem, load);
+    if (model.scenes.length > 0) void attempt(unread, load);
   };
   model.on('sessions', fill);
   model.on('link', () => (submit.disabled = !model.mayOperate));
@@ -71,6 +72,7 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
     'form',
     { class: 'form' },
     field('Scene', scene),
+    unread,
     about,
     field('Name', name),
     field('Iterations', iterations, '', 'of a step: more is stiffer and slower'),
@@ -137,6 +139,7 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
   const { model } = control;
   const problem = problemPlace();
   const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
+  const stale = problemPlace(); // of the list, which is read again by itself
   const about = element('p', { class: 'about' });
   const show = (): void => {
     list.replaceChildren(
@@ -159,7 +162,7 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
     'div',
     {},
     problem,
-    list,
+    element('div', {}, stale, list),
     about,
     forkAndFiles(control, problem),
     snapshotSection(control),
@@ -169,7 +172,7 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
   let visible = true;
   setInterval(() => {
     if (!visible || document.hidden || model.link.state !== 'online' || list.contains(document.activeElement)) return;
-    void attempt(problem, async () => model.setSessions((await link.call('session.list', {})).sessions));
+    void attempt(stale, async () => model.setSessions((await link.call('session.list', {})).sessions));
   }, REFRESH_MS);
   return { id: 'sessions', title: 'Sessions', body, shown: (now) => (visible = now) };
 }
