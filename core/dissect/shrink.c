@@ -223,7 +223,7 @@ static void start_shrinking(cau_shrink *shrink, const cau_tissue *tissue, int ki
 		cau_elements_set_target(elements, slots, tissue, kind, element, shrinking.to);
 }
 
-// ---- what is denatured
+// ---- denatured tissue
 
 // Of a field with these values at the element's corners, in the element at rest.
 static cau_vec3 gradient(const cau_tissue *tissue, int kind, int32_t element, const double value[4])

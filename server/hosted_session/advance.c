@@ -62,6 +62,10 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 		cau_answer_fail(order, &error, 0);
 		return CAU_NOT_DONE;
 	}
+	if (advance->command_count && cau_record_check(h, &error)) {
+		cau_answer_fail(order, &error, CAU_RPC_STORE_FULL);
+		return CAU_NOT_DONE;
+	}
 	advance->began_tick = h->tick;
 	for (int32_t i = 0; i < advance->command_count; i++)
 		apply(h, order, &advance->commands[i]);

@@ -68,7 +68,8 @@ static void answer_command(cau_hosted *h, cau_order *order)
 		cau_record_reply(h, &order->reply, text, bytes);
 }
 
-// Energy off acts, whatever the store has; nothing else does that a restart would not know of.
+// Energy off acts although it cannot be logged. Every other command is refused: a restart would
+// not replay it.
 static cau_outcome_kind apply_unstored(cau_hosted *h, cau_order *order, const cau_error *error)
 {
 	cau_command *command = &order->as.command;

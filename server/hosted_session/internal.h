@@ -374,10 +374,10 @@ void cau_times_published(cau_hosted *h, bool made);
 
 // ---- record.c: the store
 cau_store_batch *cau_record_batch(cau_hosted *h); // of this slice; NULL if memory ran out
-// Whether a command of now can be logged. What the log has of a tick is the first of what it was
-// sent, whatever was lost, so that a restart has a place for each command that was acknowledged.
-// After a loss it goes on from a checkpoint, which is made here unless commands of this tick are
-// with the core already. CAU_IO: they are, and a paused session must be stepped first.
+// Whether a command can be logged at this tick. The log of a tick has no gap before an entry, so
+// that a restart finds room for each acknowledged command. After a loss the log starts again at a
+// checkpoint. This call makes the checkpoint, unless the core has commands of this tick already:
+// then it returns CAU_IO, and a paused session must be stepped first.
 cau_status cau_record_check(cau_hosted *h, cau_error *error);
 // Logs a command that the core has taken, with the answer to its request if `order` has one.
 void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,

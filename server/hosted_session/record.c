@@ -68,7 +68,7 @@ void cau_record_command(cau_hosted *h, const cau_command *command, const cau_ord
 	size_t json_bytes = 0;
 	h->touched = true;
 	if (h->lost_from <= h->tick && is_past_commands(h))
-		return; // a cut, behind a command that was lost
+		return; // a cut of the daemon's own, behind a command that was lost
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
 	cau_store_command row = next_entry(h, command->kind);

@@ -18,8 +18,8 @@ static void *leave(void *domain)
 	return NULL;
 }
 
-// Cyclone's threads run on: no handler of exit() may take from them what they use, as those of
-// OpenSSL would. This one was added last, so it runs first.
+// Cyclone's threads still run. The exit handler of OpenSSL frees memory that they use, so the
+// process ends before it. Exit handlers run in the reverse order of their registration.
 static void end_at_once(int status, void *unused)
 {
 	(void)unused;

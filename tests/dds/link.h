@@ -6,8 +6,8 @@
 
 enum { NAME_BYTES = 49 };
 
-// Ends the program with the reason on standard error. It does not run the handlers of exit(): those
-// of OpenSSL would take from Cyclone's threads what they still use.
+// Ends the program with the reason on standard error. Exit handlers do not run: OpenSSL's frees
+// memory that Cyclone's threads still use.
 __attribute__((noreturn)) void give_up(const char *reason);
 // The entity, or the end of the program.
 dds_entity_t checked(dds_entity_t entity);

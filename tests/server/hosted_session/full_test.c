@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A paused session whose store was full for a while: what its log has of the tick is the first of
-// what it was sent, so that a restart can take each command that was acknowledged.
+// A paused session whose store was full for a while. Its log of the tick has no entry behind a lost
+// command, so that a restart can take each acknowledged command.
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #include "cautery/defaults.h"
 #include "server/hosted_session/hosted_fixture.h"
 
-enum { CREATED, BEFORE, LOST, BEHIND, OFF, STEPPED, AFTER };
+enum { CREATED, TAKEN, BEFORE, LOST, BEHIND, ADVANCED, OFF, STEPPED, AFTER };
 
 static void limit_files(rlim_t bytes)
 {
@@ -37,6 +37,30 @@ static const hosted_answer *turn_off(int asked)
 	cau_order *order = hosted_new_order(asked, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_ENERGIZE);
 	cau_default_command(&order->as.command, CAU_COMMAND_TOOL_ENERGIZE);
 	strcpy(order->as.command.tool, "hook");
+	hosted_submit(order);
+	return hosted_await(asked);
+}
+
+static void take_hook(int asked)
+{
+	cau_order *order = hosted_new_order(asked, CAU_ORDER_TAKE_OVER, CAU_METHOD_TOOL_TAKE_OVER);
+	strcpy(order->as.tool.tool, "hook");
+	hosted_submit(order);
+	assert_int_equal(hosted_await(asked)->status, CAU_OK);
+}
+
+// A request in lock-step with one command and no ticks.
+static const hosted_answer *advance(int asked)
+{
+	cau_order *order = hosted_new_order(asked, CAU_ORDER_ADVANCE, CAU_METHOD_SESSION_ADVANCE);
+	size_t bytes = sizeof *order + sizeof(cau_advance) + sizeof(cau_command);
+	order = realloc(order, bytes);
+	cau_advance *made = (cau_advance *)(order + 1);
+	cau_command *command = (cau_command *)(made + 1);
+	cau_default_command(command, CAU_COMMAND_TOOL_MOVE);
+	strcpy(command->tool, "hook");
+	*made = (cau_advance){.command_count = 1, .commands = command};
+	order->as.advance = made;
 	hosted_submit(order);
 	return hosted_await(asked);
 }
@@ -71,6 +95,7 @@ static void what_comes_behind_a_lost_command_is_not_acknowledged(void **state)
 	(void)state;
 	hosted_begin(NOWHERE, CREATED);
 	assert_int_equal(hosted_await(CREATED)->status, CAU_OK);
+	take_hook(TAKEN);
 	assert_int_equal(set_gravity(BEFORE)->status, CAU_OK);
 	limit_files(0);
 	assert_int_equal(set_gravity(LOST)->code, CAU_RPC_STORE_FULL);
@@ -79,6 +104,7 @@ static void what_comes_behind_a_lost_command_is_not_acknowledged(void **state)
 	const hosted_answer *behind = set_gravity(BEHIND);
 	assert_int_equal(behind->code, CAU_RPC_STORE_FULL);
 	assert_non_null(strstr(behind->reason, "step or resume the session"));
+	assert_int_equal(advance(ADVANCED)->code, CAU_RPC_STORE_FULL);
 	assert_int_equal(turn_off(OFF)->status, CAU_OK);
 	assert_non_null(strstr(t.answers[OFF].text, "\"stored\":false"));
 	assert_int_equal(logged(), 1);

@@ -9,7 +9,7 @@ enum {
 	NOWHERE = -1,
 	AT_RESTORE = CAU_BUILD_STAGE_COUNT + 1, // before the core takes a snapshot
 	CREATOR = 7,
-	ANSWERS = 8,
+	ANSWERS = 9,
 };
 
 typedef struct hosted_answer {

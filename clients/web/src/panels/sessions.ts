@@ -49,7 +49,7 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
   const seed = element('input', { type: 'number', name: 'seed', min: '0', step: '1' });
   const about = element('p', { class: 'about' });
-  const unread = problemPlace(); // a scene is also read by itself, which must not take away what the user is told
+  const unread = problemPlace(); // its own: the page also loads a scene unasked, and must not hide another problem
   const submit = element('button', { type: 'submit' }, 'Create');
   let definition: Scene | null = null;
   const load = async (): Promise<void> => {
@@ -139,7 +139,7 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
   const { model } = control;
   const problem = problemPlace();
   const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
-  const stale = problemPlace(); // of the list, which is read again by itself
+  const stale = problemPlace(); // its own: the page refreshes the list unasked
   const about = element('p', { class: 'about' });
   const show = (): void => {
     list.replaceChildren(
