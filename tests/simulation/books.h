@@ -17,6 +17,8 @@ typedef struct session_book {
 	bool full;                          // its store takes nothing
 	int64_t enabled_ns[TOOLS][CLIENTS]; // arrival of an enable that no cut has voided; 0: none
 	bool in_ticks[CLIENTS];             // silence of a client in lock-step is not of the clock
+	bool by_ticks[TOOLS][CLIENTS];      // the enable came with a request of lock-step
+	int ticks_left[CLIENTS];            // with energy, that requests of lock-step allow
 	int applied[GRAVITIES_MOST];        // place in the order of taking effect; 0: never
 	bool acknowledged[GRAVITIES_MOST];
 	int last_applied;            // places given
@@ -33,6 +35,9 @@ double books_gravity(int number);
 int books_number(double gravity); // 0: another one
 
 energy promises_energy(int session, int tool, int64_t at_ns);
+// The client whose ticks in lock-step alone allow the tool's energy; -1: there is another reason,
+// or none.
+int promises_by_ticks(int session, int tool, int64_t at_ns);
 
 // A rewind was asked for; it has come to its end, one way or the other.
 void books_line_leaves(session_book *book);

@@ -11,6 +11,8 @@
 
 #define BEAT_NS (50 * SIM_MS) // a fifth of the deadline, as the protocol says
 
+enum { CLOCK_BYTES = 48 };
+
 sim_client sim_clients[CLIENTS + COURIERS];
 sim_request sim_requests[REQUESTS_MOST];
 int sim_request_count;
@@ -29,13 +31,16 @@ void clients_begin(uint64_t seed, const sim_profile *profile)
 	for (int i = 0; i < CLIENTS + COURIERS; i++) {
 		sim_client *c = &sim_clients[i];
 		*c = (sim_client){.index = i, .visible = true};
+		c->clocked = sim_chance(&random_delays, 2);
+		c->clock_ahead_ns = sim_between(&random_delays, -900, 900) * SIM_SECOND;
 		snprintf(c->client_id, sizeof c->client_id, "client%d", i);
 	}
 }
 
-static int64_t delay(void)
+static int64_t delay(const sim_client *c)
 {
-	return sim_between(&random_delays, 50000, latency_most_ns);
+	int64_t late_ns = c->late_until_ns - sim_now();
+	return sim_between(&random_delays, 50000, latency_most_ns) + (late_ns > 0 ? late_ns : 0);
 }
 
 // ---- names
@@ -92,7 +97,7 @@ static void send_request(sim_client *c, uint64_t number)
 	r->connection = c->connection;
 	r->machine = c->machine;
 	sim_say("client %d sends %s", c->index, text);
-	sim_link_send(c->link, text, (size_t)bytes, false, number, delay());
+	sim_link_send(c->link, text, (size_t)bytes, false, number, delay(c));
 }
 
 static uint64_t make_request(sim_client *c, const sim_request *like)
@@ -155,7 +160,7 @@ void clients_notify(int index, const char *method, const char *params)
 		return;
 	int bytes = snprintf(text, sizeof text,
 	                     "{\"jsonrpc\":\"2.0\",\"method\":\"%s\",\"params\":{%s}}", method, params);
-	sim_link_send(c->link, text, (size_t)bytes, false, 0, delay());
+	sim_link_send(c->link, text, (size_t)bytes, false, 0, delay(c));
 }
 
 // ---- connections
@@ -165,14 +170,15 @@ void clients_connect(int index, int machine)
 	sim_client *c = &sim_clients[index];
 	if (c->link || !daemons_up(machine))
 		return;
-	c->link = sim_link_open(machine, c, delay());
+	c->late_until_ns = 0;
+	c->link = sim_link_open(machine, c, delay(c));
 	if (!c->link)
 		return;
 	if (c->machine != machine)
 		c->resume[0] = 0;
 	c->machine = machine;
 	c->connection++;
-	c->greeted = false;
+	c->greeted = c->clock_counts = false;
 	c->beats = c->visible = c->reads = true;
 	c->reads_ns = sim_now();
 	c->beat_ns = sim_now();
@@ -197,6 +203,14 @@ void clients_show(int index, bool visible)
 	sim_clients[index].beat_ns = sim_now();
 }
 
+// Its clock is known by then: else nothing shows for how long its first message was on its way.
+void clients_late(int index, int64_t ns)
+{
+	sim_client *c = &sim_clients[index];
+	if (c->link && c->clock_counts == c->clocked)
+		c->late_until_ns = sim_now() + ns;
+}
+
 void clients_read(int index, bool reads, int frames)
 {
 	sim_client *c = &sim_clients[index];
@@ -208,6 +222,16 @@ void clients_read(int index, bool reads, int frames)
 }
 
 // ---- heartbeats
+// A member behind others; "": it has no clock.
+static const char *clock_of(const sim_client *c, char text[CLOCK_BYTES])
+{
+	text[0] = 0;
+	if (c->clocked)
+		snprintf(text, CLOCK_BYTES, ",\"client_time_us\":%lld",
+		         (long long)(sim_now() + c->clock_ahead_ns) / 1000);
+	return text;
+}
+
 int64_t clients_beat_due(void)
 {
 	int64_t due_ns = SIM_NEVER;
@@ -225,7 +249,10 @@ void clients_beat(void)
 		if (!c->link || !c->beats || c->beat_ns > now_ns)
 			continue;
 		c->beat_ns = now_ns + BEAT_NS;
-		clients_notify(i, "heartbeat", c->visible ? "\"visible\":true" : "\"visible\":false");
+		char params[32 + CLOCK_BYTES], clock[CLOCK_BYTES];
+		snprintf(params, sizeof params, "\"visible\":%s%s", c->visible ? "true" : "false",
+		         clock_of(c, clock));
+		clients_notify(i, "heartbeat", params);
 	}
 }
 
@@ -309,12 +336,34 @@ static void on_frame(void *user, const unsigned char *bytes, size_t count)
 	streams_frame(c->index, bytes, count);
 }
 
+// Whether the message, or one before it, may have waited while its daemon was stopped. Then it
+// proves no life after it could have been read, and its clock cannot be the first.
+static bool waited(const sim_client *c, const sim_message *message)
+{
+	return message->due_ns < sim_stopped_until(c->machine);
+}
+
+// When the sender lived, at the latest, for all that the message can show. Without clocks it is the
+// time at which it could be read, with clocks that of its sending: of the daemon's reckoning at
+// most the longest usual delay later.
+static void hear(sim_client *c, const sim_message *message)
+{
+	bool clock = !message->binary && strstr(message->text, "\"client_time_us\"");
+	bool late = waited(c, message);
+	int64_t lived_ns = late ? message->due_ns : sim_now();
+	if (c->clock_counts)
+		lived_ns = clock ? message->sent_ns + latency_most_ns : 0;
+	if (lived_ns > c->heard_ns)
+		c->heard_ns = lived_ns;
+	c->clock_counts = c->clock_counts || (clock && !late);
+}
+
 static void on_arriving(void *user, const sim_message *message)
 {
 	sim_client *c = user;
-	c->heard_ns = sim_now();
+	hear(c, message);
 	if (message->tag) {
-		clients_request(message->tag)->arriving_ns = c->heard_ns;
+		clients_request(message->tag)->arriving_ns = sim_now();
 		promises_arriving(message->tag);
 	} else if (!message->binary && strstr(message->text, "\"stream.ack\"")) {
 		streams_ack_arriving(c->index, message->text);

@@ -39,6 +39,7 @@ typedef struct at_work {
 	bool applying;            // an order, or the daemon's own commands
 	const cau_session *begun; // a tick of it was decided and not stepped yet
 	energy allowed[TOOLS];
+	int by_ticks[TOOLS]; // client whose lock-step alone allows it; -1: none
 } at_work;
 
 static struct {
@@ -118,8 +119,20 @@ static const char *promise_of(int place, energy found)
 	                                : "energy_cut";
 }
 
-static void check_tool(const core_book *book, const cau_tool_state *tool, const at_work *work)
+// A tick with energy in lock-step is one of those that its client's requests allow.
+static void charge_ticks(const core_book *book, unsigned clients)
 {
+	for (int c = 0; c < CLIENTS; c++)
+		if (clients >> c & 1 && --sim_books[book->place].ticks_left[c] < 0)
+			sim_fail("energy_silent",
+			         "%s makes more ticks with energy on than client %d may be silent", book->id,
+			         c);
+}
+
+// The clients whose lock-step alone allows its energy, as bits.
+static unsigned check_tool(const core_book *book, const cau_tool_state *tool, const at_work *work)
+{
+	unsigned by_ticks = 0;
 	for (int t = 0; t < TOOLS; t++) {
 		if (!tool->energized || strcmp(tool->name, sim_tools[t]) != 0)
 			continue;
@@ -129,7 +142,10 @@ static void check_tool(const core_book *book, const cau_tool_state *tool, const 
 			         book->id, tool->name,
 			         work->allowed[t] == ENERGY_SILENT ? "its driver is silent"
 			                                           : "no enable counts");
+		if (work->by_ticks[t] >= 0)
+			by_ticks |= 1u << work->by_ticks[t];
 	}
+	return by_ticks;
 }
 
 static void on_step(const cau_session *core)
@@ -148,8 +164,10 @@ static void on_step(const cau_session *core)
 	promises_counted.ticks++;
 	sim_note((uint64_t)books_number(cau_fake_gravity(core)[2]));
 	cau_session_frame(core, &frame);
+	unsigned by_ticks = 0;
 	for (int32_t i = 0; i < frame.tool_count; i++)
-		check_tool(book, &frame.tools[i], work);
+		by_ticks |= check_tool(book, &frame.tools[i], work);
+	charge_ticks(book, by_ticks);
 }
 
 void core_watch_begin(uint64_t seed, const sim_profile *profile)
@@ -232,8 +250,10 @@ WRAPPED void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *a
 		return;
 	work->begun = work->deciding->core;
 	see_server(place, cau_hosted_id(work->deciding));
-	for (int t = 0; t < TOOLS; t++)
+	for (int t = 0; t < TOOLS; t++) {
 		work->allowed[t] = promises_energy(place, t, sim_now());
+		work->by_ticks[t] = promises_by_ticks(place, t, sim_now());
+	}
 }
 
 cau_outcome_kind __real_cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
@@ -289,7 +309,10 @@ void core_watch_advance(int64_t to_ns)
 		core_book *book = &watched.cores[i];
 		if (!book->core || !is_present(book) || !is_served(book))
 			continue;
-		if (book->logic->going || book->logic->draining) { // no tick begins
+		bool stopped = to_ns <= sim_stopped_until(book->machine);
+		if (stopped)
+			memset(book->wrong_ns, 0, sizeof book->wrong_ns);
+		if (stopped || book->logic->going || book->logic->draining) { // no tick begins
 			book->began_ns = to_ns;
 		} else {
 			look_at(book, to_ns);

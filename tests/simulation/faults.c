@@ -172,6 +172,8 @@ void __real_cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *ef
 void __wrap_cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects);
 WRAPPED void __wrap_cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 {
+	if (logic->lockstep && faults_act(FAULT_ticks_not_counted, 1))
+		logic->advance_tick = logic->tick;
 	if (!faults_act(FAULT_silence_not_cut, 1))
 		__real_cau_drive_cut_silent(logic, now_s, effects);
 }
@@ -183,6 +185,19 @@ WRAPPED void __wrap_cau_hosted_feed(cau_hosted *h, uint32_t client, double alive
 	__real_cau_hosted_feed(h, client, alive_s);
 	for (uint32_t other = 1; other <= CLIENTS && faults_act(FAULT_others_feed, 1); other++)
 		__real_cau_hosted_feed(h, other, alive_s);
+}
+
+double __real_cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s, double client_s,
+                                    double deadline_s);
+double __wrap_cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s, double client_s,
+                                    double deadline_s);
+WRAPPED double __wrap_cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s,
+                                            double client_s, double deadline_s)
+{
+	__real_cau_sign_of_life_hear(sign, arrival_s, client_s, deadline_s);
+	if (faults_act(FAULT_late_beats_count, 1))
+		sign->alive_s = arrival_s;
+	return sign->alive_s;
 }
 
 void __real_cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason);

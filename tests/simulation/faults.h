@@ -19,6 +19,9 @@
 	X(pause_keeps_energy, energy_cut, "a pause does not turn energy off")                          \
 	X(silence_not_cut, energy_silent, "silence does not turn energy off")                          \
 	X(others_feed, energy_silent, "any client's heartbeat counts for all drivers")                 \
+	X(late_beats_count, energy_silent, "a heartbeat counts when it comes, not when it was sent")   \
+	X(stop_not_seen, energy_silent, "what waited while the daemon was stopped counts as sent now") \
+	X(ticks_not_counted, energy_silent, "in lock-step silence is not counted")                     \
 	X(store_full_ignored, energy_full, "energy stays on while the store is full")                  \
 	X(core_ignores_off, energy_cut, "one in three cuts does not reach the core")                   \
 	X(command_twice, once, "one in thirty commands about tissue is given to the core twice")       \

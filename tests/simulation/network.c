@@ -11,12 +11,15 @@
 #include "simulation/faults.h"
 #include "simulation/scheduler.h"
 
-#define TICK_NS (100 * SIM_MS) // as the real one
+#define TICK_NS (100 * SIM_MS)  // as the real one
+#define WAITED_NS (20 * SIM_MS) // the real one's WAITED_S
 
 struct sim_link {
 	cau_connection connection; // first: the handlers' pointer is ours
 	void *client;
-	int64_t open_ns; // when its request arrives
+	int64_t open_ns;  // when its request arrives
+	int64_t empty_ns; // when nothing waited to be read last
+	int64_t due_ns;   // when the message at hand could have been read
 	bool opened, lost, wants_frame, reads;
 	int frames_a_round;
 	sim_message *first, *last;
@@ -82,7 +85,8 @@ void sim_link_send(sim_link *link, const void *text, size_t bytes, bool binary, 
 		due_ns = link->last->due_ns;
 	if (due_ns < link->open_ns)
 		due_ns = link->open_ns;
-	*message = (sim_message){.due_ns = due_ns, .tag = tag, .binary = binary, .bytes = bytes};
+	*message = (sim_message){
+		.sent_ns = sim_now(), .due_ns = due_ns, .tag = tag, .binary = binary, .bytes = bytes};
 	memcpy(message->text, text, bytes);
 	message->text[bytes] = 0;
 	*(link->first ? &link->last->next : &link->first) = message;
@@ -149,6 +153,7 @@ static void admit(cau_network *network, sim_link *link)
 		c->next->previous = c;
 	network->connections = c;
 	link->opened = true;
+	link->empty_ns = link->open_ns; // nothing was sent before
 	network->counts.accepted++;
 	bool opened = network->def.handler.opened(network->def.handler.user, c, "");
 	assert(opened);
@@ -175,6 +180,7 @@ static void read_one(cau_network *network, sim_link *link)
 	link->first = message->next;
 	if (!link->first)
 		link->last = NULL;
+	link->due_ns = message->due_ns;
 	net.end.arriving(link->client, message);
 	if (message->binary)
 		handler->binary(handler->user, &link->connection, message->text, message->bytes);
@@ -217,6 +223,7 @@ static bool serve_link(cau_network *network, sim_link *link, int64_t now_ns)
 	cau_connection *c = &link->connection;
 	while (!link->lost && !c->closing && link->first && link->first->due_ns <= now_ns)
 		read_one(network, link);
+	link->empty_ns = now_ns;
 	if (link->lost) {
 		end_link(network, link, 0);
 		return false;
@@ -371,8 +378,10 @@ void cau_connection_serve(cau_connection *connection, cau_role role)
 
 double cau_connection_sent_after_s(const cau_connection *connection, double now_s)
 {
-	(void)connection;
-	return now_s;
+	const sim_link *link = (const sim_link *)connection;
+	int64_t now_ns = sim_now();
+	bool waited = now_ns - link->due_ns > WAITED_NS && !faults_act(FAULT_stop_not_seen, 1);
+	return waited ? now_s - 1e-9 * (double)(now_ns - link->empty_ns) : now_s;
 }
 
 void cau_connection_send(cau_connection *c, cau_buffer *buffer)

@@ -13,7 +13,7 @@ typedef struct sim_link sim_link;
 
 typedef struct sim_message {
 	struct sim_message *next;
-	int64_t due_ns;
+	int64_t sent_ns, due_ns;
 	uint64_t tag; // the client's own
 	bool binary;
 	size_t bytes;

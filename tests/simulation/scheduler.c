@@ -19,6 +19,7 @@ enum {
 	FIBERS_MOST = 96,      // two daemons of 16 threads, twice while one ends, and the world's own
 	STACK_BYTES = 1 << 20, // touched as far as it is used; the sanitizer's frames are the largest
 	GUARD_BYTES = 4096,
+	MACHINES_MOST = 2,
 	NAME_BYTES = 16,
 	CLOCK_READ_NS = 50, // so that no loop that looks at the clock runs for ever
 };
@@ -51,6 +52,7 @@ static struct {
 	int ready_count, ready[FIBERS_MOST];
 	uint64_t last_id, trace, switches;
 	int64_t now_ns;
+	int64_t stopped_until_ns[MACHINES_MOST];
 	sim_random random;
 	sim_roughness roughness;
 	void (*watch)(int64_t);
@@ -152,6 +154,14 @@ static void go_to(fiber *next)
 	end_switch(sim.present);
 }
 
+// When it can go on: not before its machine can.
+static int64_t due_of(const fiber *f)
+{
+	int64_t due_ns = f->state == WAITING ? f->until_ns : sim.now_ns;
+	int64_t stopped_ns = sim_stopped_until(f->machine);
+	return due_ns > stopped_ns ? due_ns : stopped_ns;
+}
+
 // Those whose time has come are ready; the earliest time of the others.
 static int64_t wake_due(void)
 {
@@ -159,14 +169,16 @@ static int64_t wake_due(void)
 	sim.ready_count = 0;
 	for (int i = 0; i < sim.used; i++) {
 		fiber *f = &sim.fibers[i];
-		if (f->state == WAITING && f->until_ns <= sim.now_ns) {
-			f->state = READY;
-			f->timed_out = true;
+		if (f->state != WAITING && f->state != READY)
+			continue;
+		int64_t due_ns = due_of(f);
+		if (due_ns > sim.now_ns) {
+			earliest = due_ns < earliest ? due_ns : earliest;
+			continue;
 		}
-		if (f->state == READY)
-			sim.ready[sim.ready_count++] = i;
-		else if (f->state == WAITING && f->until_ns < earliest)
-			earliest = f->until_ns;
+		f->timed_out = f->state == WAITING || f->timed_out;
+		f->state = READY;
+		sim.ready[sim.ready_count++] = i;
 	}
 	return earliest;
 }
@@ -280,9 +292,21 @@ bool sim_is_alive(uint64_t id)
 void sim_kill_machine(int machine)
 {
 	assert(sim.present->machine != machine);
+	sim.stopped_until_ns[machine] = 0;
 	for (int i = 0; i < sim.used; i++)
 		if (sim.fibers[i].state != FREE && sim.fibers[i].machine == machine)
 			give_back(&sim.fibers[i]);
+}
+
+void sim_stop_machine(int machine, int64_t until_ns)
+{
+	assert(sim.present->machine != machine && machine < MACHINES_MOST);
+	sim.stopped_until_ns[machine] = until_ns;
+}
+
+int64_t sim_stopped_until(int machine)
+{
+	return machine == SIM_WORLD ? 0 : sim.stopped_until_ns[machine];
 }
 
 void sim_begin(uint64_t seed, const sim_roughness *roughness)

@@ -39,7 +39,10 @@ void sim_enter_machine(int machine);
 int sim_machine(void); // of the present fiber
 // All fibers of a machine end where they are, as threads do at `kill -9`. Not from one of them.
 void sim_kill_machine(int machine);
-uint64_t sim_self(void); // number of the present fiber, from 1, never used again
+// No fiber of the machine goes on before this time, as at SIGSTOP.
+void sim_stop_machine(int machine, int64_t until_ns);
+int64_t sim_stopped_until(int machine); // the end of its last stop; 0: there was none
+uint64_t sim_self(void);                // number of the present fiber, from 1, never used again
 bool sim_is_alive(uint64_t fiber);
 void sim_set_name(uint64_t fiber, const char *name); // the first 15 bytes
 const char *sim_name(void);

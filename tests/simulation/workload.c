@@ -12,6 +12,7 @@
 #include "simulation/promises.h"
 
 enum { EPHEMERAL = 5 }; // of six creations
+#define TENTH_NS (SIM_SECOND / 10)
 
 static int gravities; // numbers given
 
@@ -87,6 +88,7 @@ static void befall(maker *m)
 		{STEP_CUT, 6, CLIENTS, 0, 0},
 		{STEP_HIDE, 6, CLIENTS, 0, 0},
 		{STEP_SILENT, 6, CLIENTS, 0, 0},
+		{STEP_LATE, 3, CLIENTS, 20, 0},
 		{STEP_OFF, 5, CLIENTS, SESSIONS, TOOLS},
 		{STEP_PAUSE, 5, CLIENTS, SESSIONS, 0},
 		{STEP_RESUME, 6, CLIENTS, SESSIONS, 0},
@@ -123,6 +125,7 @@ static void befall(maker *m)
 		{STEP_KILL, 2, DISK_MACHINES, 0, 0},
 		{STEP_POWER, 2, DISK_MACHINES, 0, 0},
 		{STEP_RESTART, 1, DISK_MACHINES, 0, 0},
+		{STEP_STOP, 3, DISK_MACHINES, 12, 0},
 		{STEP_FULL, 1, DISK_MACHINES, 0, 0},
 		{STEP_SLOW_DISK, 1, DISK_MACHINES, 100, 0},
 		{STEP_BAD_DISK, 1, DISK_MACHINES, 0, 20},
@@ -288,7 +291,9 @@ static void advance(const work_step *s)
 	         "\"ticks\":%d,\"commands\":[{\"method\":\"tool.energize\",\"tool\":\"%s\","
 	         "\"energized\":true}]",
 	         1 + s->c / 2, sim_tools[tool]);
-	clients_ask(s->a, ASK_ADVANCE, "session.advance", s->b, tool, false, params);
+	uint64_t number = clients_ask(s->a, ASK_ADVANCE, "session.advance", s->b, tool, false, params);
+	if (number)
+		clients_request(number)->ticks = 1 + s->c / 2;
 }
 
 static void energize_later(const work_step *s)
@@ -453,6 +458,9 @@ static void do_to_client(const work_step *s)
 		c->beats = s->kind == STEP_BEAT;
 		c->beat_ns = sim_now();
 		break;
+	case STEP_LATE:
+		clients_late(s->a, (1 + s->b) * TENTH_NS);
+		break;
 	case STEP_STOP_READING:
 	case STEP_READ:
 		clients_read(s->a, s->kind == STEP_READ, 1 + s->b);
@@ -473,6 +481,10 @@ static void do_to_machine(const work_step *s)
 		break;
 	case STEP_RESTART:
 		daemons_end(s->a);
+		break;
+	case STEP_STOP:
+		if (daemons_up(s->a))
+			sim_stop_machine(s->a, sim_now() + (1 + s->b) * TENTH_NS);
 		break;
 	case STEP_FULL:
 	case STEP_ROOM:

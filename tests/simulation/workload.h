@@ -15,6 +15,7 @@ enum { STEPS_MOST = 512 };
 	X(SHOW, "show")           /* sim_client */                                                     \
 	X(SILENT, "silent")       /* client: no heartbeats */                                          \
 	X(BEAT, "beat")           /* client: again */                                                  \
+	X(LATE, "late")           /* client, tenths of a second: what it sends arrives after them */   \
 	X(STOP_READING, "unread") /* client takes nothing */                                           \
 	X(READ, "read")           /* client, frames a round */                                         \
 	X(CREATE, "create")       /* client, session, 1: paused, of 6; 5: ephemeral */                 \
@@ -51,6 +52,7 @@ enum { STEPS_MOST = 512 };
 	X(KILL, "kill")            /* machine: kill -9 */                                              \
 	X(POWER, "power")          /* machine: power is lost */                                        \
 	X(RESTART, "restart")      /* machine: SIGTERM, and a start */                                 \
+	X(STOP, "stop")            /* machine, tenths of a second: SIGSTOP, then SIGCONT */            \
 	X(FULL, "full")            /* machine: its disk takes no more */                               \
 	X(ROOM, "room")            /* machine: it does again */                                        \
 	X(SLOW_DISK, "slow_disk")  /* machine, ms of a sync */                                         \

@@ -67,6 +67,7 @@ typedef struct sim_request {
 	int life;                  // of the session's name
 	int64_t sequence;          // client_sequence; 0: none
 	int gravity;               // GRAVITY: which
+	int ticks;                 // ADVANCE: asked for
 	uint64_t first;            // number of the request that this one is sent again for; 0: none
 	int connection, machine;   // connection: of its client, counted
 	int64_t sent_ns, arriving_ns, answered_ns;
@@ -85,10 +86,15 @@ typedef struct sim_client {
 	int connection; // counts
 	bool greeted, beats, visible;
 	uint32_t number; // as the daemon knows it
-	int64_t sequence, beat_ns, heard_ns;
-	bool reads;       // takes what comes
-	int64_t reads_ns; // since when
-	uint64_t newest;  // request that changes something, to be sent again; 0: none
+	int64_t sequence, beat_ns;
+	bool clocked;           // its heartbeats say when they were sent
+	bool clock_counts;      // and the daemon knows the clock
+	int64_t clock_ahead_ns; // of the daemons'
+	int64_t late_until_ns;  // what it sends before that time arrives at that time
+	int64_t heard_ns;       // its newest sign of life: sent by then, for all that a daemon can know
+	bool reads;             // takes what comes
+	int64_t reads_ns;       // since when
+	uint64_t newest;        // request that changes something, to be sent again; 0: none
 	struct stream *streams[SESSIONS];
 } sim_client;
 
@@ -102,6 +108,7 @@ void clients_cut(int client);
 void clients_beat(void); // sends what heartbeats are due
 int64_t clients_beat_due(void);
 void clients_show(int client, bool visible);
+void clients_late(int client, int64_t ns); // its messages wait on their way
 void clients_read(int client, bool reads, int frames);
 // The number of the request; 0: the client has no connection. `params` is without session and
 // client_sequence, and may be "".
