@@ -30,6 +30,14 @@ typedef struct session_book {
 
 extern session_book sim_books[SESSIONS];
 
+// Expensive requests of each client that a daemon did since its start.
+typedef struct quota_book {
+	int64_t from_ns;
+	int done[CLIENTS];
+} quota_book;
+
+extern quota_book sim_quotas[DISK_MACHINES];
+
 // gravity.set with a number: the command's text, and back from the state.
 double books_gravity(int number);
 int books_number(double gravity); // 0: another one

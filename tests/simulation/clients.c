@@ -21,6 +21,20 @@ const char *const sim_tools[TOOLS] = {"hook", "probe"};
 
 static sim_random random_delays;
 static int64_t latency_most_ns;
+static bool have_tokens;
+
+// As the file `tokens` says.
+static const struct {
+	const char *token;
+	bool looks;  // and does nothing
+	int session; // the only one; -1: all
+	int quota;   // 0: none
+} owners[CLIENTS] = {
+	{"the-token-of-client-0-and-the-courier", false, -1, 0},
+	{"the-token-of-client-1", false, -1, 0},
+	{"the-token-of-client-2", false, 0, 1},
+	{"the-token-of-client-3", true, -1, 0},
+};
 
 void clients_begin(uint64_t seed, const sim_profile *profile)
 {
@@ -28,6 +42,7 @@ void clients_begin(uint64_t seed, const sim_profile *profile)
 	sim_request_count = 0;
 	random_delays = sim_random_of(seed, 5);
 	latency_most_ns = profile->latency_most_ns;
+	have_tokens = profile->tokens;
 	for (int i = 0; i < CLIENTS + COURIERS; i++) {
 		sim_client *c = &sim_clients[i];
 		*c = (sim_client){.index = i, .visible = true};
@@ -163,6 +178,27 @@ void clients_notify(int index, const char *method, const char *params)
 	sim_link_send(c->link, text, (size_t)bytes, false, 0, delay(c));
 }
 
+// ---- tokens
+static const char *token_of(const sim_client *c)
+{
+	return owners[c->index < CLIENTS ? c->index : 0].token;
+}
+
+bool clients_may(int client, ask what, int place)
+{
+	if (!have_tokens || client >= CLIENTS)
+		return true;
+	bool reads = what == ASK_HELLO || what == ASK_JOIN || what == ASK_KEY_FRAME ||
+	             what == ASK_LIST || what == ASK_OTHER; // OTHER: some of them read
+	bool there = place < 0 || owners[client].session < 0 || owners[client].session == place;
+	return (reads || !owners[client].looks) && there;
+}
+
+int clients_quota(int client)
+{
+	return have_tokens && client < CLIENTS ? owners[client].quota : 0;
+}
+
 // ---- connections
 void clients_connect(int index, int machine)
 {
@@ -185,6 +221,8 @@ void clients_connect(int index, int machine)
 	int at = snprintf(params, sizeof params,
 	                  "\"version\":1,\"client\":\"simulated %d\",\"client_id\":\"%s\"", index,
 	                  c->client_id);
+	if (have_tokens)
+		at += snprintf(params + at, sizeof params - (size_t)at, ",\"token\":\"%s\"", token_of(c));
 	if (c->resume[0])
 		snprintf(params + at, sizeof params - (size_t)at, ",\"resume\":\"%s\"", c->resume);
 	clients_ask(index, ASK_HELLO, "hello", -1, -1, false, params);

@@ -39,6 +39,7 @@ static void configure(int m)
 	snprintf(config->label, sizeof config->label, "%s", daemons_label(m));
 	snprintf(config->scenes, sizeof config->scenes, "%s", SIM_SCENES);
 	snprintf(config->viewer, sizeof config->viewer, "%s", SIM_VIEWER);
+	snprintf(config->tokens, sizeof config->tokens, "%s", profile_now.tokens ? SIM_TOKENS : "");
 	config->workers = profile_now.workers;
 	config->queue_commands = profile_now.queue_commands;
 	config->subscriber_bytes = profile_now.subscriber_bytes;

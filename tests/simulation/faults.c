@@ -275,6 +275,44 @@ WRAPPED cau_buffer *__wrap_cau_streams_next_frame(cau_streams *streams, cau_subs
 	return __real_cau_streams_next_frame(streams, subscriber, now_s, wake);
 }
 
+// ---- tokens
+bool __real_cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_role *role);
+bool __wrap_cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_role *role);
+WRAPPED bool __wrap_cau_auth_role(const cau_auth *auth, const char *token, size_t bytes,
+                                  cau_role *role)
+{
+	bool known = __real_cau_auth_role(auth, token, bytes, role);
+	if (known && faults_act(FAULT_every_token_is_admin, 1))
+		*role = CAU_ROLE_ADMIN;
+	return known;
+}
+
+bool __real_cau_auth_grant_bounds(const cau_auth *auth, uint64_t grant, cau_auth_bounds *bounds);
+bool __wrap_cau_auth_grant_bounds(const cau_auth *auth, uint64_t grant, cau_auth_bounds *bounds);
+WRAPPED bool __wrap_cau_auth_grant_bounds(const cau_auth *auth, uint64_t grant,
+                                          cau_auth_bounds *bounds)
+{
+	bool known = __real_cau_auth_grant_bounds(auth, grant, bounds);
+	if (known && faults_act(FAULT_sessions_unbounded, 1))
+		bounds->sessions[0] = 0;
+	return known;
+}
+
+cau_status __real_cau_quota_take(cau_quota *quota, cau_allowance *connection,
+                                 const cau_quota_token *token, const char *address, cau_role role,
+                                 double now_s, cau_error *error);
+cau_status __wrap_cau_quota_take(cau_quota *quota, cau_allowance *connection,
+                                 const cau_quota_token *token, const char *address, cau_role role,
+                                 double now_s, cau_error *error);
+WRAPPED cau_status __wrap_cau_quota_take(cau_quota *quota, cau_allowance *connection,
+                                         const cau_quota_token *token, const char *address,
+                                         cau_role role, double now_s, cau_error *error)
+{
+	return faults_act(FAULT_quota_ignored, 1)
+	           ? CAU_OK
+	           : __real_cau_quota_take(quota, connection, token, address, role, now_s, error);
+}
+
 // ---- bounds
 void __real_cau_streams_init(cau_streams *streams);
 void __wrap_cau_streams_init(cau_streams *streams);

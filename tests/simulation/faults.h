@@ -25,6 +25,9 @@
 	X(store_full_ignored, energy_full, "energy stays on while the store is full")                  \
 	X(core_ignores_off, energy_cut, "one in three cuts does not reach the core")                   \
 	X(command_twice, once, "one in thirty commands about tissue is given to the core twice")       \
+	X(every_token_is_admin, allowed, "every token is an administrator's")                          \
+	X(sessions_unbounded, allowed, "a token's sessions are not looked at")                         \
+	X(quota_ignored, allowed, "requests cost nothing")                                             \
 	X(orders_swapped, order, "two commands change places in the queue")                            \
 	X(answer_twice, one_answer, "one in fifty answers goes out twice")                             \
 	X(answer_lost, answered, "one in fifty answers is lost")                                       \

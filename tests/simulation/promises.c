@@ -20,6 +20,7 @@ enum { SILENT_TICKS = 15 }; // the deadline in lock-step
 
 promise_counts promises_counted;
 session_book sim_books[SESSIONS];
+quota_book sim_quotas[DISK_MACHINES];
 
 static struct {
 	sim_profile profile;
@@ -110,7 +111,7 @@ static bool meets_session(const sim_request *r)
 void promises_arriving(uint64_t number)
 {
 	sim_request *r = clients_request(number);
-	r->met = meets_session(r);
+	r->met = meets_session(r) && clients_may(r->client, r->what, r->session);
 	if (r->what == ASK_KEY_FRAME && r->met)
 		streams_key_asked(r->client, r->session);
 	if (!r->met)
@@ -142,22 +143,27 @@ void promises_arrived(uint64_t number)
 		void_enables(r->session, -1, EVERY_CLIENT, r->arriving_ns);
 }
 
+// Refused before it was looked up: that says nothing about the first.
+static bool was_looked_up(const sim_request *r)
+{
+	static const char *const refusals[] = {"\"moved\"", "not_here",      "store_full",
+	                                       "draining",  "queue is full", "\"rate\""};
+	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++)
+		if (!r->ok && strstr(r->result, refusals[i]))
+			return false;
+	return true;
+}
+
 // The answers of a session that moves go with it, so the daemon that it left has none of them.
 static void check_same(const sim_request *r)
 {
-	if (sim_sessions[r->session].machine != r->machine)
+	if (sim_sessions[r->session].machine != r->machine || !was_looked_up(r))
 		return;
 	for (uint64_t i = 1; i <= (uint64_t)sim_request_count; i++) {
 		const sim_request *other = clients_request(i);
 		bool same = other != r && other->client == r->client && other->sequence == r->sequence;
-		if (same && other->answered && other->ok && !other->unstored && !r->unstored && !r->ok &&
-		    !strstr(r->result, "\"moved\"") && !strstr(r->result, "not_here") &&
-		    !strstr(r->result, "store_full") && !strstr(r->result, "draining") &&
-		    !strstr(r->result, "queue is full"))
-			sim_fail("same_answer", "%s was answered with %s, then with %s", r->method,
-			         other->result, r->result);
-		if (same && other->answered && other->ok && r->ok && !other->unstored && !r->unstored &&
-		    strcmp(other->result, r->result) != 0)
+		bool both_stored = other->answered && other->ok && !other->unstored && !r->unstored;
+		if (same && both_stored && (!r->ok || strcmp(other->result, r->result) != 0))
 			sim_fail("same_answer", "%s was answered with %s, then with %s", r->method,
 			         other->result, r->result);
 	}
@@ -170,10 +176,39 @@ static void check_refusal(const sim_request *r)
 		sim_fail("sound", "%s is answered with %s", r->method, r->result);
 }
 
+// An allowance holds what a minute may ask for, and fills evenly. What is answered from the store
+// costs as much as the first.
+static void check_quota(const sim_request *r, int64_t now_ns)
+{
+	int most = clients_quota(r->client);
+	bool costs = r->what == ASK_CREATE || r->what == ASK_RESET || r->what == ASK_REWIND;
+	quota_book *book = &sim_quotas[r->machine];
+	if (!most || !costs || r->session < 0 || sim_sessions[r->session].ephemeral ||
+	    sim_books[r->session].in_ticks[r->client])
+		return;
+	double minutes = 1e-9 / 60 * (double)(now_ns - book->from_ns);
+	if (++book->done[r->client] > most * (1 + minutes))
+		sim_fail("allowed",
+		         "client %d has %d expensive requests done within %.1f s, with a quota of %d",
+		         r->client, book->done[r->client], 60 * minutes, most);
+}
+
+static void check_allowed(const sim_request *r)
+{
+	bool present = r->session < 0 || r->life == sim_sessions[r->session].life;
+	if (!clients_may(r->client, r->what, r->session))
+		sim_fail("allowed", "client %d may not, and does: %s, answered with %s", r->client,
+		         r->method, r->result);
+	if (present)
+		check_quota(r, r->answered_ns);
+}
+
 void promises_answered(uint64_t number)
 {
 	sim_request *r = clients_request(number);
 	promises_counted.answers++;
+	if (r->ok)
+		check_allowed(r);
 	if (r->first && r->session >= 0 && r->life == sim_sessions[r->session].life)
 		check_same(r);
 	if (!r->ok)
@@ -216,6 +251,15 @@ void promises_told(int client, const char *text)
 {
 	if (strstr(text, "\"session.faulted\""))
 		sim_fail("sound", "client %d is told %s", client, text);
+	for (int i = 0; i < SESSIONS && strstr(text, "\"session.changed\""); i++) {
+		char id[NAME_MOST];
+		for (int machine = 0; machine < DISK_MACHINES; machine++) {
+			sim_session_id(i, machine, id);
+			if (strstr(text, id) && !clients_may(client, ASK_JOIN, i))
+				sim_fail("allowed", "client %d hears of a session that is not its: %s", client,
+				         text);
+		}
+	}
 }
 
 static bool is_due(const sim_request *r, int64_t now_ns)
@@ -258,6 +302,7 @@ void promises_begin(const sim_profile *profile)
 {
 	memset(&own, 0, sizeof own);
 	memset(sim_books, 0, sizeof sim_books);
+	memset(sim_quotas, 0, sizeof sim_quotas);
 	promises_counted = (promise_counts){0};
 	own.profile = *profile;
 	sim_on_advance(advance);
@@ -279,7 +324,7 @@ void promises_killed(int machine)
 
 void promises_started(int machine)
 {
-	(void)machine;
+	sim_quotas[machine] = (quota_book){.from_ns = sim_now()};
 	promises_counted.restarts++;
 }
 

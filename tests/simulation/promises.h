@@ -19,6 +19,7 @@
 	X(acknowledged, "what was acknowledged is there after a kill and a loss of power")             \
 	X(once, "a request that is sent again acts once")                                              \
 	X(same_answer, "a request that is sent again gets the first answer")                           \
+	X(allowed, "a token does what its role, its sessions and its quota allow, and sees no more")   \
 	X(order, "commands of a connection take effect in the order sent")                             \
 	X(one_server, "at most one daemon serves a session")                                           \
 	X(budget, "queues, sessions and bytes in flight have the stated bounds")                       \

@@ -58,6 +58,7 @@ sim_profile sim_profile_of(uint64_t seed)
 		.subscriber_bytes = 16384,
 		.store_bytes = sim_between(&r, 0, 1) ? 0 : 3000000,
 		.checkpoint_s = 0.1 * (double)sim_between(&r, 2, 30),
+		.tokens = sim_between(&r, 0, 2) == 0,
 		.roughness = {.switch_one_in = sim_between(&r, 3, 60),
 	                  .stall_one_in = sim_between(&r, 0, 1) ? 0 : sim_between(&r, 300, 3000),
 	                  .stall_most_ns = 3 * SIM_MS,

@@ -57,7 +57,11 @@ static void drive(maker *m)
 		pass(m, 100);
 		add(m, STEP_STEP, client, session, 1 + pick(m, 20));
 	}
-	if (pick(m, 4) == 0) {
+	if (pick(m, 8) == 0) {
+		pass(m, 100);
+		add(m, STEP_STOP, pick(m, m->machines), 3 + pick(m, 9), 0);
+	}
+	if (pick(m, 3) == 0) {
 		pass(m, 100);
 		add(m, STEP_SILENT, client, 0, 0);
 	}
@@ -79,6 +83,18 @@ static void drive_by_ticks(maker *m)
 	}
 }
 
+// Something was acknowledged a moment ago, and a machine loses power.
+static void lose_power(maker *m)
+{
+	int session = pick(m, SESSIONS);
+	for (int left = 1 + pick(m, 4); left > 0; left--) {
+		add(m, STEP_GRAVITY, pick(m, CLIENTS), session, 0);
+		pass(m, 20);
+	}
+	pass(m, 60);
+	add(m, STEP_POWER, pick(m, m->machines), 0, 0);
+}
+
 static void befall(maker *m)
 {
 	static const struct {
@@ -88,7 +104,7 @@ static void befall(maker *m)
 		{STEP_CUT, 6, CLIENTS, 0, 0},
 		{STEP_HIDE, 6, CLIENTS, 0, 0},
 		{STEP_SILENT, 6, CLIENTS, 0, 0},
-		{STEP_LATE, 3, CLIENTS, 20, 0},
+		{STEP_LATE, 6, CLIENTS, 20, 0},
 		{STEP_OFF, 5, CLIENTS, SESSIONS, TOOLS},
 		{STEP_PAUSE, 5, CLIENTS, SESSIONS, 0},
 		{STEP_RESUME, 6, CLIENTS, SESSIONS, 0},
@@ -164,6 +180,8 @@ void workload_make(workload *work, uint64_t seed, const sim_profile *profile)
 			drive(&m);
 		if (pick(&m, 16) == 0)
 			drive_by_ticks(&m);
+		if (pick(&m, 100) == 0)
+			lose_power(&m);
 		befall(&m);
 		if (m.moves && pick(&m, 12) == 0)
 			add(&m, STEP_MOVE_SESSION, pick(&m, SESSIONS), 0, 0);
@@ -201,7 +219,7 @@ static bool exists(const work_step *s)
 static bool begin_session(int client, int place, char name[NAME_MOST])
 {
 	sim_session *made = &sim_sessions[place];
-	if (made->wanted || !sim_clients[client].link)
+	if (made->wanted || !sim_clients[client].link || !clients_may(client, ASK_CREATE, place))
 		return false;
 	*made = (sim_session){
 		.life = made->life + 1, .machine = sim_clients[client].machine, .wanted = true};
@@ -240,7 +258,8 @@ static void fork_session(const work_step *s)
 
 static void destroy(const work_step *s)
 {
-	if (!exists(s) || !sim_clients[s->a].link || sim_sessions[s->b].moving)
+	if (!exists(s) || !sim_clients[s->a].link || sim_sessions[s->b].moving ||
+	    !clients_may(s->a, ASK_DESTROY, s->b))
 		return;
 	clients_ask(s->a, ASK_DESTROY, "session.destroy", s->b, -1, true, "");
 	sim_sessions[s->b].wanted = sim_sessions[s->b].made = false;

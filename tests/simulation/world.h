@@ -31,6 +31,7 @@ typedef struct sim_profile {
 	int64_t latency_most_ns;             // of a message
 	int64_t queue_commands, subscriber_bytes, store_bytes;
 	double checkpoint_s;
+	bool tokens; // clients have tokens: not all of them may do all
 	sim_roughness roughness;
 } sim_profile;
 
@@ -105,7 +106,10 @@ extern int sim_request_count;
 void clients_begin(uint64_t seed, const sim_profile *profile);
 void clients_connect(int client, int machine);
 void clients_cut(int client);
-void clients_beat(void); // sends what heartbeats are due
+// Whether its token allows that, in this session (-1: none).
+bool clients_may(int client, ask what, int session);
+int clients_quota(int client); // expensive requests a minute that its token allows; 0: no bound
+void clients_beat(void);       // sends what heartbeats are due
 int64_t clients_beat_due(void);
 void clients_show(int client, bool visible);
 void clients_late(int client, int64_t ns); // its messages wait on their way
