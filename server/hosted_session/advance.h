@@ -22,6 +22,7 @@ typedef struct cau_advance {
 	uint64_t began_tick; // set when it takes effect
 	uint32_t channels;   // CAU_CHANNEL_*, to be observed
 	bool chosen;         // `vertices` alone
+	bool energy;         // where the energy of instruments went
 	int32_t command_count, vertex_count, region_count;
 	cau_command *commands; // in this memory
 	int32_t *vertices;     // likewise

@@ -111,6 +111,8 @@ static void observe_tool(cau_hosted *h, const cau_tool_state *from, cau_wire_obs
 	                               .energy_off = drive.energy_off,
 	                               .tip_temperature_c = from->tip_temperature_c,
 	                               .energy_j = from->energy_j,
+	                               .power_w = from->delivered_w,
+	                               .load_ohm = from->load_ohm,
 	                               .contact_vertices = from->contact_vertices,
 	                               .grasped_vertices = from->grasped_vertices,
 	                               .sequence = (int64_t)from->sequence};
@@ -150,6 +152,24 @@ static void observe_regions(const cau_hosted *h, observation *o)
 	}
 }
 
+static void observe_energy(const cau_hosted *h, observation *o)
+{
+	cau_energy_ledger ledger;
+	o->result.has_energy = o->wanted->energy;
+	if (!o->wanted->energy)
+		return;
+	cau_session_read_ledger(h->core, &ledger);
+	o->result.energy = (cau_wire_observed_energy){.delivered_j = ledger.delivered_j,
+	                                              .blade_j = ledger.blade_j,
+	                                              .far_j = ledger.far_j,
+	                                              .stored_j = ledger.stored_j,
+	                                              .boiled_j = ledger.boiled_j,
+	                                              .perfused_j = ledger.perfused_j,
+	                                              .ambient_j = ledger.ambient_j,
+	                                              .shed_j = ledger.shed_j,
+	                                              .coagulated_m3 = cau_session_coagulated(h->core)};
+}
+
 // What costs the core work of its own is made for this answer, and for the streams that have it.
 static bool observe(cau_hosted *h, observation *o)
 {
@@ -157,6 +177,7 @@ static bool observe(cau_hosted *h, observation *o)
 	cau_session_frame(h->core, &o->frame);
 	observe_tools(h, o);
 	observe_regions(h, o);
+	observe_energy(h, o);
 	return observe_positions(o) && observe_scalars(o) && observe_mask(o, h->info.face_count);
 }
 

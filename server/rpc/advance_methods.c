@@ -155,6 +155,7 @@ static cau_status read_observed(const wanted *from, cau_advance *to, cau_error *
 	cau_status status = CAU_OK;
 	to->channels = observe->has_channels ? observe->channels : 0;
 	to->chosen = observe->has_vertices;
+	to->energy = observe->has_energy && observe->energy;
 	if (to->channels & CAU_CHANNEL_STATISTICS)
 		return cau_fail(error, CAU_BAD_VALUE, "params.observe.channels",
 		                "`statistics` is in frames alone: call session.join");

@@ -250,8 +250,7 @@ static cau_status serve(asked *a, int32_t *code, cau_error *error)
 	                                   : order_session(a, reply, code, error);
 }
 
-// Whether the requester stays within what a WebSocket connection may send in a second.
-static bool is_too_fast(const cau_dds *dds, cau_dds_writer *writer)
+bool cau_dds_is_too_fast(const cau_dds *dds, cau_dds_writer *writer)
 {
 	double now_s = cau_monotonic_s();
 	if (now_s - writer->requests_s >= 1) {
@@ -301,7 +300,7 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	if (!request) {
 		unkept = cau_dds_describe_request(writer, sample);
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests wait for their answer");
-	} else if (is_too_fast(dds, writer)) {
+	} else if (cau_dds_is_too_fast(dds, writer)) {
 		code = CAU_RPC_RATE;
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests a second");
 	} else {

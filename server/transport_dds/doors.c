@@ -21,6 +21,7 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 	} topics[TOPIC_COUNT] = {
 		[TOPIC_STATE] = {"cautery/tool_state", &cautery_ToolState_desc},
 		[TOPIC_GRASP] = {"cautery/tool_grasp", &cautery_ToolGrasp_desc},
+		[TOPIC_POWER] = {"cautery/tool_power", &cautery_ToolPower_desc},
 		[TOPIC_STATUS] = {"cautery/session_status", &cautery_SessionStatus_desc},
 		[TOPIC_TOPOLOGY] = {"cautery/topology", &cautery_Frame_desc},
 		[TOPIC_KEY_FRAME] = {"cautery/key_frame", &cautery_Frame_desc},
@@ -132,9 +133,9 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 		cau_topic topic;
 		const dds_qos_t *qos;
 	} outlets[] = {
-		{&session->state, TOPIC_STATE, kept},      {&session->grasp, TOPIC_GRASP, kept},
-		{&stream->topology, TOPIC_TOPOLOGY, kept}, {&stream->key, TOPIC_KEY_FRAME, kept},
-		{&stream->delta, TOPIC_DELTA, chain},
+		{&session->state, TOPIC_STATE, kept},  {&session->grasp, TOPIC_GRASP, kept},
+		{&session->power, TOPIC_POWER, kept},  {&stream->topology, TOPIC_TOPOLOGY, kept},
+		{&stream->key, TOPIC_KEY_FRAME, kept}, {&stream->delta, TOPIC_DELTA, chain},
 	};
 	uint32_t number = cau_hosted_number(session->hosted);
 	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++)
@@ -147,22 +148,33 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 	dds_delete_qos(chain);
 }
 
-static bool admit(const void *sample, void *keys)
+static bool admit_command(const void *sample, void *keys)
 {
 	const cautery_ToolCommand *command = sample;
 	return cau_dds_keys_admit(keys, command->session, command->tool);
 }
 
-static bool open_native(cau_dds *dds, cau_dds_session *session)
+static bool admit_setting(const void *sample, void *keys)
 {
+	const cautery_ToolSetting *setting = sample;
+	return cau_dds_keys_admit(keys, setting->session, setting->tool);
+}
+
+// A native topic that controllers write.
+static bool open_native(cau_dds *dds, cau_dds_session *session, cau_door *door, cau_door_kind kind)
+{
+	bool commands = kind == DOOR_NATIVE;
 	dds_qos_t *taken = reliable_qos(NATIVE_KEPT);
 	const struct dds_topic_filter filter = {
-		DDS_TOPIC_FILTER_SAMPLE_ARG, {.sample_arg = admit}, &session->keys};
-	dds_entity_t topic = dds_create_topic(dds->participant, &cautery_ToolCommand_desc,
-	                                      "cautery/tool_command", NULL, NULL);
-	session->native = (cau_door){.kind = DOOR_NATIVE, .topic = topic, .session = session};
+		DDS_TOPIC_FILTER_SAMPLE_ARG,
+		{.sample_arg = commands ? admit_command : admit_setting},
+		&session->keys};
+	dds_entity_t topic = dds_create_topic(
+		dds->participant, commands ? &cautery_ToolCommand_desc : &cautery_ToolSetting_desc,
+		commands ? "cautery/tool_command" : "cautery/tool_setting", NULL, NULL);
+	*door = (cau_door){.kind = kind, .topic = topic, .session = session};
 	bool done = topic > 0 && !dds_set_topic_filter_extended(topic, &filter) &&
-	            open_door(dds, &session->native, session->subscriber, taken);
+	            open_door(dds, door, session->subscriber, taken);
 	dds_delete_qos(taken);
 	return done;
 }
@@ -174,7 +186,8 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	dds_qset_partition1(partition, id);
 	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
 	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
-	bool done = open_native(dds, session);
+	bool done = open_native(dds, session, &session->native, DOOR_NATIVE) &&
+	            open_native(dds, session, &session->setting, DOOR_SETTING);
 	dds->ends_changed = true;
 	open_writers(dds, session);
 	dds_delete_qos(partition);
@@ -192,7 +205,8 @@ static void close_writers(cau_dds *dds, cau_dds_session *session)
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	if (session->status_writer > 0)
 		dds_dispose(session->status_writer, &gone);
-	cau_dds_outlet *at_once[] = {&session->state, &session->grasp, &session->stream.topology,
+	cau_dds_outlet *at_once[] = {&session->state,      &session->grasp,
+	                             &session->power,      &session->stream.topology,
 	                             &session->stream.key, &session->stream.delta};
 	for (size_t i = 0; i < sizeof at_once / sizeof at_once[0]; i++)
 		cau_dds_close_outlet(at_once[i]);
@@ -205,6 +219,7 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 		if (session->tools[i].used)
 			cau_dds_close_tool(dds, &session->tools[i]);
 	close_door(dds, &session->native);
+	close_door(dds, &session->setting);
 	cau_dds_leave_frames(session);
 	if (session->subscriber > 0)
 		dds_delete(session->subscriber);

@@ -27,10 +27,11 @@ enum {
 };
 
 // Native topics, opened once for the participant; doors.c has their names. cautery/tool_command is
-// opened once for each session, since a topic has one filter.
+// opened once for each session, since a topic has one filter; so is cautery/tool_setting.
 typedef enum cau_topic {
 	TOPIC_STATE,
 	TOPIC_GRASP,
+	TOPIC_POWER,
 	TOPIC_STATUS,
 	TOPIC_TOPOLOGY,
 	TOPIC_KEY_FRAME,
@@ -46,6 +47,7 @@ typedef enum cau_door_kind {
 	DOOR_SERVO_JP,
 	DOOR_ENERGIZE,
 	DOOR_STATE_COMMAND,
+	DOOR_SETTING, // cautery/tool_setting
 	DOOR_REQUEST, // cautery/session_request; of no session
 } cau_door_kind;
 
@@ -134,10 +136,10 @@ typedef struct cau_dds_session {
 	char ros_name[CAU_NAME_BYTES];
 	bool has_ros_name;
 	dds_entity_t subscriber, publisher; // of its partition
-	cau_door native;
-	cau_dds_keys keys; // what the native door lets in
+	cau_door native, setting;
+	cau_dds_keys keys; // what these doors let in
 	dds_entity_t status_writer;
-	cau_dds_outlet state, grasp;
+	cau_dds_outlet state, grasp, power;
 	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last seen
 	uint64_t states_tick;
 	double states_s;  // when they were last written for nobody
@@ -444,8 +446,9 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level, int32_t ticks);
 void cau_dds_grasp(cau_dds_hand *hand, bool level);
 
-// ---- native.c, ros2.c: samples
+// ---- native.c, settings.c, ros2.c: samples
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
+void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                            const void *sample);
 void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
@@ -454,6 +457,8 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                            const void *sample);
 
 // ---- control.c
+// Counts what the writer asks for. Whether it is more than a WebSocket connection may in a second.
+bool cau_dds_is_too_fast(const cau_dds *dds, cau_dds_writer *writer);
 void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 
 // ---- replies.c: each but the first two answers the request and forgets it

@@ -48,17 +48,19 @@ static end find_native(cau_dds *dds, const cau_dds_peer *peer)
 		const char *id = cau_hosted_id(s->hosted);
 		if (!is_in_partition(peer->qos, id))
 			continue;
-		if (peer->writes)
-			return (end){.entity = strcmp(leaf, "tool_command") ? 0 : s->native.reader,
-			             .door = &s->native,
-			             .session = id};
+		if (peer->writes) {
+			const cau_door *door = strcmp(leaf, "tool_setting") == 0 ? &s->setting : &s->native;
+			bool is_read = door == &s->setting || strcmp(leaf, "tool_command") == 0;
+			return (end){.entity = is_read ? door->reader : 0, .door = door, .session = id};
+		}
 		const struct {
 			const char *name;
 			dds_entity_t writer;
 		} writers[] = {
-			{"tool_state", s->state.writer},      {"tool_grasp", s->grasp.writer},
-			{"session_status", s->status_writer}, {"topology", s->stream.topology.writer},
-			{"key_frame", s->stream.key.writer},  {"delta", s->stream.delta.writer}};
+			{"tool_state", s->state.writer},         {"tool_grasp", s->grasp.writer},
+			{"tool_power", s->power.writer},         {"session_status", s->status_writer},
+			{"topology", s->stream.topology.writer}, {"key_frame", s->stream.key.writer},
+			{"delta", s->stream.delta.writer}};
 		for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++)
 			if (strcmp(leaf, writers[i].name) == 0)
 				return (end){.entity = writers[i].writer, .session = id};

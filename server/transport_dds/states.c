@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server says of tools: cautery/tool_state, cautery/tool_grasp, measured_cp, setpoint_cp,
-// measured_cf, jaw/measured_js, jaw/setpoint_js.
+// What the server says of tools: cautery/tool_state, cautery/tool_grasp, cautery/tool_power,
+// measured_cp, setpoint_cp, measured_cf, jaw/measured_js, jaw/setpoint_js.
 #include <math.h>
 #include <string.h>
 
@@ -59,9 +59,34 @@ static void publish_grasp(const cau_dds_session *session, const cau_tool_state *
 	dds_write(session->grasp.writer, &sample);
 }
 
+static void publish_power(const cau_dds_session *session, const cau_tool_state *state,
+                          uint64_t tick)
+{
+	cautery_ToolPower sample = {
+		.tick = tick,
+		.set_w = state->definition.power_w,
+		.power_w = state->delivered_w,
+		.load_ohm = state->load_ohm,
+		.energy_j = state->energy_j,
+		.energized = state->energized,
+	};
+	snprintf(sample.session, sizeof sample.session, "%s", cau_hosted_id(session->hosted));
+	snprintf(sample.tool, sizeof sample.tool, "%s", state->name);
+	dds_write(session->power.writer, &sample);
+}
+
 bool cau_dds_has_jaws(const cau_tool_state *state)
 {
 #define X(code, word, hot, jaws, ...) jaws,
+	static const bool any[] = {CAU_TOOL_SHAPE_TABLE(X)};
+#undef X
+	CAU_ASSERT_INDEX(state->definition.shape, CAU_TOOL_SHAPE_COUNT);
+	return any[state->definition.shape];
+}
+
+static bool has_energy(const cau_tool_state *state)
+{
+#define X(code, word, hot, jaws, ...) hot,
 	static const bool any[] = {CAU_TOOL_SHAPE_TABLE(X)};
 #undef X
 	CAU_ASSERT_INDEX(state->definition.shape, CAU_TOOL_SHAPE_COUNT);
@@ -131,6 +156,10 @@ void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
 	memcpy(nothing.session, gone.session, sizeof nothing.session);
 	memcpy(nothing.tool, gone.tool, sizeof nothing.tool);
 	dds_dispose(session->grasp.writer, &nothing);
+	cautery_ToolPower none = {0};
+	memcpy(none.session, gone.session, sizeof none.session);
+	memcpy(none.tool, gone.tool, sizeof none.tool);
+	dds_dispose(session->power.writer, &none);
 }
 
 // What a late joiner must not be told of wrongly, not for a second.
@@ -145,12 +174,26 @@ double cau_dds_states_due(const cau_dds_session *session)
 	return session->states_owed ? session->states_s + UNREAD_PERIOD_S : INFINITY;
 }
 
+// A topic of some tools' own beside cautery/tool_state.
+typedef struct own_topic {
+	bool (*has)(const cau_tool_state *state);
+	void (*publish)(const cau_dds_session *session, const cau_tool_state *state, uint64_t tick);
+	bool is_read, newcomers;
+} own_topic;
+
+static own_topic own_topic_of(cau_dds_outlet *outlet, bool (*has)(const cau_tool_state *state),
+                              void (*publish)(const cau_dds_session *session,
+                                              const cau_tool_state *state, uint64_t tick))
+{
+	return (own_topic){has, publish, cau_dds_is_read(outlet), cau_dds_take_newcomers(outlet)};
+}
+
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
                      uint64_t tick, double time_s, double now_s)
 {
 	bool is_read = cau_dds_is_read(&session->state);
-	bool grasp_is_read = cau_dds_is_read(&session->grasp);
-	bool grasps = cau_dds_take_newcomers(&session->grasp);
+	const own_topic own[] = {own_topic_of(&session->grasp, cau_dds_has_jaws, publish_grasp),
+	                         own_topic_of(&session->power, has_energy, publish_power)};
 	bool all = cau_dds_take_newcomers(&session->state) || now_s >= cau_dds_states_due(session);
 	if (all) {
 		session->states_owed = false;
@@ -166,9 +209,11 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 			publish_state(session, &tools[i], tick, time_s);
 		else
 			session->states_owed |= changed;
-		if (cau_dds_has_jaws(&tools[i].state)) {
-			if (all || grasps || (changed && grasp_is_read))
-				publish_grasp(session, &tools[i].state, tick);
+		for (size_t k = 0; k < sizeof own / sizeof *own; k++) {
+			if (!own[k].has(&tools[i].state))
+				continue;
+			if (all || own[k].newcomers || (changed && own[k].is_read))
+				own[k].publish(session, &tools[i].state, tick);
 			else
 				session->states_owed |= changed;
 		}

@@ -61,6 +61,7 @@ static void serve(cau_dds *dds, cau_door *door)
 		[DOOR_SERVO_JP] = cau_dds_take_servo_jp,
 		[DOOR_ENERGIZE] = cau_dds_take_energize,
 		[DOOR_STATE_COMMAND] = cau_dds_take_state_command,
+		[DOOR_SETTING] = cau_dds_take_setting,
 		[DOOR_REQUEST] = cau_dds_take_request,
 	};
 	void *samples[TAKEN_MOST] = {NULL};

@@ -49,9 +49,11 @@ typedef struct controller {
 	uint64_t sequence;
 	double position_m[3], aim_m[3];
 	double last_write_s;
-	dds_entity_t participant, publisher, command, pose, level, state_reader, grasp_reader;
+	dds_entity_t participant, publisher, command, pose, level, state_reader, grasp_reader,
+		power_reader, setting;
 	cautery_ToolState state;
 	cautery_ToolGrasp holding;
+	cautery_ToolPower power;
 	crtk crtk; // ros
 	bool crtk_asked;
 	double storm_hz; // 0: writes good samples if any
@@ -82,6 +84,16 @@ static void open_native(controller *c, dds_entity_t publisher, int deadline_ms)
 	dds_delete_qos(qos);
 }
 
+// power_w; the rest stays as it is.
+static void write_setting(controller *c, double power_w)
+{
+	cautery_ToolSetting sample = {
+		.power_w = power_w, .peak_v = -1, .crest_factor = -1, .current_max_a = -1};
+	memcpy(sample.session, c->session, sizeof c->session);
+	memcpy(sample.tool, c->tool, sizeof c->tool);
+	checked(dds_write(c->setting, &sample));
+}
+
 static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 {
 	c->participant = checked(dds_create_participant(domain, NULL, NULL));
@@ -94,10 +106,16 @@ static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 	} else {
 		open_native(c, publisher_of(c->participant, c->session), deadline_ms);
 	}
+	dds_qos_t *qos = reliable_qos(1);
+	c->setting = native_writer(publisher_of(c->participant, c->session), &cautery_ToolSetting_desc,
+	                           "cautery/tool_setting", qos);
+	dds_delete_qos(qos);
 	dds_entity_t subscriber = subscriber_of(c->participant, c->session);
 	c->state_reader = native_reader(subscriber, &cautery_ToolState_desc, "cautery/tool_state",
 	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
 	c->grasp_reader = native_reader(subscriber, &cautery_ToolGrasp_desc, "cautery/tool_grasp",
+	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
+	c->power_reader = native_reader(subscriber, &cautery_ToolPower_desc, "cautery/tool_power",
 	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
 }
 
@@ -226,16 +244,20 @@ static void tell_state(const controller *c, const char *event)
 {
 	const cautery_ToolState *s = &c->state;
 	const cautery_ToolGrasp *h = &c->holding;
+	const cautery_ToolPower *p = &c->power;
 	printf("{\"event\":\"%s\",\"has\":%s,\"stormed\":%llu,\"tick\":%llu,\"sequence\":%llu,"
 	       "\"position_m\":[%.6f,%.6f,%.6f],\"energized\":%s,\"energy_off\":%d,\"driver\":%u,"
 	       "\"driver_name\":\"%s\",\"grasping\":%s,\"jaw\":%.6f,\"asked_jaw\":%.6f,"
-	       "\"jaw_force_n\":%.6f,\"held\":%u,\"slipping\":%s,\"holding\":%s}\n",
+	       "\"jaw_force_n\":%.6f,\"held\":%u,\"slipping\":%s,\"holding\":%s,"
+	       "\"has_power\":%s,\"set_w\":%.6f,\"power_w\":%.6f,\"load_ohm\":%.6f,\"energy_j\":%.6f,"
+	       "\"power_on\":%s}\n",
 	       event, c->has_state ? "true" : "false", (unsigned long long)c->stormed,
 	       (unsigned long long)s->tick, (unsigned long long)s->sequence_number, s->position_m[0],
 	       s->position_m[1], s->position_m[2], s->energized ? "true" : "false", (int)s->energy_off,
 	       s->driver, s->driver_name, s->grasping ? "true" : "false", h->jaw, h->asked_jaw,
 	       h->jaw_force_n, h->grasped_vertices, h->slipping ? "true" : "false",
-	       h->grasping ? "true" : "false");
+	       h->grasping ? "true" : "false", *p->tool ? "true" : "false", p->set_w, p->power_w,
+	       p->load_ohm, p->energy_j, p->energized ? "true" : "false");
 }
 
 static void take_state(void *user, const void *sample)
@@ -258,6 +280,14 @@ static void take_grasp(void *user, const void *sample)
 	const cautery_ToolGrasp *s = sample;
 	if (strcmp(s->tool, c->tool) == 0)
 		c->holding = *s;
+}
+
+static void take_power(void *user, const void *sample)
+{
+	controller *c = user;
+	const cautery_ToolPower *s = sample;
+	if (strcmp(s->tool, c->tool) == 0)
+		c->power = *s;
 }
 
 static void obey(void *user, const char *line)
@@ -285,6 +315,8 @@ static void obey(void *user, const char *line)
 		c->storm_hz = atof(value);
 	else if (strcmp(word, "strangers") == 0)
 		c->strangers = atol(value);
+	else if (strcmp(word, "power_w") == 0)
+		write_setting(c, atof(value));
 	else if (strcmp(word, "command") == 0)
 		crtk_command(&c->crtk, value);
 	else if (strcmp(word, "jaw") == 0)
@@ -305,6 +337,7 @@ static void run(controller *c)
 	while (console_listen(&input, next_s - clock_s(CLOCK_MONOTONIC), obey, c)) {
 		take_each(c->state_reader, take_state, c);
 		take_each(c->grasp_reader, take_grasp, c);
+		take_each(c->power_reader, take_power, c);
 		if (c->ros)
 			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)

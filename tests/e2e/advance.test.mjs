@@ -8,6 +8,7 @@ import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallScene, smallSession } from './wire/scene.mjs';
 
+const STEP_S = 1 / 60;
 const STEPS = 300, CUT_STEPS = 100, LONG_STEPS = 2500;
 const DEADLINE_TICKS = 15; // of 1/60 s, in the deadline of 250 ms
 const EPISODES = Number(process.env.E2E_EPISODES ?? 10), LOAD = Number(process.env.E2E_LOAD ?? 4);
@@ -264,6 +265,29 @@ test('a stored step that moves a tool writes at most 16 KiB', { skip: process.en
 	assert.ok(each <= 16384);
 	await client.close();
 	await own.end();
+});
+
+test('where the energy of instruments went is reported where that is asked for, and adds up', async () => {
+	const client = await daemon.connect();
+	const definition = { ...await smallScene(client), energy: 'tissue', cell_m: 5e-4 };
+	const { summary: { session } } = await client.call('session.create', { name: 'energy', definition, paused: true, ephemeral: true });
+	await client.call('tool.take_over', hook(session));
+	const before = await advance(client, session, [move(0, 0)], { observe: { energy: true } });
+	assert.deepEqual(new Set(Object.values(before.energy)), new Set([0]));
+	assert.equal((await advance(client, session)).energy, undefined);
+	let given = 0;
+	for (let i = 0; i < 60; i++) {
+		const { tools: [tool] } = await advance(client, session, [energy(true)]);
+		given += tool.power_w * STEP_S;
+		assert.equal(tool.power_w > 0, tool.load_ohm > 0);
+	}
+	const { energy: spent } = await advance(client, session, [energy(false)], { observe: { energy: true } });
+	const parts = spent.stored_j + spent.boiled_j + spent.perfused_j + spent.ambient_j + spent.shed_j;
+	// Cells take no more than dries them, so it may be less than the generator gave.
+	assert.ok(given > 1 && spent.delivered_j > 0 && spent.delivered_j <= 1.001 * given, `${spent.delivered_j} J, by the tool's power ${given} J`);
+	assert.ok(Math.abs(spent.delivered_j + spent.blade_j - parts) <= 0.01 * spent.delivered_j, JSON.stringify(spent));
+	assert.ok(spent.coagulated_m3 > 0);
+	await client.close();
 });
 
 test('equal episodes, to the last bit, on a busy machine', async () => {

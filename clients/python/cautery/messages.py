@@ -571,6 +571,9 @@ class Observe(TypedDict):
     # where removed volume and damage are reported
     regions: NotRequired[Sequence[ObservedRegion]]
 
+    # whether the energy of instruments is reported; false by default
+    energy: NotRequired[bool]
+
 
 class SessionAdvance(TypedDict):
     """makes ticks of a paused session in lock-step"""
@@ -631,6 +634,12 @@ class ObservedTool(TypedDict):
     # heat that tissue has taken up, about (0 to 1000000000000 J)
     energy_j: float
 
+    # with energy `tissue`: given to tissue in the last tick; else 0 (0 to 1000000 W)
+    power_w: float
+
+    # that its generator finds; 0: no current flows (0 to 1000000000000 ohm)
+    load_ohm: float
+
     # vertices that it touches (0 to 9007199254740991)
     contact_vertices: int
 
@@ -667,6 +676,37 @@ class RegionDamage(TypedDict):
     outside: ObservedDamage
 
 
+class ObservedEnergy(TypedDict):
+    """where the energy of instruments went since the session was made; delivered_j and blade_j together are the sum of those after far_j; with energy `paper` all are 0"""
+
+    # by current in tissue (-1000000000000 to 1000000000000 J)
+    delivered_j: float
+
+    # from blades into tissue; below 0: the other way (-1000000000000 to 1000000000000 J)
+    blade_j: float
+
+    # by current far away, where no heat is computed; not part of the sum (-1000000000000 to 1000000000000 J)
+    far_j: float
+
+    # heat of the tissue above its first temperature (-1000000000000 to 1000000000000 J)
+    stored_j: float
+
+    # taken along by water that boiled off, as steam and smoke (-1000000000000 to 1000000000000 J)
+    boiled_j: float
+
+    # taken along by blood (-1000000000000 to 1000000000000 J)
+    perfused_j: float
+
+    # lost at surfaces (-1000000000000 to 1000000000000 J)
+    ambient_j: float
+
+    # heat of tissue that was removed (-1000000000000 to 1000000000000 J)
+    shed_j: float
+
+    # volume of the tissue that is there and dead by heat (0 to 1000000000 m^3)
+    coagulated_m3: float
+
+
 class Advanced(TypedDict):
     """the ticks are made, and this is what was asked for"""
 
@@ -696,6 +736,9 @@ class Advanced(TypedDict):
 
     # in the order of the request
     regions: NotRequired[Sequence[RegionDamage]]
+
+    # of the whole session
+    energy: NotRequired[ObservedEnergy]
 
 
 class SessionSpeed(TypedDict):

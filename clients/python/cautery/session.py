@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .client import Client
 from .errors import Error
-from .messages import AdvanceCommand, Observe, ObservedTool, RegionDamage
+from .messages import AdvanceCommand, Observe, ObservedEnergy, ObservedTool, RegionDamage
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Advanced:
     """What `Session.advance` has observed; None and empty where it was not asked for.
 
     `positions` (vertices x 3, metres), `removed` (faces; True: not drawn), `scalars` by channel, `tools` and `regions`
-    by name. `stored`: whether the ticks are on the disk.
+    by name. `energy`: where that of the instruments went, J. `stored`: whether the ticks are on the disk.
     """
 
     tick: int
@@ -30,6 +30,7 @@ class Advanced:
     scalars: Mapping[str, npt.NDArray[np.float64]]
     tools: Mapping[str, ObservedTool]
     regions: Mapping[str, RegionDamage]
+    energy: ObservedEnergy | None = None
 
 
 def _bits(words: Sequence[int], count: int) -> npt.NDArray[np.bool_]:
@@ -63,4 +64,5 @@ class Session:
             removed=None if mask is None else _bits(mask, self._face_count),
             scalars={one["channel"]: np.asarray(one["values"], float) for one in result.get("scalars", ())},
             tools={one["tool"]: one for one in result.get("tools", ())},
-            regions={one["name"]: one for one in result.get("regions", ())})
+            regions={one["name"]: one for one in result.get("regions", ())},
+            energy=result.get("energy"))

@@ -296,6 +296,8 @@ export interface Observe {
   vertices?: number[];
   /** where removed volume and damage are reported */
   regions?: ObservedRegion[];
+  /** whether the energy of instruments is reported; false by default */
+  energy?: boolean;
 }
 
 /** makes ticks of a paused session in lock-step */
@@ -340,6 +342,10 @@ export interface ObservedTool {
   tip_temperature_c: number;
   /** heat that tissue has taken up, about (0 to 1000000000000 J) */
   energy_j: number;
+  /** with energy `tissue`: given to tissue in the last tick; else 0 (0 to 1000000 W) */
+  power_w: number;
+  /** that its generator finds; 0: no current flows (0 to 1000000000000 ohm) */
+  load_ohm: number;
   /** vertices that it touches (0 to 9007199254740991) */
   contact_vertices: number;
   /** points that its jaws hold (0 to 9007199254740991) */
@@ -368,6 +374,28 @@ export interface RegionDamage {
   outside: ObservedDamage;
 }
 
+/** where the energy of instruments went since the session was made; delivered_j and blade_j together are the sum of those after far_j; with energy `paper` all are 0 */
+export interface ObservedEnergy {
+  /** by current in tissue (-1000000000000 to 1000000000000 J) */
+  delivered_j: number;
+  /** from blades into tissue; below 0: the other way (-1000000000000 to 1000000000000 J) */
+  blade_j: number;
+  /** by current far away, where no heat is computed; not part of the sum (-1000000000000 to 1000000000000 J) */
+  far_j: number;
+  /** heat of the tissue above its first temperature (-1000000000000 to 1000000000000 J) */
+  stored_j: number;
+  /** taken along by water that boiled off, as steam and smoke (-1000000000000 to 1000000000000 J) */
+  boiled_j: number;
+  /** taken along by blood (-1000000000000 to 1000000000000 J) */
+  perfused_j: number;
+  /** lost at surfaces (-1000000000000 to 1000000000000 J) */
+  ambient_j: number;
+  /** heat of tissue that was removed (-1000000000000 to 1000000000000 J) */
+  shed_j: number;
+  /** volume of the tissue that is there and dead by heat (0 to 1000000000 m^3) */
+  coagulated_m3: number;
+}
+
 /** the ticks are made, and this is what was asked for */
 export interface Advanced {
   /** where the session is now (0 to 9007199254740991) */
@@ -388,6 +416,8 @@ export interface Advanced {
   tools?: ObservedTool[];
   /** in the order of the request */
   regions?: RegionDamage[];
+  /** of the whole session */
+  energy?: ObservedEnergy;
 }
 
 /** sets the pace */

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples of cautery/tool_setting: what is set at a tool's generator.
+#include <math.h>
+#include <string.h>
+
+#include "cautery.h"
+#include "cautery/defaults.h"
+#include "transport_dds/internal.h"
+
+// Sets one of the tool's sizes; a value below 0 leaves it.
+static cau_status set(cau_tool_def *tool, const char *name, double value, cau_error *error)
+{
+	const struct {
+		const char *name;
+		double *size, least, most;
+	} sizes[] = {
+#define X(name, standard, least, most, ...) {#name, &tool->name, least, most},
+		CAU_TOOL_TABLE(X)
+#undef X
+	};
+	size_t i = 0;
+	while (strcmp(sizes[i].name, name) != 0)
+		i++;
+	if (value < 0)
+		return CAU_OK;
+	if (!(value >= sizes[i].least && value <= sizes[i].most))
+		return cau_fail(error, CAU_BAD_VALUE, name, "%g is not between %g and %g", value,
+		                sizes[i].least, sizes[i].most);
+	*sizes[i].size = value;
+	return CAU_OK;
+}
+
+static cau_status set_all(cau_tool_def *tool, const cautery_ToolSetting *sample, cau_error *error)
+{
+	cau_status status = set(tool, "power_w", sample->power_w, error);
+	if (!status)
+		status = set(tool, "peak_v", sample->peak_v, error);
+	if (!status)
+		status = set(tool, "crest_factor", sample->crest_factor, error);
+	return status ? status : set(tool, "current_max_a", sample->current_max_a, error);
+}
+
+// The hand of the writer's participant that drives the tool, whatever it drives it by.
+static cau_dds_hand *find_driving(const cau_dds_tool *tool, const cau_dds_writer *writer,
+                                  uint32_t driver)
+{
+	cau_dds_hand *hand = tool->hands;
+	while (hand && (hand->client->asker.client != driver ||
+	                hand->client->participant != writer->participant))
+		hand = hand->next;
+	return hand;
+}
+
+static bool is_set_already(const cau_tool_def *a, const cau_tool_def *b)
+{
+	return a->power_w == b->power_w && a->peak_v == b->peak_v &&
+	       a->crest_factor == b->crest_factor && a->current_max_a == b->current_max_a;
+}
+
+static cau_status order_setting(const cau_dds_hand *hand, const cau_tool_def *tool,
+                                cau_error *error)
+{
+	cau_order *order = cau_dds_make_order(hand, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_CONFIGURE);
+	if (!order)
+		return cau_fail(error, CAU_NO_MEMORY, "tool", "no memory for its setting");
+	cau_default_command(&order->as.command, CAU_COMMAND_TOOL_CONFIGURE);
+	memcpy(order->as.command.tool, hand->tool->name, sizeof hand->tool->name);
+	order->as.command.sequence = hand->past.sequence;
+	order->as.command.as.definition = *tool;
+	return cau_dds_submit(hand, order)
+	           ? CAU_OK
+	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders now");
+}
+
+static cau_status take(const cau_dds *dds, const cau_door *door, cau_dds_writer *writer,
+                       const cautery_ToolSetting *sample, cau_error *error)
+{
+	cau_hosted_tool state;
+	const cau_dds_tool *tool = cau_dds_find_tool(door->session, sample->tool);
+	if (strcmp(sample->session, cau_hosted_id(door->session->hosted)) != 0)
+		return cau_fail(error, CAU_BAD_VALUE, "session", "is not that of the partition");
+	if (!tool || !cau_hosted_find_tool(door->session->hosted, tool->name, &state))
+		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no such tool");
+	const cau_dds_hand *hand = find_driving(tool, writer, state.driver.client);
+	if (!hand)
+		return cau_fail(error, CAU_BAD_STATE, "tool",
+		                "only the participant that drives it sets its generator");
+	if (cau_dds_is_too_fast(dds, writer))
+		return cau_fail(error, CAU_LIMIT, "tool", "too many settings a second");
+	cau_tool_def wanted = state.state.definition;
+	cau_status status = set_all(&wanted, sample, error);
+	if (status || is_set_already(&wanted, &state.state.definition))
+		return status;
+	return order_setting(hand, &wanted, error);
+}
+
+void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
+{
+	cau_error error = {0};
+	const cautery_ToolSetting *sample = taken;
+	if (take(dds, door, writer, sample, &error))
+		cau_dds_refuse(door->session, sample->tool, writer, 0, &error);
+}
