@@ -54,7 +54,9 @@ typedef struct controller {
 	cautery_ToolState state;
 	cautery_ToolGrasp holding;
 	cautery_ToolPower power;
-	crtk crtk; // ros
+	bool sets;    // set_w is to be written
+	double set_w; // of its generator
+	crtk crtk;    // ros
 	bool crtk_asked;
 	double storm_hz; // 0: writes good samples if any
 	uint64_t stormed;
@@ -84,16 +86,6 @@ static void open_native(controller *c, dds_entity_t publisher, int deadline_ms)
 	dds_delete_qos(qos);
 }
 
-// power_w; the rest stays as it is.
-static void write_setting(controller *c, double power_w)
-{
-	cautery_ToolSetting sample = {
-		.power_w = power_w, .peak_v = -1, .crest_factor = -1, .current_max_a = -1};
-	memcpy(sample.session, c->session, sizeof c->session);
-	memcpy(sample.tool, c->tool, sizeof c->tool);
-	checked(dds_write(c->setting, &sample));
-}
-
 static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 {
 	c->participant = checked(dds_create_participant(domain, NULL, NULL));
@@ -106,10 +98,6 @@ static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 	} else {
 		open_native(c, publisher_of(c->participant, c->session), deadline_ms);
 	}
-	dds_qos_t *qos = reliable_qos(1);
-	c->setting = native_writer(publisher_of(c->participant, c->session), &cautery_ToolSetting_desc,
-	                           "cautery/tool_setting", qos);
-	dds_delete_qos(qos);
 	dds_entity_t subscriber = subscriber_of(c->participant, c->session);
 	c->state_reader = native_reader(subscriber, &cautery_ToolState_desc, "cautery/tool_state",
 	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
@@ -123,6 +111,29 @@ static bool is_matched(dds_entity_t writer)
 {
 	dds_publication_matched_status_t status;
 	return !dds_get_publication_matched_status(writer, &status) && status.current_count > 0;
+}
+
+// ---- the generator
+static void open_setting(controller *c)
+{
+	dds_qos_t *qos = reliable_qos(1);
+	if (!c->setting)
+		c->setting = native_writer(publisher_of(c->participant, c->session),
+		                           &cautery_ToolSetting_desc, "cautery/tool_setting", qos);
+	dds_delete_qos(qos);
+}
+
+// Once the daemon reads it; the rest stays as it is.
+static void write_setting(controller *c)
+{
+	if (!c->sets || !is_matched(c->setting))
+		return;
+	cautery_ToolSetting sample = {
+		.power_w = c->set_w, .peak_v = -1, .crest_factor = -1, .current_max_a = -1};
+	memcpy(sample.session, c->session, sizeof c->session);
+	memcpy(sample.tool, c->tool, sizeof c->tool);
+	checked(dds_write(c->setting, &sample));
+	c->sets = false;
 }
 
 // ---- writing
@@ -315,9 +326,11 @@ static void obey(void *user, const char *line)
 		c->storm_hz = atof(value);
 	else if (strcmp(word, "strangers") == 0)
 		c->strangers = atol(value);
-	else if (strcmp(word, "power_w") == 0)
-		write_setting(c, atof(value));
-	else if (strcmp(word, "command") == 0)
+	else if (strcmp(word, "power_w") == 0) {
+		open_setting(c);
+		c->sets = true;
+		c->set_w = atof(value);
+	} else if (strcmp(word, "command") == 0)
 		crtk_command(&c->crtk, value);
 	else if (strcmp(word, "jaw") == 0)
 		crtk_jaw(&c->crtk, atof(value));
@@ -354,6 +367,7 @@ static void run(controller *c)
 			c->matched = true;
 			printf("{\"event\":\"matched\"}\n");
 		}
+		write_setting(c);
 		if (c->storm_hz > 0)
 			write_storm(c);
 		else if (c->writing && c->matched)

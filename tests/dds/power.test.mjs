@@ -20,7 +20,7 @@ const listener = (session, tool) => Controller.start({ domain: DOMAIN, session, 
 test('power and load are reported while current flows; a tool without energy has no instance', async (t) => {
 	const client = await daemon.connect({ hello: { client: 'hand' } });
 	const definition = await smallScene(client);
-	Object.assign(definition, { energy: 'tissue', cell_m: 5e-4 });
+	Object.assign(definition, { energy: 'tissue', parting: 'elements', cell_m: 5e-4 });
 	Object.assign(definition.tools[0], { power_w: SET_W });
 	definition.tools.push({ ...definition.tools[0], name: 'grasper', shape: 'grasper', position_m: [0, 0.03, 0.05] });
 	const session = (await client.call('session.create', { name: 'power', definition })).summary.session;
@@ -56,10 +56,10 @@ test('the participant that drives sets the power, in its range; others are refus
 		await client.close();
 	});
 	const refused = () => daemon.metric('session_refused_total', session);
-	for (const via of ['native', 'ros']) {
+	for (const [via, names] of [['native', 'dds '], ['ros', 'ros ']]) {
 		const robot = await Controller.start({ domain: DOMAIN, session, tool: 'hook', via });
 		robot.tell('write on');
-		await robot.until((s) => s.driver !== 0 && s.has_power);
+		await robot.until((s) => s.driver_name.startsWith(names) && s.has_power);
 		robot.tell('power_w 40');
 		await robot.until((s) => s.set_w === 40);
 		robot.tell('power_w 0');

@@ -269,7 +269,7 @@ test('a stored step that moves a tool writes at most 16 KiB', { skip: process.en
 
 test('where the energy of instruments went is reported where that is asked for, and adds up', async () => {
 	const client = await daemon.connect();
-	const definition = { ...await smallScene(client), energy: 'tissue', cell_m: 5e-4 };
+	const definition = { ...await smallScene(client), energy: 'tissue', parting: 'elements', cell_m: 5e-4 };
 	const { summary: { session } } = await client.call('session.create', { name: 'energy', definition, paused: true, ephemeral: true });
 	await client.call('tool.take_over', hook(session));
 	const before = await advance(client, session, [move(0, 0)], { observe: { energy: true } });
