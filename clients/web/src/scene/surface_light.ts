@@ -127,7 +127,7 @@ vec3 shade(Surface s, vec3 view) {
   // A film is uneven more steeply than what it wets: with the light at the camera its slopes are all that mirrors.
   vec3 smooth_ = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
   vec3 film = normalize(s.normal + 2.0 * scope.x * (s.normal - smooth_));
-  float shine = pow(max(dot(film, halfway), 0.0), s.gloss * (1.0 - 0.35 * scope.x)) * (1.0 + 1.5 * scope.x);
+  float shine = pow(max(dot(film, halfway), 0.0), s.gloss * (1.0 - 0.35 * scope.x)) * (1.0 + 3.0 * scope.x);
   // A wet film mirrors the room: a lamp across the table with a wide bright frame, and some light from everywhere.
   float mirrored = max(dot(reflect(-view, s.normal), FAR_LAMP), 0.0);
   float m2 = mirrored * mirrored, m8 = m2 * m2 * m2 * m2, m24 = m8 * m8 * m8, m64 = m24 * m24 * m8 * m8;
