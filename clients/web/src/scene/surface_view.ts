@@ -28,7 +28,7 @@ export class SurfaceView {
   private index: BufferAttribute | null = null;
   private shown = true;
 
-  constructor(shared: SharedUniforms, kind: Exclude<keyof typeof FRAGMENTS, 'flesh' | 'sheath' | 'cloth'>) {
+  constructor(shared: SharedUniforms, kind: Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>) {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: SURFACE_VERTEX,

@@ -5,9 +5,8 @@ import { COMMON } from './surface_light';
 // A pearly sheet of collagen: pale bundles that wander, thinner and glassier between them, where what
 // lies below shows through, with vessels in it.
 const FASCIA_LOOK = /* glsl */ `
-float bundled(vec3 along) { return n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz)); }
 float weave(vec3 along, out float bundle, out float strand) {
-  bundle = bundled(along);
+  bundle = n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz));
   strand = n(vec3(34.0 * along.x + 97.0 * along.y, 560.0 * along.yz) + 0.37);
   return 0.6 * bundle + 0.4 * strand;
 }
@@ -130,12 +129,7 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   float film;
   Surface s = membrane(normal, vMaterial, film);
-  // Heat shrivels the film: it is rough and mottled there, by some hundredths of a millimetre.
-  float fine = n(vMaterial * 430.0);
-  float heated = smoothstep(0.08, 0.40, vBurn.x);
-  s.normal = bend(s.normal, steps(0.0), vec2(dFdx(fine), dFdy(fine)), 0.00010 * heated);
-  s.colour *= 1.0 + 0.5 * heated * (fine - 0.5);
-  burnt(s, vec3(0.68, 0.48, 0.28), vec3(0.46, 0.185, 0.07), 0.35 * film + 0.35 * n(vMaterial * 70.0) + 0.3 * fine);
+  burnt(s, vec3(0.68, 0.48, 0.28), vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
   finish(s, view);
 }`;
 
@@ -169,7 +163,7 @@ void main() {
   s.colour = mix(vec3(0.62, 0.30, 0.10), vec3(0.90, 0.65, 0.26), dome) * (0.92 + 0.16 * n(vMaterial * 120.0));
   s.alpha = 1.0;
   s.gloss = 50.0;
-  s.wet = 0.3;
+  s.wet = 0.5;
   burnt(s, STRAW, vec3(0.47, 0.24, 0.075), 0.55 * (1.0 - dome) + 0.45 * patchy);
   float blood = smoothstep(0.54, 0.68, n(vMaterial * 24.0 + 0.23)) * (1.0 - 0.6 * dome);
   s.colour = mix(s.colour, vec3(0.33, 0.045, 0.03), 0.45 * blood);
@@ -179,35 +173,23 @@ void main() {
 
 // Around the tissue, drawn only: muscle under it, walls of fat in its membrane, the cut edge of the skin. It fills
 // much of the picture and is looked past: fat of one size of lobes, few readings of textures, and skin, which
-// most of it is, with one alone, keep the picture from taking much longer than without it. Where there is nothing but skin
-// a shader of its own draws it: software computes both sides of an `if`.
-const SKIN_LOOK = /* glsl */ `
-vec3 skinned(float film) { return vec3(0.62, 0.33, 0.205) * (0.92 + 0.16 * film); }
-`;
-const SKIN = /* glsl */ `
-void main() {
-  vec3 view = normalize(cameraPosition - vWorld);
-  Surface s;
-  s.normal = normalize(vNormal);
-  if (dot(s.normal, view) < 0.0) s.normal = -s.normal;
-  s.colour = skinned(n(vMaterial * 120.0));
-  s.alpha = 1.0;
-  s.gloss = 60.0;
-  s.wet = 0.10;
-  show(s, view);
-}`;
+// most of it is, with one alone, keep the picture from taking much longer than without it.
 const FLESH = /* glsl */ `
-vec3 inside(vec3 m, float zone, float film, Steps over, out vec2 rise) {
-  float blotch = n(m * 15.0 + 0.3);
+// Where pixels go different ways none knows how many texels it covers: it is told.
+float near(sampler3D of, vec3 p, float texels) { return textureLod(of, p, log2(texels)).r; }
+vec3 inside(vec3 m, float zone, float film, float pixel, Steps over, out vec2 rise) {
+  float blotch = near(noise, m * 15.0 + 0.3, 720.0 * pixel);
   vec3 bent = 33.0 * (m + 0.0024 * (blotch - 0.5) * vec3(1.0, -0.8, 0.6));
-  float lobe = lobed(bent);
-  rise = vec2(lobed(bent + 33.0 * over.x), lobed(bent + 33.0 * over.y)) - lobe;
+  float wide = 1056.0 * pixel;
+  float lobe = near(lobes, bent, wide);
+  rise = vec2(near(lobes, bent + 33.0 * over.x, wide), near(lobes, bent + 33.0 * over.y, wide)) - lobe;
   vec3 colour = mix(vec3(0.60, 0.27, 0.09), vec3(0.88, 0.62, 0.22), smoothstep(0.05, 0.65, lobe));
   colour = mix(colour, vec3(0.93, 0.72, 0.36), 0.4 * smoothstep(0.6, 1.0, lobe));
   colour = mix(colour * (0.93 + 0.14 * film), vec3(0.74, 0.38, 0.31), 0.30);
-  colour = mix(colour, vec3(0.34, 0.03, 0.035), 0.7 * vessel(m.yx + vec2(0.031, 0.012)));
+  float blood = textureLod(vessels, (m.yx + vec2(0.031, 0.012)) / 0.14, log2(1371.0 * pixel)).r;
+  colour = mix(colour, vec3(0.34, 0.03, 0.035), 0.7 * smoothstep(0.45, 0.55, blood));
   colour = mix(colour, vec3(0.62, 0.20, 0.13), 0.45 * smoothstep(0.45, 0.65, blotch));
-  float stripe = n(vec3(28.0 * m.x, 260.0 * m.y + 70.0 * blotch, 40.0 * m.z));
+  float stripe = near(noise, vec3(28.0 * m.x, 260.0 * m.y + 70.0 * blotch, 40.0 * m.z), 5000.0 * pixel);
   vec3 muscle = mix(vec3(0.27, 0.040, 0.032), vec3(0.38, 0.075, 0.058), smoothstep(0.3, 0.7, stripe));
   colour = mix(muscle, colour, smoothstep(0.55, 0.95, zone));
   return mix(colour, vec3(0.82, 0.62, 0.52), smoothstep(1.2, 1.5, zone + 0.3 * (film - 0.5)));
@@ -218,52 +200,19 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   vec3 m = vMaterial;
   float zone = 3.0 * vBurn.w;
+  float pixel = max(length(dFdx(m)), length(dFdy(m)));
   Steps over = steps(0.0004);
   float film = n(m * 120.0);
   float skin = smoothstep(1.75, 1.95, zone + 0.1 * (film - 0.5));
-  vec2 rise;
+  vec2 rise = vec2(0.0);
   Surface s;
-  s.colour = mix(inside(m, zone, film, over, rise), skinned(film), skin);
-  float fatty = smoothstep(0.55, 0.95, zone); // muscle has no lobes, and is dull
-  s.normal = bend(normal, over, rise, 0.0009 * fatty * (1.0 - skin));
+  s.colour = vec3(0.62, 0.33, 0.205) * (0.92 + 0.16 * film);
+  if (skin < 1.0) s.colour = mix(inside(m, zone, film, pixel, over, rise), s.colour, skin);
+  s.normal = bend(normal, over, rise, 0.0009 * (1.0 - skin));
   s.alpha = 1.0;
   s.gloss = 60.0;
-  s.wet = mix(mix(0.03, 0.5, fatty), 0.10, skin);
+  s.wet = mix(0.5, 0.10, skin);
   show(s, view);
-}`;
-
-// What continues the tissue in the body: the same sheet over lobed fat or muscle, or the fat alone. It is looked past:
-// bundles of fibres are colour without slopes and without strands in them, which would cost as much again. Readings of
-// volumes are most of its cost, so the sheet wanders by sines, and its slopes are differences between pixels.
-const SHEATH_LOOK = /* glsl */ `
-uniform vec4 below[2]; // what shines through, two colours of it, and how much of them the sheet covers where it is thin and dense
-Surface afar(vec3 normal, vec3 m) {
-  float blotch = n(m * 34.0);
-  float wander = 0.5 + 0.5 * sin(41.0 * m.x + 23.0 * m.y + 4.0 * blotch);
-  vec3 along = m + vec3(0.0, 0.0035 * (wander - 0.5), 0.0);
-  float dense = smoothstep(0.26, 0.74, bundled(along));
-  vec3 under = mix(below[0].rgb, below[1].rgb, smoothstep(0.30, 0.62, wander));
-  Surface s;
-  s.normal = bend(normal, steps(0.0), vec2(dFdx(blotch), dFdy(blotch)), 0.0010);
-  s.colour = mix(vec3(0.67, 0.38, 0.31), vec3(0.76, 0.53, 0.45), dense);
-  s.colour = mix(s.colour, vec3(0.66, 0.33, 0.27), 0.4 * smoothstep(0.42, 0.70, blotch));
-  float blood = vessel(m.xy + 0.0016 * (vec2(wander, blotch) - 0.5));
-  s.colour = mix(s.colour, vec3(0.36, 0.035, 0.045), 0.72 * blood);
-  s.colour = mix(under, s.colour, mix(below[0].a, below[1].a, dense));
-  s.gloss = 60.0;
-  s.wet = mix(0.26, 0.66, smoothstep(0.40, 0.62, blotch));
-  s.alpha = 1.0;
-  return s;
-}
-`;
-// Which of the two it is, is known when the shader is made: in software both sides of an `if` are computed.
-const sheath = (look: string): string => /* glsl */ `
-void main() {
-  vec3 view = normalize(cameraPosition - vWorld);
-  vec3 normal = normalize(vNormal);
-  if (dot(normal, view) < 0.0) normal = -normal;
-  float grain;
-  show(${look}, view);
 }`;
 
 const CLOTH = /* glsl */ `
@@ -290,10 +239,7 @@ export const FRAGMENTS = {
   membrane: COMMON + FAT_LOOK + MEMBRANE_LOOK + MEMBRANE,
   fat: COMMON + FAT_LOOK + FAT,
   bared: COMMON + FAT_LOOK + BARED,
-  flesh: COMMON + SKIN_LOOK + FLESH,
-  skin: COMMON + SKIN_LOOK + SKIN,
-  filmedSheath: COMMON + FASCIA_LOOK + SHEATH_LOOK + sheath('afar(normal, vMaterial)'),
-  fatSheath: COMMON + FAT_LOOK + sheath('fat(normal, vMaterial, 0.0015, grain)'),
+  flesh: COMMON + FLESH,
   cloth: COMMON + CLOTH,
 } as const;
-export type SurfaceKind = Exclude<keyof typeof FRAGMENTS, 'flesh' | 'skin' | 'filmedSheath' | 'fatSheath' | 'cloth'>;
+export type SurfaceKind = Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>;

@@ -81,13 +81,11 @@ export class ToolView {
     const sleeve = this.makeMaterial(light, new Color(0.035, 0.038, 0.045), 0.12, { value: 0 });
     sleeve.polygonOffset = true; // over the end of what it holds, which may be as wide
     sleeve.polygonOffsetFactor = sleeve.polygonOffsetUnits = -2;
-    const neck = this.makeMaterial(light, new Color(0.060, 0.066, 0.078), 0.10, { value: 0 });
     const parts = toolParts(definition);
     for (const part of parts) {
       const isShaft = part === parts.at(-1);
       const under = part.solid === 'capsule' && !part.hot && !isShaft ? { ...part, radius: part.radius - UNDER_SLEEVE_M } : part;
-      // The neck of a hook is insulated like its shaft: only the wire is bare.
-      const mesh = new Mesh(solidGeometry(under), part.hot ? hot : isShaft ? sleeve : definition.shape === 'hook' ? neck : steel);
+      const mesh = new Mesh(solidGeometry(under), part.hot ? hot : isShaft ? sleeve : steel);
       mesh.userData['hot'] = part.hot;
       this.place(mesh, part);
     }
