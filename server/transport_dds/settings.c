@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of cautery/tool_setting: what is set at a tool's generator.
-#include <math.h>
+// Samples of cautery/tool_setting: power, voltage, crest factor and current of a tool's generator.
+// Each sample states all four. So it needs nothing of a sample before it, which may still wait in
+// the session's queue.
 #include <string.h>
 
 #include "cautery.h"
 #include "cautery/defaults.h"
 #include "transport_dds/internal.h"
 
-// Sets one of the tool's sizes; a value below 0 leaves it.
+// Sets one of the tool's sizes, in its range.
 static cau_status set(cau_tool_def *tool, const char *name, double value, cau_error *error)
 {
 	const struct {
@@ -21,8 +22,6 @@ static cau_status set(cau_tool_def *tool, const char *name, double value, cau_er
 	size_t i = 0;
 	while (strcmp(sizes[i].name, name) != 0)
 		i++;
-	if (value < 0)
-		return CAU_OK;
 	if (!(value >= sizes[i].least && value <= sizes[i].most))
 		return cau_fail(error, CAU_BAD_VALUE, name, "%g is not between %g and %g", value,
 		                sizes[i].least, sizes[i].most);
@@ -49,12 +48,6 @@ static cau_dds_hand *find_driving(const cau_dds_tool *tool, const cau_dds_writer
 	                hand->client->participant != writer->participant))
 		hand = hand->next;
 	return hand;
-}
-
-static bool is_set_already(const cau_tool_def *a, const cau_tool_def *b)
-{
-	return a->power_w == b->power_w && a->peak_v == b->peak_v &&
-	       a->crest_factor == b->crest_factor && a->current_max_a == b->current_max_a;
 }
 
 static cau_status order_setting(const cau_dds_hand *hand, const cau_tool_def *tool,
@@ -89,9 +82,7 @@ static cau_status take(const cau_dds *dds, const cau_door *door, cau_dds_writer 
 		return cau_fail(error, CAU_LIMIT, "tool", "too many settings a second");
 	cau_tool_def wanted = state.state.definition;
 	cau_status status = set_all(&wanted, sample, error);
-	if (status || is_set_already(&wanted, &state.state.definition))
-		return status;
-	return order_setting(hand, &wanted, error);
+	return status ? status : order_setting(hand, &wanted, error);
 }
 
 void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)

@@ -65,6 +65,9 @@ static void publish_power(const cau_dds_session *session, const cau_tool_state *
 	cautery_ToolPower sample = {
 		.tick = tick,
 		.set_w = state->definition.power_w,
+		.peak_v = state->definition.peak_v,
+		.crest_factor = state->definition.crest_factor,
+		.current_max_a = state->definition.current_max_a,
 		.power_w = state->delivered_w,
 		.load_ohm = state->load_ohm,
 		.energy_j = state->energy_j,

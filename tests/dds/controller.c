@@ -123,13 +123,15 @@ static void open_setting(controller *c)
 	dds_delete_qos(qos);
 }
 
-// Once the daemon reads it; the rest stays as it is.
+// Once the daemon reads it. Power is set, the other members are as they were last reported.
 static void write_setting(controller *c)
 {
-	if (!c->sets || !is_matched(c->setting))
+	if (!c->sets || !*c->power.tool || !is_matched(c->setting))
 		return;
-	cautery_ToolSetting sample = {
-		.power_w = c->set_w, .peak_v = -1, .crest_factor = -1, .current_max_a = -1};
+	cautery_ToolSetting sample = {.power_w = c->set_w,
+	                              .peak_v = c->power.peak_v,
+	                              .crest_factor = c->power.crest_factor,
+	                              .current_max_a = c->power.current_max_a};
 	memcpy(sample.session, c->session, sizeof c->session);
 	memcpy(sample.tool, c->tool, sizeof c->tool);
 	checked(dds_write(c->setting, &sample));
@@ -330,6 +332,7 @@ static void obey(void *user, const char *line)
 		open_setting(c);
 		c->sets = true;
 		c->set_w = atof(value);
+		write_setting(c);
 	} else if (strcmp(word, "command") == 0)
 		crtk_command(&c->crtk, value);
 	else if (strcmp(word, "jaw") == 0)

@@ -91,7 +91,7 @@ typedef struct sim_client {
 	bool clocked;           // its heartbeats say when they were sent
 	bool clock_counts;      // and the daemon knows the clock
 	int64_t clock_ahead_ns; // of the daemons'
-	int64_t late_until_ns;  // what it sends before that time arrives at that time
+	int64_t late_until_ns;  // its messages wait on their way until then
 	int64_t heard_ns;       // its newest sign of life: sent by then, for all that a daemon can know
 	bool reads;             // takes what comes
 	int64_t reads_ns;       // since when
