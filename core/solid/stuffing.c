@@ -443,6 +443,8 @@ static cau_status compact(cau_tets *tets, cau_error *error)
 
 static cau_status run_pass(pass of, cau_error *error)
 {
+	if (!of.tets->count)
+		return CAU_OK; // no tetrahedron is inside: there is nothing to divide
 	run(&of);
 	free(of.sign);
 	free(of.cuts);

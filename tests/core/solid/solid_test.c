@@ -262,6 +262,23 @@ static void beginnings_are_refused(void **state)
 	free(bytes);
 }
 
+// Two pieces on two voxels, a thousandth of their size apart: no edge is short enough for what is
+// there, and the first label leaves nothing for the second to divide.
+static void what_is_thinner_than_any_edge_is_refused(void **state)
+{
+	(void)state;
+	static const char file[] =
+		"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 3 3\nencoding: raw\n\n"
+		"\1\0\x1d\0\0\0\xff\xff\xff";
+	cau_solid solid;
+	cau_error error = {0};
+	cau_solid_wish wish = {.file = "thin", .bytes = file, .byte_count = sizeof file - 1};
+	assert_int_not_equal(cau_solid_make(&wish, &solid, &error), CAU_OK);
+	print_message("%s: %s\n", error.path, error.reason);
+	assert_true(error.reason[0]);
+	cau_solid_finish(&solid);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -270,6 +287,7 @@ int main(void)
 		cmocka_unit_test(surfaces_are_filled),
 		cmocka_unit_test(a_chosen_edge_makes_as_many_as_a_session_steps),
 		cmocka_unit_test(beginnings_are_refused),
+		cmocka_unit_test(what_is_thinner_than_any_edge_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
