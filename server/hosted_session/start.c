@@ -21,7 +21,8 @@ static void stock_shelves(cau_hosted *h)
 		return;
 	cau_shelf_stock(h->snapshot_shelf, snapshot, PIECES);
 	cau_shelf_stock(h->copy_shelf, copy, PIECES);
-	cau_streams_stock(&h->streams, &shape);
+	if (cau_streams_stock(&h->streams, &shape, &refused))
+		cau_log(CAU_LOG_WARNING, h->id, "stream_not_stocked", "reason=\"%s\"", refused.reason);
 }
 
 static cau_status create(cau_hosted *h, bool unsettled, cau_error *error)

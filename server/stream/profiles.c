@@ -159,17 +159,21 @@ static void keep_topology(cau_streams *streams, cau_buffer *topology)
 	streams->topology = topology;
 }
 
-void cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape)
+cau_status cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape, cau_error *error)
 {
 	cau_stream_def def = usual_def(shape->vertex_count, shape->face_count);
 	cau_buffer *topology = NULL;
 	if (!streams->profile_shelf || !streams->opening_shelf)
-		return;
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the shelves of a session");
+	if (!streams->epoch)
+		cau_streams_restart(streams); // no frame is of no epoch
 	def.session = streams->session;
 	cau_shelf_stock(streams->profile_shelf, profile_bytes(&def), 1);
 	cau_shelf_stock(streams->opening_shelf, topology_work_bytes(&def), 1);
-	if (!encode_topology(streams, &def, shape, &topology, NULL))
+	cau_status status = encode_topology(streams, &def, shape, &topology, error);
+	if (!status)
 		keep_topology(streams, topology);
+	return status;
 }
 
 static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_wish *wish,

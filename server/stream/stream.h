@@ -103,10 +103,10 @@ typedef struct cau_stream_shape {
 } cau_stream_shape;
 
 // Bytes that opening a profile takes; and, on the builder, allocating them beforehand. The builder
-// also encodes the topology, so that no slice of a worker does it. If that fails for lack of
-// memory, the slice of the first session.join encodes it.
+// also encodes the topology, so that no slice of a worker does it. If that fails, the slice of the
+// first session.join encodes it.
 size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
-void cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape);
+cau_status cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape, cau_error *error);
 
 // A stream that fits, opened if need be, with the subscriber counted; it ends with
 // cau_streams_leave. *woken: nothing was published there, so a frame is due now. CAU_LIMIT: the

@@ -365,6 +365,45 @@ static void test_a_key_frame_that_fails_wakes_nobody(void **state)
 	scene_finish(&s);
 }
 
+// ---- what the builder makes beforehand ----------------------------------------------------------
+static cau_buffer *joined_topology(cau_streams *streams, const cau_stream_shape *shape)
+{
+	cau_stream_wish wish = {.rate_hz = 60, .step_m = 1e-5, .channels = CAU_CHANNEL_POSITIONS};
+	const cau_stream *stream;
+	bool woken;
+	cau_streams_restart(streams);
+	assert_int_equal(cau_streams_join(streams, &wish, shape, &stream, &woken, NULL), CAU_OK);
+	return stream->topology;
+}
+
+// A new session has no epoch yet. What is encoded then serves who joins later, and is the same as
+// without.
+static void test_a_topology_is_encoded_before_anybody_joins(void **state)
+{
+	(void)state;
+	int32_t face[3 * FACES], layer[FACES] = {0};
+	double rest[3 * VERTICES];
+	cau_error error = {0};
+	for (int i = 0; i < 3 * FACES; i++)
+		face[i] = (i * 7 + i / 3) % VERTICES;
+	for (int i = 0; i < 3 * VERTICES; i++)
+		rest[i] = 0.001 * (i * 13 % 101);
+	cau_stream_shape shape = {VERTICES, FACES, face, layer, NULL, rest};
+	cau_streams stocked = {.id = "d1-test", .subscribers_most = 1}, bare = stocked;
+	cau_streams_init(&stocked);
+	cau_streams_init(&bare);
+	if (cau_streams_stock(&stocked, &shape, &error))
+		fail_msg("%s", error.reason);
+	assert_non_null(stocked.topology);
+	cau_buffer *one = joined_topology(&stocked, &shape), *two = joined_topology(&bare, &shape);
+	assert_int_equal(one->byte_count, two->byte_count);
+	assert_memory_equal((char *)cau_buffer_bytes(one) + CAU_FRAME_HEADER_BYTES,
+	                    (char *)cau_buffer_bytes(two) + CAU_FRAME_HEADER_BYTES,
+	                    one->byte_count - CAU_FRAME_HEADER_BYTES);
+	cau_streams_finish(&stocked);
+	cau_streams_finish(&bare);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -378,6 +417,7 @@ int main(void)
 		cmocka_unit_test(test_one_that_keeps_up_comes_back_on_trial),
 		cmocka_unit_test(test_falls_are_forgotten_in_time),
 		cmocka_unit_test(test_a_key_frame_that_fails_wakes_nobody),
+		cmocka_unit_test(test_a_topology_is_encoded_before_anybody_joins),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
