@@ -133,12 +133,21 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 }
 
 // ---- application
-static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau_tool_def *def,
-                                 cau_error *error)
+// Whether heat's grid and what the jaws hold may stay: they depend on these alone.
+static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
+{
+	return now->shape == def->shape && now->hot_radius_m == def->hot_radius_m &&
+	       now->tip_length_m == def->tip_length_m && now->shaft_radius_m == def->shaft_radius_m &&
+	       now->shaft_length_m == def->shaft_length_m && now->jaw_open_rad == def->jaw_open_rad &&
+	       now->grid_cells == def->grid_cells && now->grid_step_m == def->grid_step_m &&
+	       now->diffusivity_m2_s == def->diffusivity_m2_s;
+}
+
+// Another form: the grid is cold, and jaws let go.
+static cau_status change_form(cau_session *session, cau_tool *tool, const cau_tool_def *def,
+                              cau_error *error)
 {
 	cau_heat_grid grid;
-	if (cau_session_has_definition(tool, def))
-		return CAU_OK;
 	cau_status status = cau_heat_grid_create(&grid, def, session->scene->ambient_c,
 	                                         session->solver.step_s, &tool->state.pose, error);
 	if (status)
@@ -148,11 +157,23 @@ static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau
 	double blade_c = tool->blade.temperature_c;
 	tool->blade = cau_session_blade_of(session, def);
 	tool->blade.temperature_c = blade_c;
-	cau_pose pose = tool->state.definition.pose;
-	tool->state.definition = *def;
-	tool->state.definition.pose = pose;
-	memcpy(tool->state.definition.name, tool->state.name, sizeof tool->state.name);
 	cau_session_release(tool);
+	return CAU_OK;
+}
+
+static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau_tool_def *def,
+                                 cau_error *error)
+{
+	cau_tool_def *now = &tool->state.definition;
+	if (!has_form(now, def)) {
+		cau_status status = change_form(session, tool, def, error);
+		if (status)
+			return status;
+	}
+	cau_pose pose = now->pose;
+	*now = *def;
+	now->pose = pose;
+	memcpy(now->name, tool->state.name, sizeof now->name);
 	return CAU_OK;
 }
 

@@ -274,6 +274,72 @@ static void a_hold_goes_with_its_face(void **state)
 	free(scene);
 }
 
+// ---- another definition of a tool that holds
+typedef struct change {
+	const char *field;
+	size_t offset;
+	double value;
+	bool form; // without it the tool has another form, and lets go
+} change;
+
+#define OF(field, value, form)                                                                     \
+	{                                                                                              \
+#field, offsetof(cau_tool_def, field), value, form                                         \
+	}
+
+static void assert_change(const change *changed)
+{
+	cau_scene_def *scene = coarse_scene(0.004, 0.003, -0.002);
+	scene->tools[0].shape = CAU_TOOL_BIPOLAR;
+	cau_session *session = stage_open(scene, 1);
+	cau_command configure = stage_command(CAU_COMMAND_TOOL_CONFIGURE);
+	stage_grasp(session, "jaws");
+	stage_energize(session, "jaws", true);
+	stage_step(session, 20);
+	int32_t held = stage_tool(session, "jaws")->grasped_vertices;
+	double warmest_c = cau_heat_grid_warmest(&session->tool[0].grid);
+	assert_true(held > 0 && warmest_c > 100);
+	stage_energize(session, "jaws", false);
+	strcpy(configure.tool, "jaws");
+	configure.as.definition = stage_tool(session, "jaws")->definition;
+	*(double *)((char *)&configure.as.definition + changed->offset) = changed->value;
+	stage_submit(session, &configure);
+	stage_step(session, 1);
+	const cau_tool_state *jaws = stage_tool(session, "jaws");
+	assert_true(*(const double *)((const char *)&jaws->definition + changed->offset) ==
+	            changed->value);
+	bool stays = jaws->grasping && jaws->grasped_vertices == held &&
+	             cau_heat_grid_warmest(&session->tool[0].grid) > 60;
+	if (stays == changed->form)
+		fail_msg("%s: %d of %d held", changed->field, jaws->grasped_vertices, held);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// Jaws that coagulate what they hold must not let go because somebody chooses other watts.
+static void a_setting_keeps_what_jaws_hold(void **state)
+{
+	(void)state;
+	static const change changes[] = {
+		OF(hot_radius_m, 4e-3, true),     OF(tip_length_m, 5e-3, true),
+		OF(shaft_radius_m, 1.2e-3, true), OF(shaft_length_m, 0.2, true),
+		OF(jaw_open_rad, 0.7, true),      OF(temperature_c, 150, false),
+		OF(grid_cells, 20, true),         OF(grid_step_m, 9e-4, true),
+		OF(diffusivity_m2_s, 4e-6, true), OF(max_speed_m_s, 0.4, false),
+		OF(max_turn_rad_s, 11, false),    OF(friction, 0.3, false),
+		OF(drag_ns_m, 0.06, false),       OF(grasp_stiffness_n_m, 210, false),
+		OF(slip_force_n, 2.1, false),     OF(force_max_n, 19, false),
+		OF(close_force_n, 7.5, false),    OF(power_w, 40, false),
+		OF(peak_v, 190, false),           OF(crest_factor, 2, false),
+		OF(current_max_a, 1, false),
+	};
+#define ONE(...) +1
+	assert_int_equal(sizeof changes / sizeof changes[0], CAU_TOOL_TABLE(ONE)); // each of them
+#undef ONE
+	for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++)
+		assert_change(&changes[i]);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -284,6 +350,7 @@ int main(void)
 		cmocka_unit_test(held_jaws_rest_and_open_again),
 		cmocka_unit_test(what_is_pulled_too_hard_slips_and_is_lost),
 		cmocka_unit_test(a_hold_goes_with_its_face),
+		cmocka_unit_test(a_setting_keeps_what_jaws_hold),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
