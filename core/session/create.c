@@ -260,6 +260,8 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	if (!status)
 		status = cau_session_make_energy(session, error);
 	if (!status)
+		status = cau_session_make_inversion(session, error);
+	if (!status)
 		status = cau_session_make_rest(session, error);
 	if (!status)
 		status = cau_session_make_spin(session, error);

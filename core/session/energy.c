@@ -10,6 +10,7 @@
 // from. Plastic flow and friction of tissue on tissue count as loss. Laws without an energy have
 // none to compare: nothing is told. Where the solver spared itself the look at where a step ended,
 // the elastic energy there is what eq. 4 comes to without its inertia.
+#include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -213,19 +214,25 @@ void cau_session_end_energy(cau_session *session)
 	CAU_ASSERT(!session->solver.conservative || (!energy->stale && !energy->marked),
 	           "tick %llu ends with an energy that it did not begin with",
 	           (unsigned long long)session->tick);
-	energy->gain_j = 0;
+	energy->gain_j = energy->scale_j = 0;
 	if (!session->solver.conservative)
 		return;
 	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
-	double gain_j = -energy->elastic_j - tool_work(session), inertia_j = 0;
-	if (session->solver.collide)
-		gain_j += session->collide.energy_j - session->collide.start_energy_j;
+	double of_tools_j = tool_work(session), gain_j = -energy->elastic_j - of_tools_j;
+	double inertia_j = 0, work_j = 0, kinetic_j = 0, touching_j = 0;
+	if (session->solver.collide) {
+		touching_j = session->collide.start_energy_j;
+		gain_j += session->collide.energy_j - touching_j;
+	}
 	for (int32_t k = 0; k < session->solver.chunk_count; k++) {
 		const double *sum = energy->sum_j + SUMS * (size_t)k;
 		gain_j += sum[2] - sum[1] - sum[0];
+		work_j += sum[0];
+		kinetic_j += sum[1];
 		inertia_j += sum[3];
 	}
 	energy->end_j = session->solver.spared ? session->solver.objective - inertia_j
 	                                       : cau_solver_elastic_energy(&session->solver);
 	energy->gain_j = gain_j + energy->end_j;
+	energy->scale_j = energy->elastic_j + kinetic_j + touching_j + fabs(work_j) + fabs(of_tools_j);
 }

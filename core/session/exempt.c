@@ -24,25 +24,17 @@ static void exempt_held(cau_session *session)
 		}
 }
 
-static bool is_inverted(const double *position, const int32_t vertex[4])
-{
-	cau_vec3 from = cau_vec3_of(position + 3 * (size_t)vertex[0]), side[3];
-	for (int k = 0; k < 3; k++)
-		side[k] = cau_sub(cau_vec3_of(position + 3 * (size_t)vertex[k + 1]), from);
-	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0); // at rest it is (mesh/mesh.h)
-}
-
 // Returns whether too much is inside out.
 static bool exempt_inverted(cau_session *session)
 {
 	const cau_tissue *tissue = &session->tissue;
 	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
 	int32_t count = 0;
-	if (!session->inverted) // the last tick ended with none
+	if (!session->inversion.count) // the last tick ended with none
 		return false;
 	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
 		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
-		if (!alive[i] || !is_inverted(session->position_start, vertex))
+		if (!alive[i] || !cau_session_is_inverted(session->position_start, vertex))
 			continue;
 		for (int k = 0; k < 4; k++)
 			session->collide.exempt[vertex[k]] = 1;

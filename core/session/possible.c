@@ -231,13 +231,14 @@ static const char *layer_of_most_fat(const cau_tissue *tissue)
 
 cau_status cau_session_check_inverted(const cau_session *session, cau_error *error)
 {
-	CAU_ASSERT(session->inverted >= 0 && session->inverted <= session->tissue.tetrahedron_count,
-	           "%d of %d tetrahedra", session->inverted, session->tissue.tetrahedron_count);
+	CAU_ASSERT(session->inversion.count >= 0 &&
+	               session->inversion.count <= session->tissue.tetrahedron_count,
+	           "%d of %d tetrahedra", session->inversion.count, session->tissue.tetrahedron_count);
 	char what[128];
 	const cau_tissue *tissue = &session->tissue;
-	if (session->inverted <= most_inverted * tissue->tetrahedron_count)
+	if (session->inversion.count <= most_inverted * tissue->tetrahedron_count)
 		return CAU_OK;
-	snprintf(what, sizeof what, "%d of %d tetrahedra are inside out", session->inverted,
+	snprintf(what, sizeof what, "%d of %d tetrahedra are inside out", session->inversion.count,
 	         tissue->tetrahedron_count);
 	return refuse(session, error, layer_of_most_fat(tissue), what);
 }

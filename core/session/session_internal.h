@@ -45,6 +45,7 @@ typedef struct cau_tool {
 // energy.c: energy that a tick added without a source, and the shares whose laws it changed.
 typedef struct cau_energy {
 	double gain_j;    // of the last tick
+	double scale_j;   // what it is to be held against
 	double elastic_j; // at its start
 	double end_j;     // and at its end
 	bool stale;       // every share is to be evaluated before the next tick
@@ -52,6 +53,16 @@ typedef struct cau_energy {
 	uint8_t *dirty;   // (work_count)
 	double *sum_j;    // (chunk_count x 4): scratch
 } cau_energy;
+
+// inversion.c: tetrahedra that are inside out. The ticks are not in snapshots: after a restore they
+// are counted anew.
+typedef struct cau_inversion {
+	int32_t count;                      // after the last tick
+	int32_t long_count[CAU_MAX_LAYERS]; // of these, by layer: since half a second
+	uint16_t *ticks;                    // (tetrahedron_count): since when, at most long_ticks
+	uint16_t long_ticks;                // half a second
+	bool followed;                      // some ticks are not 0
+} cau_inversion;
 
 // rest.c: whether the tissue is at rest, and since when it has been quiet.
 typedef struct cau_rest {
@@ -111,7 +122,8 @@ struct cau_session {
 	uint8_t *fixed;              // (n): pinned or frozen
 	uint8_t *chosen;             // (n): scratch of selections
 	cau_drag *drag;              // (n)
-	int32_t inverted, frozen_count;
+	cau_inversion inversion;
+	int32_t frozen_count;
 	cau_watch watch;
 	cau_energy energy;
 	cau_rest rest;
@@ -295,6 +307,12 @@ void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
 // Greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
+// inversion.c: its array; counts what stays inside out, after a tick's solve. Whether a tetrahedron
+// has no volume above 0; position is m, (n x 3).
+cau_status cau_session_make_inversion(cau_session *session, cau_error *error);
+void cau_session_follow_inversion(cau_session *session);
+void cau_session_forget_inversion(cau_session *session); // after a restore
+bool cau_session_is_inverted(const double *position, const int32_t vertex[4]);
 // possible.c: its arrays; refuses a state that no tissue can have (CAU_NUMERICAL, with the tick and
 // the layer), by the vertices' moves and the edges' lengths, and by the count of inverted elements.
 cau_status cau_session_make_watch(cau_session *session, cau_error *error);

@@ -59,7 +59,8 @@ static void take_counts(cau_session *session, const snapshot_head *head)
 	session->faulted = head->faulted;
 	session->rest.resting = head->resting;
 	session->rest.quiet_ticks = head->quiet_ticks;
-	session->inverted = head->inverted;
+	cau_session_forget_inversion(session);
+	session->inversion.count = head->inverted;
 	session->driven_count = session->refusal_count = 0;
 	session->solver.factor_version = head->factor_version;
 	update->group_count = head->group_count;

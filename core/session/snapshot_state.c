@@ -41,7 +41,7 @@ static void view_counts(const cau_session *session, snapshot_head *head)
 	head->group_count = update->group_count;
 	head->waiting_at_start = update->making ? update->waiting_at_start : 0;
 	head->refactorisations = update->refactorisations;
-	head->inverted = session->inverted;
+	head->inverted = session->inversion.count;
 	head->edges_parted = session->dissection.edges_parted;
 	head->elements_removed = session->dissection.elements_removed;
 	head->elements_torn = session->dissection.tears.elements_torn;

@@ -44,9 +44,9 @@ void cau_session_settle(cau_session *session)
 	const cau_step_solver *solver = &session->solver;
 	settling work = {.solver = solver};
 	cau_pool_run(solver->pool, solver->slots.work_count, settle_part, &work);
-	session->inverted = work.inverted;
-	CAU_ASSERT(session->inverted <= session->tissue.tetrahedron_count,
-	           "%d of %d tetrahedra are inverted", session->inverted,
+	session->inversion.count = work.inverted;
+	CAU_ASSERT(session->inversion.count <= session->tissue.tetrahedron_count,
+	           "%d of %d tetrahedra are inverted", session->inversion.count,
 	           session->tissue.tetrahedron_count);
 }
 
@@ -224,6 +224,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_end_energy(session);                     // energy.c
 	cau_session_update_velocities(session);              // eq. 2: motion.c
 	cau_session_settle(session);                         // plasticity, section 5.2
+	cau_session_follow_inversion(session);               // inversion.c
 	status = cau_session_check_inverted(session, error); // possible.c
 	if (status)
 		return fault(session, status);

@@ -167,7 +167,7 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.iterations = solver->iterations_done,
 		.residual = solver->residual,
 		.backtracks = solver->backtracks,
-		.inverted = session->inverted,
+		.inverted = session->inversion.count,
 		.edges_parted = session->dissection.edges_parted,
 		.elements_removed = session->dissection.elements_removed,
 		.elements_torn = session->dissection.tears.elements_torn,
@@ -180,10 +180,13 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.touching_cut_short = session->collide.cut_short_count,
 		.frozen_vertices = session->frozen_count,
 		.energy_gain_j = session->energy.gain_j,
+		.energy_scale_j = session->energy.scale_j,
 		.error = solver->accuracy.error,
 		.resting = session->rest.resting,
 	};
 	memcpy(statistics->seconds, session->stage_s, sizeof session->stage_s);
+	memcpy(statistics->long_inverted, session->inversion.long_count,
+	       sizeof statistics->long_inverted);
 }
 
 void cau_session_frame(const cau_session *session, cau_frame *frame)

@@ -16,7 +16,8 @@ static void tell(cau_hosted *h, const cau_wire_timeline_event *what)
 
 static void publish(cau_hosted *h, const cau_wire_timeline_event *event)
 {
-	bool trouble = event->kind == CAU_EVENT_WATCHDOG || event->kind == CAU_EVENT_FAULT;
+	bool trouble = event->kind == CAU_EVENT_WATCHDOG || event->kind == CAU_EVENT_FAULT ||
+	               event->kind == CAU_EVENT_INVERTED || event->kind == CAU_EVENT_ENERGY_GAIN;
 	cau_record_event(h, event, trouble ? CAU_LOG_WARNING : CAU_LOG_INFO);
 	tell(h, event);
 }

@@ -127,6 +127,8 @@ struct cau_hosted {
 	double stepped_s;      // of the steps in this slice
 	cau_shelf *snapshot_shelf, *copy_shelf; // memory for checkpoints, and for what files show
 	int32_t elements_removed, elements_torn;
+	uint32_t inverted_layers; // whose tetrahedra were reported, a bit each
+	uint64_t gain_tick;       // of the last report that steps gained energy; 0: none
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
 	int32_t snapshot_count;

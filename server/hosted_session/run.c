@@ -7,13 +7,15 @@
 #include "hosted_session/internal.h"
 
 #define FACTOR_WINDOW_S 1.0   // realtime_factor is over this
+#define GAIN_MOST 0.01        // of a tick's energy: beyond it a gain is reported
 #define PIECE_KEPT 0.9        // of the longest step, from each to the next
 #define STEPPING_SLICE_S 0.01 // session.step runs so long before others get the worker
 #define REPLAY_SLICE_S 0.008  // and so long a replay, so that other sessions keep their pace
 
 enum {
-	QUIET_DOUBLINGS = 6
-}; // an untouched session has a checkpoint every 64 checkpoint_s at least
+	QUIET_DOUBLINGS = 6,    // an untouched session has a checkpoint every 64 checkpoint_s at least
+	GAIN_QUIET_TICKS = 600, // after a report that energy was gained: one in ten seconds is enough
+};
 
 // ---- time
 // Who pulls: the first whose jaws hold something.
@@ -47,6 +49,33 @@ static void note_cut(cau_hosted *h, const cau_frame *frame)
 			cutter = &drives[i];
 	cau_event_add(h, CAU_EVENT_CUT, cutter ? cutter->tool : NULL,
 	              cutter ? cutter->driver.name : NULL, removed, NULL);
+}
+
+// Once for each layer, until all of it is right again.
+static void note_inverted(cau_hosted *h, const cau_statistics *now)
+{
+	for (int32_t i = 0; i < h->scene->layer_count; i++) {
+		uint32_t bit = 1u << i;
+		bool reported = h->inverted_layers & bit;
+		h->inverted_layers &= now->long_inverted[i] ? UINT32_MAX : ~bit;
+		if (!now->long_inverted[i] || reported)
+			continue;
+		h->inverted_layers |= bit;
+		cau_event_add(h, CAU_EVENT_INVERTED, NULL, NULL, now->long_inverted[i],
+		              h->scene->layers[i].name);
+	}
+}
+
+static void note_gain(cau_hosted *h, const cau_statistics *now)
+{
+	char detail[64];
+	bool again = h->tick < h->gain_tick || h->tick - h->gain_tick >= GAIN_QUIET_TICKS;
+	if (!(now->energy_gain_j > GAIN_MOST * now->energy_scale_j) || (h->gain_tick && !again))
+		return;
+	h->gain_tick = h->tick;
+	snprintf(detail, sizeof detail, "%.3g J in a tick that had %.3g J", now->energy_gain_j,
+	         now->energy_scale_j);
+	cau_event_add(h, CAU_EVENT_ENERGY_GAIN, NULL, NULL, 0, detail);
 }
 
 static void note_refusals(cau_hosted *h, const cau_frame *frame)
@@ -92,6 +121,8 @@ static void step(cau_hosted *h)
 	cau_session_frame(h->core, &frame);
 	cau_times_stepped(h, &frame.statistics);
 	note_cut(h, &frame);
+	note_inverted(h, &frame.statistics);
+	note_gain(h, &frame.statistics);
 	cau_event_settle(h);
 	note_refusals(h, &frame);
 	pthread_mutex_lock(&h->mutex);

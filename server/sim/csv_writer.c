@@ -18,6 +18,7 @@
 	X("residual", ".6g", s->residual)                                                              \
 	X("backtracks", PRId32, s->backtracks)                                                         \
 	X("inverted", PRId32, s->inverted)                                                             \
+	X("long_inverted", PRId32, long_inverted(s))                                                   \
 	X("edges_parted", PRId32, s->edges_parted)                                                     \
 	X("elements_removed", PRId32, s->elements_removed)                                             \
 	X("elements_torn", PRId32, s->elements_torn)                                                   \
@@ -30,6 +31,7 @@
 	X("touching_cut_short", PRId32, s->touching_cut_short)                                         \
 	X("frozen_vertices", PRId32, s->frozen_vertices)                                               \
 	X("energy_gain_j", ".6g", s->energy_gain_j)                                                    \
+	X("energy_scale_j", ".6g", s->energy_scale_j)                                                  \
 	X("error", ".6g", s->error)                                                                    \
 	X("resting", "d", s->resting)                                                                  \
 	X("tool_force_max_n", ".6g", largest_force(frame))                                             \
@@ -59,6 +61,14 @@
 	X("energy_j", tool->energy_j)                                                                  \
 	X("delivered_w", tool->delivered_w)                                                            \
 	X("load_ohm", tool->load_ohm)
+
+static int32_t long_inverted(const cau_statistics *statistics)
+{
+	int32_t count = 0;
+	for (int i = 0; i < CAU_MAX_LAYERS; i++)
+		count += statistics->long_inverted[i];
+	return count;
+}
 
 static double largest_force(const cau_frame *frame)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numerical trouble, made at will: the daemon on the double of the core (tests/server/double), which
-// faults on a force of 1,000 N.
+// Numerical trouble. Faults are made at will: the daemon on the double of the core
+// (tests/server/double), which faults on a force of 1,000 N. What is wrong and no fault comes from scenes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
@@ -41,5 +41,58 @@ test('a fault stays in its session, is told, outlives a restart, and a rewind he
 	const again = await daemon.connect();
 	assert.equal((await again.call('session.list')).sessions.length, 2);
 	await again.close();
+	await daemon.end();
+});
+
+const slab = (size_m, cells, material) => ({
+	meshes: [{ source: 'slab', name: 'slab', size_m, cells }],
+	layers: [{ kind: 'fat', name: 'soft', mesh: 'slab', young_modulus_pa: 3000, ...material }],
+	tools: [{ name: 'ball', shape: 'sphere', position_m: [0, 0, 0.15] }],
+});
+// StVK's law holds tetrahedra that were turned inside out, also when the force is gone.
+const squashed = { ...slab([0.04, 0.04, 0.01], [8, 8, 2], { model: 'stvk' }), name: 'squashed',
+	pins: [{ kind: 'box', layer: 'soft', least_m: [-1, -1, -0.0101], most_m: [1, 1, -0.0099] }] };
+const middle = { kind: 'box', layer: 'soft', least_m: [-0.011, -0.011, -0.0005], most_m: [0.011, 0.011, 0.0005] };
+// A beam that swings, by steps of one iteration, which is far too few.
+const swinging = { ...slab([0.1, 0.02, 0.02], [10, 2, 2], { model: 'corotated' }), name: 'swinging', damping_per_s: 0,
+	gravity_m_s2: [0, 0, -9.81], iterations: 1, accuracy: 0,
+	pins: [{ kind: 'box', layer: 'soft', least_m: [-0.0501, -1, -1], most_m: [-0.0499, 1, 1] }] };
+const eventsOf = async (client, session, kind) =>
+	(await client.call('session.timeline', { session })).events.filter((event) => event.kind === kind);
+
+test('what stays inside out is reported with its layer, once, and the session goes on', async () => {
+	const daemon = await Daemon.start();
+	const client = await daemon.connect();
+	await client.call('session.create', { name: 'one', definition: squashed, paused: true });
+	const session = 'd1-one';
+	await client.join(session);
+	await client.call('session.step', { session, ticks: 5 });
+	await client.call('force.set', { session, selection: middle, force_n: [0, 0, -0.02] });
+	await client.call('session.step', { session, ticks: 28 });
+	assert.deepEqual(await eventsOf(client, session, 'inverted'), [], 'not within half a second');
+	await client.call('force.set', { session, selection: middle, force_n: [0, 0, 0] });
+	await client.call('session.step', { session, ticks: 60 });
+	const [event, ...others] = await eventsOf(client, session, 'inverted');
+	assert.deepEqual(others, []);
+	assert.equal(event.detail, 'soft');
+	assert.ok(event.count > 0, `${event.count} tetrahedra`);
+	const pushed = client.notice('event', ({ event }) => event.kind === 'inverted');
+	assert.ok(pushed, 'who watches is notified');
+	assert.notEqual((await client.call('session.describe', { session })).summary.state, 'faulted');
+	await client.close();
+	await daemon.end();
+});
+
+test('steps that gain energy are reported, once in ten seconds', async () => {
+	const daemon = await Daemon.start();
+	const client = await daemon.connect();
+	await client.call('session.create', { name: 'one', definition: swinging, paused: true });
+	const session = 'd1-one';
+	await client.call('session.step', { session, ticks: 120 });
+	const [event, ...others] = await eventsOf(client, session, 'energy_gain');
+	assert.deepEqual(others, []);
+	const [gained, had] = event.detail.match(/^(.*) J in a tick that had (.*) J$/).slice(1).map(Number);
+	assert.ok(gained > 0.01 * had, event.detail);
+	await client.close();
 	await daemon.end();
 });

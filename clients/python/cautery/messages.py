@@ -929,7 +929,7 @@ class TimelineEvent(TypedDict):
     time_s: float
 
     # what
-    kind: Literal["created", "cut", "tear", "energy_on", "energy_off", "watchdog", "driver", "tool_added", "tool_removed", "refused", "fault", "rewind", "reset", "snapshot", "restore"]
+    kind: Literal["created", "cut", "tear", "inverted", "energy_gain", "energy_on", "energy_off", "watchdog", "driver", "tool_added", "tool_removed", "refused", "fault", "rewind", "reset", "snapshot", "restore"]
 
     # with which tool
     tool: NotRequired[str]

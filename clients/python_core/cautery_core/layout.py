@@ -96,11 +96,12 @@ class Statistics(Structure):
     """cau_statistics"""
 
     _fields_ = [("seconds", c_double * len(STAGES)), ("iterations", c_int32), ("residual", c_double),
-                ("backtracks", c_int32), ("inverted", c_int32), ("edges_parted", c_int32),
-                ("elements_removed", c_int32), ("elements_torn", c_int32), ("pending_downdates", c_int32),
+                ("backtracks", c_int32), ("inverted", c_int32), ("long_inverted", c_int32 * MAX_LAYERS),
+                ("edges_parted", c_int32), ("elements_removed", c_int32), ("elements_torn", c_int32), ("pending_downdates", c_int32),
                 ("deferred_max_s", c_double), ("refactorisations", c_int32), ("factor_operations", c_int32),
                 ("contacts", c_int32), ("contacts_left_out", c_int32), ("touching_cut_short", c_int32),
-                ("frozen_vertices", c_int32), ("energy_gain_j", c_double), ("error", c_double), ("resting", c_bool)]
+                ("frozen_vertices", c_int32), ("energy_gain_j", c_double),
+                ("energy_scale_j", c_double), ("error", c_double), ("resting", c_bool)]
 
 
 class Frame(Structure):

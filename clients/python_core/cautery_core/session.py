@@ -315,11 +315,15 @@ class Session:
 
     @property
     def statistics(self) -> dict[str, float]:
-        """Cost and condition of the last step, as `cautery/session.h` has them."""
+        """Cost and condition of the last step, as `cautery/session.h` has them.
+
+        `long_inverted` is the sum over all layers.
+        """
         with self._lock:
             statistics = self._frame().statistics
-        return {field[0]: getattr(statistics, field[0]) for field in layout.Statistics._fields_
-                if field[0] != "seconds"}
+        numbers = {field[0]: getattr(statistics, field[0]) for field in layout.Statistics._fields_
+                   if field[0] != "seconds"}
+        return numbers | {"long_inverted": sum(numbers["long_inverted"])}
 
     # ---- snapshots
     def snapshot(self) -> bytes:

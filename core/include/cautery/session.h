@@ -231,12 +231,15 @@ typedef struct cau_tool_state {
 
 // What the last step was and cost.
 typedef struct cau_statistics {
-	double seconds[8];    // of the last step by stage, see CAU_STAGE_TABLE; filled if timing is on
-	int32_t iterations;   // of the last step
-	double residual;      // relative, after the last iteration
-	int32_t backtracks;   // increments that were refused because they raised the objective
-	int32_t inverted;     // tetrahedra with negative volume after the step
-	int32_t edges_parted; // since creation
+	double seconds[8];  // of the last step by stage, see CAU_STAGE_TABLE; filled if timing is on
+	int32_t iterations; // of the last step
+	double residual;    // relative, after the last iteration
+	int32_t backtracks; // increments that were refused because they raised the objective
+	int32_t inverted;   // tetrahedra with negative volume after the step
+	// Of these, by layer of the scene: those that have had it for half a second. They do not come
+	// back by themselves: the material's law is the reason, or what its limits ask for.
+	int32_t long_inverted[CAU_MAX_LAYERS];
+	int32_t edges_parted;      // since creation
 	int32_t elements_removed;  // since creation
 	int32_t elements_torn;     // of these, by being stretched beyond what they bear
 	int32_t pending_downdates; // removed elements the factor still holds
@@ -258,6 +261,9 @@ typedef struct cau_statistics {
 	// counts as loss. In a converged step it is 0 or less but for rounding (and buckling). It is 0
 	// where a law has no energy (linearised limits, model energy, the diagonal system).
 	double energy_gain_j;
+	// What the gain is held against, J: elastic and kinetic energy as the step began, and the work
+	// of gravity, tools, led supports and forces in it, without its sign.
+	double energy_scale_j;
 	// Reported error: the step's estimated distance to its solution, relative to its own motion, of
 	// all vertices or of the worst chunk of them (solve/accuracy.h). Where tissue moves it is at
 	// least a fifth of the scene's accuracy. 0 where that is 0.

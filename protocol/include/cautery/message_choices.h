@@ -54,6 +54,8 @@
 	X(CREATED, "created")                                                                          \
 	X(CUT, "cut")                                                                                  \
 	X(TEAR, "tear")                                                                                \
+	X(INVERTED, "inverted")       /* tetrahedra of a layer that stay inside out */                 \
+	X(ENERGY_GAIN, "energy_gain") /* steps added energy without a source */                        \
 	X(ENERGY_ON, "energy_on")                                                                      \
 	X(ENERGY_OFF, "energy_off")                                                                    \
 	X(WATCHDOG, "watchdog")                                                                        \

@@ -279,7 +279,8 @@ static void what_is_thrown_finds_its_way_back(void **state)
 		}
 		stage_step(session, 1);
 		told += stage_frame(session).statistics.touching_cut_short;
-		most_inverted = session->inverted > most_inverted ? session->inverted : most_inverted;
+		most_inverted =
+			session->inversion.count > most_inverted ? session->inversion.count : most_inverted;
 		if (tick == DRAWN + 5)
 			expect_the_same_after_a_restore(session);
 	}
@@ -287,10 +288,10 @@ static void what_is_thrown_finds_its_way_back(void **state)
 		exempt += session->collide.exempt[v];
 	int crossings = surface_crossings(session);
 	print_message("told of %d times, %d inside out; at last %d, %d touch nothing, %d crossings\n",
-	              told, most_inverted, session->inverted, exempt, crossings);
+	              told, most_inverted, session->inversion.count, exempt, crossings);
 	assert_true(told > 0);
 	assert_true(most_inverted > session->tissue.tetrahedron_count / LEAST_INVERTED);
-	assert_int_equal(session->inverted, 0);
+	assert_int_equal(session->inversion.count, 0);
 	assert_int_equal(surface_crossings_but(session, session->collide.exempt), 0);
 	cau_session_info info;
 	cau_session_describe(session, &info);

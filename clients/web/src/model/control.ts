@@ -7,6 +7,13 @@ import type { Channels } from '../wire/worker_messages';
 import type { Model } from './model';
 import { errorWords } from './sentences';
 
+/** What makes the picture doubtful from then on, though the session goes on. */
+function doubtOf({ kind, count, detail }: Pushes['event']['event']): string | null {
+  if (kind === 'inverted') return `${count} tetrahedra of ${detail} have been inside out for half a second. Do not trust what is there: rewind or reset.`;
+  if (kind === 'energy_gain') return `The tissue gained energy by itself (${detail}). Do not trust its motion.`;
+  return null;
+}
+
 const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
 /** Channels that cost the daemon work of their own: joined only while they are shown. */
 export type ExtraChannel = 'stress' | 'temperature';
@@ -193,7 +200,10 @@ export class Control {
       if (params.session === this.model.session) this.model.emit('looking', params);
     },
     'event': (params) => {
-      if (params.session === this.model.session) this.model.addEvent(params);
+      if (params.session !== this.model.session) return;
+      this.model.addEvent(params);
+      const doubt = doubtOf(params.event);
+      if (doubt) this.model.say('warning', doubt);
     },
   };
 

@@ -5,6 +5,8 @@ import type { TimelineEvent } from '../wire/messages.gen';
 export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   cut: 'cut',
   tear: 'tear',
+  inverted: 'tissue inside out',
+  energy_gain: 'energy gained',
   energy_on: 'energy on',
   energy_off: 'energy off',
   watchdog: 'watchdog',
@@ -30,8 +32,9 @@ export function momentsOf(events: readonly TimelineEvent[], seconds: (tick: numb
     if (goesOn) before.last = event;
     else found.push({ first: event, last: event });
   }
-  return found.reverse().map(({ first: { kind, tick, tool }, last }) => {
+  return found.reverse().map(({ first: { kind, tick, tool, detail }, last }) => {
     const when = last.tick === tick ? seconds(tick) : `${seconds(tick).replace(/ s$/, '')} to ${seconds(last.tick)}`;
-    return { tick, words: `${when}: ${EVENT_WORDS[kind] ?? kind}${tool === undefined || tool === '' ? '' : `, ${tool}`}` };
+    const about = tool || (kind === 'inverted' ? detail : undefined);
+    return { tick, words: `${when}: ${EVENT_WORDS[kind] ?? kind}${about ? `, ${about}` : ''}` };
   });
 }

@@ -563,7 +563,7 @@ export interface TimelineEvent {
   /** simulated (0 to 1000000000000 s) */
   time_s: number;
   /** what */
-  kind: 'created' | 'cut' | 'tear' | 'energy_on' | 'energy_off' | 'watchdog' | 'driver' | 'tool_added' | 'tool_removed' | 'refused' | 'fault' | 'rewind' | 'reset' | 'snapshot' | 'restore';
+  kind: 'created' | 'cut' | 'tear' | 'inverted' | 'energy_gain' | 'energy_on' | 'energy_off' | 'watchdog' | 'driver' | 'tool_added' | 'tool_removed' | 'refused' | 'fault' | 'rewind' | 'reset' | 'snapshot' | 'restore';
   /** with which tool */
   tool?: string;
   /** by whom */

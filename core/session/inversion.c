@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tetrahedra that are inside out. A step may leave some, and the next ones mend it as a rule. Laws
+// whose energy has a minimum there (StVK) can keep them for good, without any number that is not
+// finite: so what stays is counted by layer, for a report.
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+// Half a second: the oscillation of tissue that is thrown about is over by then.
+static const double long_s = 0.5;
+
+cau_status cau_session_make_inversion(cau_session *session, cau_error *error)
+{
+	cau_inversion *inversion = &session->inversion;
+	inversion->ticks = cau_arena_array(
+		&session->arena, (size_t)session->tissue.tetrahedron_count + 1, sizeof *inversion->ticks);
+	inversion->long_ticks = (uint16_t)fmin(ceil(long_s / session->solver.step_s), UINT16_MAX);
+	return inversion->ticks ? CAU_OK
+	                        : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+}
+
+bool cau_session_is_inverted(const double *position, const int32_t vertex[4])
+{
+	cau_vec3 from = cau_vec3_of(position + 3 * (size_t)vertex[0]), side[3];
+	for (int k = 0; k < 3; k++)
+		side[k] = cau_sub(cau_vec3_of(position + 3 * (size_t)vertex[k + 1]), from);
+	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0); // at rest it is (mesh/mesh.h)
+}
+
+void cau_session_forget_inversion(cau_session *session)
+{
+	cau_inversion *inversion = &session->inversion;
+	memset(inversion->ticks, 0,
+	       (size_t)session->tissue.tetrahedron_count * sizeof *inversion->ticks);
+	memset(inversion->long_count, 0, sizeof inversion->long_count);
+	inversion->followed = false;
+}
+
+void cau_session_follow_inversion(cau_session *session)
+{
+	cau_inversion *inversion = &session->inversion;
+	const cau_tissue *tissue = &session->tissue;
+	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
+	CAU_ASSERT(inversion->long_ticks > 0, "nothing stays for %d ticks", inversion->long_ticks);
+	memset(inversion->long_count, 0, sizeof inversion->long_count);
+	if (!inversion->count && !inversion->followed)
+		return;
+	inversion->followed = inversion->count > 0;
+	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
+		uint16_t *ticks = &inversion->ticks[i];
+		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
+		if (!inversion->count || !alive[i] || !cau_session_is_inverted(session->position, vertex))
+			*ticks = 0;
+		else if (*ticks < inversion->long_ticks)
+			++*ticks;
+		inversion->long_count[tissue->tetrahedron_layer[i]] += *ticks == inversion->long_ticks;
+	}
+}
