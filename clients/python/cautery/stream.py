@@ -218,7 +218,7 @@ class Stream:
         with self._changed:
             try:
                 return self._take(frame)
-            except (IndexError, KeyError, ValueError, struct.error) as error:
+            except (IndexError, KeyError, OverflowError, ValueError, struct.error) as error:
                 raise BadFrame(str(error)) from error
 
     def end(self, reason: Exception) -> None:
