@@ -90,6 +90,10 @@ static void write_tool(cau_json_writer *writer, const cau_stream_tool *tool)
 	cau_json_numbers(writer, "position_m", tool->pose.position_m, 3);
 	cau_json_numbers(writer, "asked_m", tool->asked_pose.position_m, 3);
 	cau_json_numbers(writer, "force_n", tool->force_n, 3);
+	if (tool->has_raw_force) {
+		cau_json_numbers(writer, "raw_force_n", tool->raw_force_n, 3);
+		cau_json_number(writer, "force_filter_s", tool->force_filter_s);
+	}
 	cau_json_number(writer, "tip_temperature_c", tool->tip_temperature_c);
 	cau_json_number(writer, "delivered_w", tool->delivered_w);
 	cau_json_number(writer, "load_ohm", tool->load_ohm);

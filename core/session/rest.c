@@ -13,6 +13,8 @@
 //   turn, but not for so long.
 // - every tool stood still and dark, with its grid at ambient (0.01 degC): heat goes on to part
 //   edges, and viewers see it spread.
+// - no tool's filtered force still followed its raw one. A filter of long force_filter_s therefore
+//   makes the half second longer: at rest both forces stay as they are.
 // - nothing was cut, nothing shrank, no cut waited for the factor, no factor was in the making,
 // - no step was cut short lest tissue cross tissue.
 //
@@ -25,6 +27,9 @@
 #include "session/session_internal.h"
 
 static const double quiet_s = 0.5;
+// A filter that still follows is off by 0.02 % of the last change after so many time constants, in
+// ticks of 1/60 s. The default force_filter_s asks for less than quiet_s.
+static const double filter_constants = 10;
 static const double still_m = 1e-6;
 static const double still_share = 1e-5; // of the tissue's size, where that is less
 
@@ -40,7 +45,10 @@ cau_status cau_session_make_rest(cau_session *session, cau_error *error)
 static int32_t ticks_to_rest(const cau_session *session)
 {
 	CAU_ASSERT(session->solver.step_s > 0, "a tick of %g s", session->solver.step_s);
-	return (int32_t)ceil(quiet_s / session->solver.step_s);
+	double wait_s = quiet_s;
+	for (int32_t i = 0; i < session->tool_count; i++)
+		wait_s = fmax(wait_s, filter_constants * session->tool[i].state.definition.force_filter_s);
+	return (int32_t)ceil(wait_s / session->solver.step_s);
 }
 
 // ---- falling asleep

@@ -12,10 +12,8 @@
 #include "session/snapshot_bytes.h"
 
 enum {
-	// 11: a tool's generator and blade; cells of tissue. No release wrote earlier versions, and
-	// none
-	// is read.
-	CAU_SNAPSHOT_VERSION = 12,
+	// 13: a tool's force_filter_s. No release wrote earlier versions, and none is read.
+	CAU_SNAPSHOT_VERSION = 13,
 	CAU_SNAPSHOT_HASH_BYTES = 8, // the last
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };

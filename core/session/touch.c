@@ -6,7 +6,6 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double filter_s = 0.02;   // time constant of the reported force
 static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
 
 // Cold parts push. The hot part pushes too while it is off, and with energy `tissue` always: it is
@@ -338,11 +337,13 @@ static void add_force(cau_tool_state *state, cau_vec3 force, cau_vec3 at)
 	            state->raw_torque_nm);
 }
 
-static void filter(double filtered[3], const double raw[3], double most, double dt)
+// One tick of a low-pass filter of first order, by the implicit Euler method. Its value is `most`
+// long at most. With a time constant tau_s of 0 the value is the raw one, to the bit.
+static void filter(double filtered[3], const double raw[3], double tau_s, double most, double dt)
 {
-	CAU_ASSERT(dt > 0 && most > 0, "a filter of %g s, up to %g", dt, most);
-	cau_vec3 now = cau_vec3_of(filtered);
-	now = cau_add_scaled(now, dt / (dt + filter_s), cau_sub(cau_vec3_of(raw), now));
+	CAU_ASSERT(dt > 0 && most > 0, "a filter of ticks of %g s, up to %g", dt, most);
+	cau_vec3 now = cau_vec3_of(filtered), goal = cau_vec3_of(raw);
+	now = tau_s > 0 ? cau_add_scaled(now, dt / (dt + tau_s), cau_sub(goal, now)) : goal;
 	double length = cau_length(now);
 	cau_vec3_to(length > most ? cau_scale(most / length, now) : now, filtered);
 }
@@ -370,9 +371,10 @@ void cau_session_read_forces(cau_session *session)
 	}
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_state *state = &session->tool[i].state;
-		double most = state->definition.force_max_n, dt = session->solver.step_s;
-		filter(state->force_n, state->raw_force_n, most, dt);
-		filter(state->torque_nm, state->raw_torque_nm, most * state->definition.tip_length_m, dt);
+		const cau_tool_def *def = &state->definition;
+		double most = def->force_max_n, tau_s = def->force_filter_s, dt = session->solver.step_s;
+		filter(state->force_n, state->raw_force_n, tau_s, most, dt);
+		filter(state->torque_nm, state->raw_torque_nm, tau_s, most * def->tip_length_m, dt);
 		state->grasped_vertices = session->tool[i].grasp_count;
 	}
 }

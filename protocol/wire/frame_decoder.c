@@ -143,7 +143,8 @@ static const char *read_array(cau_frame_decoder *decoder, const section_cursor *
 static bool is_of_tools(int type)
 {
 	return type == CAU_SECTION_TOOL_NAMES || type == CAU_SECTION_TOOLS_ASKED ||
-	       type == CAU_SECTION_TOOL_JAWS || type == CAU_SECTION_TOOL_POWER;
+	       type == CAU_SECTION_TOOL_JAWS || type == CAU_SECTION_TOOL_POWER ||
+	       type == CAU_SECTION_TOOL_FORCE;
 }
 
 static const char *read_tools(cau_frame_decoder *decoder, const section_cursor *cursor)
@@ -160,6 +161,8 @@ static const char *read_tools(cau_frame_decoder *decoder, const section_cursor *
 		return cau_tool_jaws_read(payload, bytes, decoder->tools, *count);
 	case CAU_SECTION_TOOL_POWER:
 		return cau_tool_power_read(payload, bytes, decoder->tools, *count);
+	case CAU_SECTION_TOOL_FORCE:
+		return cau_tool_force_read(payload, bytes, decoder->tools, *count);
 	default:
 		return cau_tools_read(payload, bytes, decoder->tools, *count);
 	}

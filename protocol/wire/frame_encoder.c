@@ -16,9 +16,9 @@ size_t cau_frame_bytes_max(const cau_stream_def *def)
 		array_shape shape = cau_array_shape_of(def, channel);
 		bytes += CAU_FRAME_SECTION_BYTES + cau_elements_bytes_max(shape.count, shape.components);
 	}
-	return bytes + (size_t)5 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
-	       (size_t)CAU_MAX_TOOLS *
-	           (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES + TOOL_JAW_BYTES + TOOL_POWER_BYTES) +
+	return bytes + (size_t)6 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
+	       (size_t)CAU_MAX_TOOLS * (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES + TOOL_JAW_BYTES +
+	                                TOOL_POWER_BYTES + TOOL_FORCE_BYTES) +
 	       STATISTICS_RECORD_BYTES;
 }
 
@@ -292,6 +292,9 @@ static void write_asked(const cau_tool_set *set, frame_writer *writer)
 	bytes = cau_tool_power_write(section_payload(writer), set->tools, set->count);
 	if (bytes)
 		end_section(writer, CAU_SECTION_TOOL_POWER, bytes);
+	bytes = cau_tool_force_write(section_payload(writer), set->tools, set->count);
+	if (bytes)
+		end_section(writer, CAU_SECTION_TOOL_FORCE, bytes);
 }
 
 // The channels in their order, which is that of their sections; what came to them later is last.

@@ -108,7 +108,8 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 	    !is_finite(&tool->jaw_force_n, 1) || !is_finite(&tool->delivered_w, 1) ||
 	    !is_finite(&tool->load_ohm, 1) || !is_finite(tool->force_n, 3) ||
 	    !is_finite(tool->torque_nm, 3) || !is_finite(&tool->tip_temperature_c, 1) ||
-	    !is_finite(&tool->energy_j, 1) ||
+	    !is_finite(&tool->energy_j, 1) || !is_finite(tool->raw_force_n, 3) ||
+	    !is_finite(tool->raw_torque_nm, 3) || !is_finite(&tool->force_filter_s, 1) ||
 	    (tool->behind &&
 	     (!is_finite(tool->asked_pose.position_m, 3) || !is_finite(tool->asked_pose.rotation, 4))))
 		return "a number is not finite in single precision";
@@ -166,6 +167,21 @@ size_t cau_tool_power_write(uint8_t *out, const cau_stream_tool *tools, int32_t 
 	return (size_t)(at - out);
 }
 
+size_t cau_tool_force_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
+{
+	CAU_RULE(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool all = true;
+	for (int32_t i = 0; i < count; i++)
+		all = all && tools[i].has_raw_force;
+	uint8_t *at = out;
+	for (int32_t i = 0; i < count && all; i++) {
+		at = store_vector(at, tools[i].raw_force_n, 3);
+		at = store_vector(at, tools[i].raw_torque_nm, 3);
+		at = store_vector(at, &tools[i].force_filter_s, 1);
+	}
+	return (size_t)(at - out);
+}
+
 static const uint8_t *load_vector(const uint8_t *at, double *value, int count, bool *finite)
 {
 	for (int i = 0; i < count; i++, at += 4) {
@@ -189,7 +205,10 @@ static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
 	tool->behind = false;
 	tool->asked_pose = tool->pose;
 	tool->asked_jaw = tool->jaw;
-	tool->jaw_force_n = tool->delivered_w = tool->load_ohm = 0;
+	tool->jaw_force_n = tool->delivered_w = tool->load_ohm = tool->force_filter_s = 0;
+	tool->has_raw_force = false;
+	memset(tool->raw_force_n, 0, sizeof tool->raw_force_n);
+	memset(tool->raw_torque_nm, 0, sizeof tool->raw_torque_nm);
 	tool->driver = load_u32(at);
 	tool->energized = at[4] & TOOL_ENERGIZED;
 	tool->grasping = at[4] & TOOL_GRASPING;
@@ -259,6 +278,22 @@ const char *cau_tool_power_read(const uint8_t *payload, size_t bytes, cau_stream
 		payload = load_vector(payload, &tools[i].load_ohm, 1, &finite);
 	}
 	return finite ? NULL : "a tool's power is not finite";
+}
+
+const char *cau_tool_force_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                int32_t count)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool finite = true;
+	if (bytes != (size_t)count * TOOL_FORCE_BYTES)
+		return "there are not as many raw forces as tools";
+	for (int32_t i = 0; i < count; i++) {
+		tools[i].has_raw_force = true;
+		payload = load_vector(payload, tools[i].raw_force_n, 3, &finite);
+		payload = load_vector(payload, tools[i].raw_torque_nm, 3, &finite);
+		payload = load_vector(payload, &tools[i].force_filter_s, 1, &finite);
+	}
+	return finite ? NULL : "a raw force is not finite";
 }
 
 static int is_float_word(size_t word)

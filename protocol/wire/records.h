@@ -9,6 +9,7 @@ enum {
 	TOOL_ASKED_BYTES = 28,
 	TOOL_JAW_BYTES = 8,
 	TOOL_POWER_BYTES = 8,
+	TOOL_FORCE_BYTES = 28,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
 	STATISTICS_RECORD_BYTES = 112,
 	STATISTICS_LEAST_BYTES = 88, // without what comes after refused_commands, as servers began
@@ -26,6 +27,8 @@ size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t
 size_t cau_tool_jaws_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 // Power; 0: no generator gives any.
 size_t cau_tool_power_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
+// Raw forces and the filters' time constants; 0: there is no tool, or not all have a raw force.
+size_t cau_tool_force_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics);
 
 // Each reads a payload; returns NULL or what is wrong. tool_names_read keeps the rest of the
@@ -34,12 +37,15 @@ const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream
                                 int32_t *count);
 const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                            int32_t count);
-// These three after cau_tools_read, which takes all to be as it is asked to be, without power.
+// These four after cau_tools_read, which takes all to be as it is asked to be, without power and
+// without raw forces.
 const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                                  int32_t count);
 const char *cau_tool_jaws_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                                int32_t count);
 const char *cau_tool_power_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                int32_t count);
+const char *cau_tool_force_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                                 int32_t count);
 const char *cau_statistics_read(const uint8_t *payload, size_t bytes,
                                 cau_stream_statistics *statistics);

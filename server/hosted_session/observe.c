@@ -121,6 +121,8 @@ static void observe_tool(cau_hosted *h, const cau_tool_state *from, cau_wire_obs
 	memcpy(to->rotation, from->pose.rotation, sizeof to->rotation);
 	memcpy(to->force_n, from->force_n, sizeof to->force_n);
 	memcpy(to->torque_nm, from->torque_nm, sizeof to->torque_nm);
+	memcpy(to->raw_force_n, from->raw_force_n, sizeof to->raw_force_n);
+	memcpy(to->raw_torque_nm, from->raw_torque_nm, sizeof to->raw_torque_nm);
 }
 
 static void observe_tools(cau_hosted *h, observation *o)

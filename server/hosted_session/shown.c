@@ -32,6 +32,8 @@ static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
 		.jaw_force_n = from->jaw_force_n,
 		.delivered_w = from->delivered_w,
 		.load_ohm = from->load_ohm,
+		.has_raw_force = true,
+		.force_filter_s = from->definition.force_filter_s,
 		.tip_temperature_c = from->tip_temperature_c,
 		.energy_j = from->energy_j,
 		.sequence = from->sequence,
@@ -45,6 +47,8 @@ static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
 	memcpy(to->name, from->name, sizeof to->name);
 	memcpy(to->force_n, from->force_n, sizeof to->force_n);
 	memcpy(to->torque_nm, from->torque_nm, sizeof to->torque_nm);
+	memcpy(to->raw_force_n, from->raw_force_n, sizeof to->raw_force_n);
+	memcpy(to->raw_torque_nm, from->raw_torque_nm, sizeof to->raw_torque_nm);
 }
 
 static void describe_step(const cau_statistics *from, cau_stream_statistics *to)

@@ -85,6 +85,7 @@ SECTION = {
     "tools_asked": 32,
     "tool_jaws": 33,
     "tool_power": 34,
+    "tool_force": 35,
 }
 
 # Words that frames have as numbers.
@@ -622,11 +623,17 @@ class ObservedTool(TypedDict):
     # while energy is off: why; of the session, not of the simulated state
     energy_off: NotRequired[Literal["never_enabled", "commanded", "watchdog", "restored", "taken_over"]]
 
-    # of the tissue on the tool, filtered and clamped (-1000000 to 1000000 N)
+    # of the tissue on the tool, filtered with the tool's `force_filter_s`; force_max_n at most (-1000000 to 1000000 N)
     force_n: Sequence[float]
 
-    # about the tip (-1000000 to 1000000 N m)
+    # about the tip, filtered as the force; force_max_n times tip_length_m at most (-1000000 to 1000000 N m)
     torque_nm: Sequence[float]
+
+    # of the last tick, without filter and bound (-1000000000000 to 1000000000000 N)
+    raw_force_n: Sequence[float]
+
+    # about the tip, of the last tick, without filter and bound (-1000000000000 to 1000000000000 N m)
+    raw_torque_nm: Sequence[float]
 
     # of the hot part (-300 to 1000000 degC)
     tip_temperature_c: float
@@ -1796,6 +1803,9 @@ class Tool(TypedDict):
     # most current, root mean square (0.01 to 10 A)
     current_max_a: NotRequired[float]
 
+    # time constant of its filtered force; 0: no filter (0 to 1 s)
+    force_filter_s: NotRequired[float]
+
     # first place of the tip (-100 to 100 m)
     position_m: NotRequired[Sequence[float]]
 
@@ -2462,6 +2472,9 @@ class ToolAdd(TypedDict):
     # most current, root mean square (0.01 to 10 A)
     current_max_a: NotRequired[float]
 
+    # time constant of its filtered force; 0: no filter (0 to 1 s)
+    force_filter_s: NotRequired[float]
+
     # name of the tool
     name: str
 
@@ -2574,6 +2587,9 @@ class ToolConfigure(TypedDict):
 
     # most current, root mean square (0.01 to 10 A)
     current_max_a: NotRequired[float]
+
+    # time constant of its filtered force; 0: no filter (0 to 1 s)
+    force_filter_s: NotRequired[float]
 
 
 class ToolMove(TypedDict):
@@ -3585,6 +3601,7 @@ class Calls:
         peak_v: float | None = None,
         crest_factor: float | None = None,
         current_max_a: float | None = None,
+        force_filter_s: float | None = None,
         name: str,
         position_m: Sequence[float] | None = None,
         rotation: Sequence[float] | None = None,
@@ -3617,6 +3634,7 @@ class Calls:
         peak_v: most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
         crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
         current_max_a: most current, root mean square (0.01 to 10 A)
+        force_filter_s: time constant of its filtered force; 0: no filter (0 to 1 s)
         name: name of the tool
         position_m: first place of the tip (-100 to 100 m)
         rotation: unit quaternion w, x, y, z: tool frame (shaft along +z) to world
@@ -3648,6 +3666,7 @@ class Calls:
             "peak_v": peak_v,
             "crest_factor": crest_factor,
             "current_max_a": current_max_a,
+            "force_filter_s": force_filter_s,
             "name": name,
             "position_m": position_m,
             "rotation": rotation,
@@ -3708,6 +3727,7 @@ class Calls:
         peak_v: float | None = None,
         crest_factor: float | None = None,
         current_max_a: float | None = None,
+        force_filter_s: float | None = None,
     ) -> CommandResult:
         """`tool.configure`: replaces shape and sizes
 
@@ -3738,6 +3758,7 @@ class Calls:
         peak_v: most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
         crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
         current_max_a: most current, root mean square (0.01 to 10 A)
+        force_filter_s: time constant of its filtered force; 0: no filter (0 to 1 s)
         """
         return self.call("tool.configure", {
             "session": session,
@@ -3767,6 +3788,7 @@ class Calls:
             "peak_v": peak_v,
             "crest_factor": crest_factor,
             "current_max_a": current_max_a,
+            "force_filter_s": force_filter_s,
         })
 
     def tool_move(

@@ -47,8 +47,8 @@ class Tool:
     position_m: Floats  # (3,)
     rotation: Floats  # (4,)
     jaw: float  # 0 closed to 1 open
-    force_n: Floats  # (3,), of the tissue on the tool
-    torque_nm: Floats  # (3,), about the tip
+    force_n: Floats  # (3,), of the tissue on the tool, filtered, force_max_n at most
+    torque_nm: Floats  # (3,), about the tip, filtered likewise
     tip_temperature_c: float
     energy_j: float  # taken up by tissue
     driver: int  # the client's number; 0: no driver
@@ -60,6 +60,9 @@ class Tool:
     sequence: int  # of the last command that was applied
     delivered_w: float = 0.0  # into tissue in the last step
     load_ohm: float = 0.0  # that its generator finds; 0: no current flows
+    raw_force_n: Floats | None = None  # (3,), of the state's tick, without filter and bound; None: not sent
+    raw_torque_nm: Floats | None = None  # (3,), likewise
+    force_filter_s: float | None = None  # time constant of the filter; 0: no filter; None: not sent
 
 
 @dataclass(frozen=True)
@@ -287,6 +290,8 @@ class Stream:
             self._tools = _tools(payload, self._names)
         elif number == SECTION["tool_power"]:
             self._tools = _with_power(payload, self._tools)
+        elif number == SECTION["tool_force"]:
+            self._tools = _with_raw_force(payload, self._tools)
         elif number == SECTION["statistics"]:
             self._statistics = _statistics(payload)
 
@@ -337,6 +342,12 @@ def _with_power(payload: bytes, tools: dict[str, Tool]) -> dict[str, Tool]:
     power = np.frombuffer(payload, "<f4", 2 * len(tools)).reshape(-1, 2)
     return {name: replace(tool, delivered_w=float(watts), load_ohm=float(ohm))
             for (name, tool), (watts, ohm) in zip(tools.items(), power)}
+
+
+def _with_raw_force(payload: bytes, tools: dict[str, Tool]) -> dict[str, Tool]:
+    rows = np.frombuffer(payload, "<f4", 7 * len(tools)).reshape(-1, 7).astype(float)
+    return {name: replace(tool, raw_force_n=row[:3], raw_torque_nm=row[3:6], force_filter_s=float(row[6]))
+            for (name, tool), row in zip(tools.items(), rows)}
 
 
 def _statistics(payload: bytes) -> dict[str, float]:

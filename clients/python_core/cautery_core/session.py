@@ -47,8 +47,10 @@ class Tool:
     slipping: bool
     grasped_vertices: int
     contact_vertices: int
-    force_n: Floats  # (3,), of the tissue on the tool, filtered
-    torque_nm: Floats  # (3,), about the tip
+    force_n: Floats  # (3,), of the tissue on the tool, filtered with sizes["force_filter_s"], at most force_max_n
+    torque_nm: Floats  # (3,), about the tip, filtered likewise
+    raw_force_n: Floats  # (3,), of the last step, without filter and bound
+    raw_torque_nm: Floats  # (3,)
     tip_temperature_c: float
     energy_j: float  # taken up by tissue
     slips: int  # times that it fell too far behind its commanded pose
@@ -98,6 +100,7 @@ def _tool(state: layout.ToolState) -> Tool:
         energized=state.energized, grasping=state.grasping, slipping=state.slipping,
         grasped_vertices=state.grasped_vertices, contact_vertices=state.contact_vertices,
         force_n=np.array(state.force_n), torque_nm=np.array(state.torque_nm),
+        raw_force_n=np.array(state.raw_force_n), raw_torque_nm=np.array(state.raw_torque_nm),
         tip_temperature_c=state.tip_temperature_c, energy_j=state.energy_j, slips=state.slips,
         sizes=_sizes(state.definition))
 

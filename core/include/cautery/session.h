@@ -211,11 +211,14 @@ typedef struct cau_tool_state {
 	int32_t grasped_vertices;  // points held, of faces too; 0 while grasping: the jaws are empty
 	int32_t contact_vertices;  // contact constraints of vertices
 	int32_t touched_layers;    // bit per layer
-	double force_n[3];         // of the tissue on the tool, filtered and clamped
-	double torque_nm[3];       // about the tip
-	double raw_force_n[3];     // unfiltered
-	double raw_torque_nm[3];   // unfiltered
-	double tip_temperature_c;  // of the hot part
+	// Force of the tissue on the tool and torque about its tip, filtered with force_filter_s. The
+	// force is force_max_n at most, the torque force_max_n * tip_length_m.
+	double force_n[3];
+	double torque_nm[3];
+	// The same without filter and bound. Both pairs are of the step that ended at this tick.
+	double raw_force_n[3];
+	double raw_torque_nm[3];
+	double tip_temperature_c; // of the hot part
 	double energy_j;   // heat taken up by tissue, rough; with energy `tissue`, its power over time
 	uint64_t sequence; // last applied command's
 	// Commanded pose, within the speed limits. The tool is pulled there with force_max_n at most.

@@ -290,7 +290,8 @@ typedef struct cau_selection {
 	X(power_w, 30.0, 0.0, 400.0, "W", "power that is set, with energy `tissue`")                   \
 	X(peak_v, 1150.0, 1.0, 10000.0, "V", "most voltage, peak; from 200 V on it sparks and cuts")   \
 	X(crest_factor, 1.4, 1.4, 20.0, "1", "of the voltage: its peak over its root mean square")     \
-	X(current_max_a, 2.0, 0.01, 10.0, "A", "most current, root mean square")
+	X(current_max_a, 2.0, 0.01, 10.0, "A", "most current, root mean square")                       \
+	X(force_filter_s, 0.02, 0.0, 1.0, "s", "time constant of its filtered force; 0: no filter")
 
 // Where a tool is, and how it is turned.
 typedef struct cau_pose {

@@ -62,7 +62,8 @@ typedef enum cau_frame_kind {
 	X(REST, 19, "rest")                                                                            \
 	X(TOOLS_ASKED, 32, "tools_asked") /* of the channel tools */                                   \
 	X(TOOL_JAWS, 33, "tool_jaws")     /* of tools, too */                                          \
-	X(TOOL_POWER, 34, "tool_power")   /* of tools, too */
+	X(TOOL_POWER, 34, "tool_power")   /* of tools, too */                                          \
+	X(TOOL_FORCE, 35, "tool_force")   /* of tools, too */
 #define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
 // The number of a section.

@@ -87,8 +87,12 @@ typedef struct cau_stream_tool {
 	double jaw;                // actual opening, 0 closed to 1 open
 	double asked_jaw;          // commanded opening
 	double jaw_force_n;        // with which the jaws press what they hold, at their tips
-	double force_n[3];         // of the tissue on the tool
-	double torque_nm[3];       // about the tip
+	double force_n[3];         // of the tissue on the tool, filtered, force_max_n at most
+	double torque_nm[3];       // about the tip, filtered, force_max_n * tip_length_m at most
+	bool has_raw_force;        // false from senders that do not send the next three; these are 0
+	double raw_force_n[3];     // force of the frame's tick, without filter and bound
+	double raw_torque_nm[3];   // torque of the frame's tick, without filter and bound
+	double force_filter_s;     // time constant of the filter; 0: no filter
 	double tip_temperature_c;  // of the hot part
 	double energy_j;           // heat taken up by tissue, rough
 	double delivered_w;        // into tissue in the last step, with energy `tissue`

@@ -99,6 +99,19 @@ class Decoder(unittest.TestCase):
             self.assertAlmostEqual(tool.position_m[0], 0.0005 * seen.tick, places=6)
         self.assertIn("iterations", seen.statistics)
 
+    def test_raw_forces_are_as_sent_or_none(self):  # as tests/protocol/wire/tissue.c sends them
+        stream, of = Stream(DESCRIPTION), np.arange(3)
+        for number in range(FRAMES):
+            stream.take(self.read(f"frame-{number:02d}.bin"))
+            seen = stream.wait(timeout_s=0)
+            for tool in seen.tools.values():
+                if seen.tick % 5 == 4:
+                    self.assertEqual((tool.raw_force_n, tool.raw_torque_nm, tool.force_filter_s), (None, None, None))
+                    continue
+                self.assertTrue(np.array_equal(tool.raw_force_n, 0.125 * (seen.tick + of)))
+                self.assertTrue(np.array_equal(tool.raw_torque_nm, -0.0625 * (seen.tick + of)))
+                self.assertAlmostEqual(tool.force_filter_s, 0.02 * (seen.tick % 3), places=7)
+
     def test_spoilt_frames_raise_and_nothing_else(self):
         whole = {name: self.read(name) for name in ("frame-00.bin", "topology-00.bin")}
         random = np.random.default_rng(7)

@@ -65,6 +65,21 @@ class Sessions(programs.Case):
         with self.assertRaises(NoAnswer):
             stream.next(30, timeout_s=0.2)
 
+    def test_a_stream_has_the_raw_force_of_its_tick(self):
+        name = self.paused("felt")
+        session = cautery.Session(self.client, self.client.session_describe(session=name)["summary"])
+        stream = self.client.join(name, channels=["positions", "tools"])
+        self.client.tool_take_over(session=name, tool="hook")
+        for tick in range(1, 41):
+            move = {"method": "tool.move", "tool": "hook", "position_m": [0, 0, 0.005 - 0.0002 * tick], "rotation": [1, 0, 0, 0]}
+            seen = session.advance(1, [move], {"channels": ["tools"]}).tools["hook"]
+        tool = stream.wait(tick).tools["hook"]
+        self.assertEqual(stream.wait(tick).tick, tick)
+        self.assertGreater(seen["raw_force_n"][2], seen["force_n"][2])
+        self.assertTrue(np.array_equal(tool.raw_force_n, np.float32(seen["raw_force_n"])))
+        self.assertTrue(np.array_equal(tool.raw_torque_nm, np.float32(seen["raw_torque_nm"])))
+        self.assertEqual(tool.force_filter_s, np.float32(0.02))
+
     def test_what_a_stream_holds_is_what_a_second_client_is_sent_whole(self):
         session = self.paused("cut")
         stream = self.client.join(session, channels=["positions", "mask", "temperature", "tools", "statistics"])

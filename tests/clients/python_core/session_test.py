@@ -105,6 +105,23 @@ class Physics(unittest.TestCase):
             with self.assertRaises(CoreError):
                 session.configure_tool("nothing", temperature_c=300)
 
+    def test_the_raw_force_is_beside_the_filtered_one(self):
+        with Session(small()) as session:
+            filtered, tau_s = np.zeros(3), session.tools["hook"].sizes["force_filter_s"]
+            for tick in range(1, 31):
+                session.move_tool("hook", [0, 0, 0.005 - 0.0004 * tick])
+                session.step()
+                hook = session.tools["hook"]
+                filtered += session.step_s / (session.step_s + tau_s) * (hook.raw_force_n - filtered)
+                self.assertLess(np.abs(hook.force_n - filtered).max(), 1e-12)
+            self.assertEqual(tau_s, 0.02)
+            self.assertGreater(hook.raw_force_n[2], hook.force_n[2])
+            session.configure_tool("hook", force_filter_s=0)
+            session.step()
+            hook = session.tools["hook"]
+            self.assertTrue(np.array_equal(hook.force_n, hook.raw_force_n))
+            self.assertTrue(np.array_equal(hook.torque_nm, hook.raw_torque_nm))
+
     def test_a_restore_brings_back_the_bits(self):
         with Session(small()) as session:
             session.move_tool("hook", [0, 0, -0.002])

@@ -155,6 +155,7 @@ function toolRecords(payload, names) {
 			energyOff: OFF[view.getUint8(at + 77)],
 			deliveredW: 0,
 			loadOhm: 0,
+			raw: null,
 		};
 	});
 }
@@ -220,6 +221,11 @@ export class Decoder {
 		else if (type === 34) {
 			const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
 			this.tools.forEach((tool, i) => Object.assign(tool, { deliveredW: view.getFloat32(8 * i, true), loadOhm: view.getFloat32(8 * i + 4, true) }));
+		} else if (type === 35) {
+			const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+			const floats = (at, count) => Array.from({ length: count }, (_, i) => view.getFloat32(at + 4 * i, true));
+			this.tools.forEach((tool, i) => Object.assign(tool, {
+				raw: { force: floats(28 * i, 3), torque: floats(28 * i + 12, 3), filterS: view.getFloat32(28 * i + 24, true) } }));
 		} else if (type === 8) {
 			const view = new DataView(payload.buffer, payload.byteOffset);
 			this.realtimeFactor = view.getFloat32(0, true);

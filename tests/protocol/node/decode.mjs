@@ -248,6 +248,11 @@ export class StreamDecoder {
       if (payload.length !== 8 * this.tools.length) fail('not as many jaws as tools');
       const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
       this.tools.forEach((tool, i) => Object.assign(tool, { askedJaw: [view.getFloat32(8 * i, true)], jawForce: [view.getFloat32(8 * i + 4, true)] }));
+    } else if (type === 35) {
+      if (payload.length !== 28 * this.tools.length) fail('not as many raw forces as tools');
+      const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+      const floats = (at, count) => Array.from({ length: count }, (_, i) => view.getFloat32(at + 4 * i, true));
+      this.tools.forEach((tool, i) => Object.assign(tool, { rawForce: floats(28 * i, 3), rawTorque: floats(28 * i + 12, 3), forceFilter: floats(28 * i + 24, 1) }));
     } else if (type === 34) {
       if (payload.length !== 8 * this.tools.length) fail('not as much power as tools');
       const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);

@@ -9,11 +9,12 @@ import { Corrupt, Refused, SCALARS, StreamDecoder, decodeTopology } from './deco
 const folder = process.env.CAUTERY_GOLDEN;
 const read = (name) => new Uint8Array(readFileSync(join(folder, name)));
 const manifest = JSON.parse(readFileSync(join(folder, 'streams.json'), 'utf8'));
-const FLOATS = ['position', 'rotation', 'asked', 'askedRotation', 'jaw', 'askedJaw', 'jawForce', 'force', 'torque', 'temperature', 'energy', 'power', 'load'];
+const FLOATS = ['position', 'rotation', 'asked', 'askedRotation', 'jaw', 'askedJaw', 'jawForce', 'force', 'torque', 'temperature', 'energy', 'power', 'load', 'rawForce', 'rawTorque', 'forceFilter'];
 
 function compareTools(tools, expected) {
   assert.equal(tools.length, expected.length);
   tools.forEach((tool, i) => {
+    assert.equal('rawForce' in tool, 'rawForce' in expected[i]);
     for (const key of Object.keys(expected[i])) {
       const want = expected[i][key];
       if (FLOATS.includes(key)) assert.deepEqual(tool[key], want.map(Math.fround), key);

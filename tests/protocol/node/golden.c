@@ -89,6 +89,11 @@ static void write_tool(FILE *out, const cau_stream_tool *tool)
 	write_floats(out, "energy", &tool->energy_j, 1);
 	write_floats(out, "power", &tool->delivered_w, 1);
 	write_floats(out, "load", &tool->load_ohm, 1);
+	if (tool->has_raw_force) {
+		write_floats(out, "rawForce", tool->raw_force_n, 3);
+		write_floats(out, "rawTorque", tool->raw_torque_nm, 3);
+		write_floats(out, "forceFilter", &tool->force_filter_s, 1);
+	}
 	fputc('}', out);
 }
 

@@ -74,7 +74,11 @@ static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *
 		            (float)a->asked_pose.position_m[i]);
 		assert_true((float)a->force_n[i] == (float)b->force_n[i]);
 		assert_true((float)a->torque_nm[i] == (float)b->torque_nm[i]);
+		assert_true((float)a->raw_force_n[i] == (float)b->raw_force_n[i]);
+		assert_true((float)a->raw_torque_nm[i] == (float)b->raw_torque_nm[i]);
 	}
+	assert_true(a->has_raw_force == b->has_raw_force);
+	assert_true((float)a->force_filter_s == (float)b->force_filter_s);
 	assert_true((float)a->jaw == (float)b->jaw && (float)a->asked_jaw == (float)b->asked_jaw);
 	assert_true((float)a->jaw_force_n == (float)b->jaw_force_n);
 	assert_true((float)a->delivered_w == (float)b->delivered_w);

@@ -85,6 +85,7 @@ static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_
 		.load_ohm = tick % 3 == 2 ? 640.0 : 0.0,
 		.force_n = {0.1, -0.2, 0.0625 * (tick % 5)},
 		.torque_nm = {0.0, 0.001, -0.002},
+		.has_raw_force = tick % 5 != 4,
 		.tip_temperature_c = 37.0 + tick,
 		.energy_j = 0.5 * tick,
 		.sequence = 1000u + (uint64_t)tick,
@@ -95,6 +96,13 @@ static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_
 		.touched_layers = 1,
 	};
 	strcpy(tool->name, name);
+	if (!tool->has_raw_force)
+		return;
+	tool->force_filter_s = 0.02 * (tick % 3);
+	for (int c = 0; c < 3; c++) {
+		tool->raw_force_n[c] = 0.125 * (tick + c);
+		tool->raw_torque_nm[c] = -0.0625 * (tick + c);
+	}
 }
 
 void tissue_move(tissue *moved, int32_t tick, double speed_m_s)

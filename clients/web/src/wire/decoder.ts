@@ -3,7 +3,7 @@
 import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
 import { SCALARS, SECTION, type ScalarName } from './messages.gen';
-import { readAsked, readJaws, readPower, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
+import { readAsked, readForces, readJaws, readPower, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
 
 export interface StreamShape {
   session_number: number;
@@ -156,6 +156,8 @@ export class FrameDecoder {
     if (jaws) this.state.tools = readJaws(jaws, this.state.tools);
     const power = sections.get(SECTION.tool_power);
     if (power) this.state.tools = readPower(power, this.state.tools);
+    const forces = sections.get(SECTION.tool_force);
+    if (forces) this.state.tools = readForces(forces, this.state.tools);
     const statistics = sections.get(SECTION.statistics);
     if (statistics) this.state.statistics = readStatistics(statistics);
   }

@@ -334,10 +334,14 @@ export interface ObservedTool {
   energized: boolean;
   /** while energy is off: why; of the session, not of the simulated state */
   energy_off?: 'never_enabled' | 'commanded' | 'watchdog' | 'restored' | 'taken_over';
-  /** of the tissue on the tool, filtered and clamped (-1000000 to 1000000 N) */
+  /** of the tissue on the tool, filtered with the tool's `force_filter_s`; force_max_n at most (-1000000 to 1000000 N) */
   force_n: [number, number, number];
-  /** about the tip (-1000000 to 1000000 N m) */
+  /** about the tip, filtered as the force; force_max_n times tip_length_m at most (-1000000 to 1000000 N m) */
   torque_nm: [number, number, number];
+  /** of the last tick, without filter and bound (-1000000000000 to 1000000000000 N) */
+  raw_force_n: [number, number, number];
+  /** about the tip, of the last tick, without filter and bound (-1000000000000 to 1000000000000 N m) */
+  raw_torque_nm: [number, number, number];
   /** of the hot part (-300 to 1000000 degC) */
   tip_temperature_c: number;
   /** heat that tissue has taken up, about (0 to 1000000000000 J) */
@@ -1206,6 +1210,8 @@ export interface Tool {
   crest_factor?: number;
   /** most current, root mean square (0.01 to 10 A) */
   current_max_a?: number;
+  /** time constant of its filtered force; 0: no filter (0 to 1 s) */
+  force_filter_s?: number;
   /** first place of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
@@ -1665,6 +1671,8 @@ export interface ToolAdd {
   crest_factor?: number;
   /** most current, root mean square (0.01 to 10 A) */
   current_max_a?: number;
+  /** time constant of its filtered force; 0: no filter (0 to 1 s) */
+  force_filter_s?: number;
   /** name of the tool */
   name: string;
   /** first place of the tip (-100 to 100 m) */
@@ -1743,6 +1751,8 @@ export interface ToolConfigure {
   crest_factor?: number;
   /** most current, root mean square (0.01 to 10 A) */
   current_max_a?: number;
+  /** time constant of its filtered force; 0: no filter (0 to 1 s) */
+  force_filter_s?: number;
 }
 
 /** moves it, at its speed limit; needs to be its driver */
@@ -2329,6 +2339,7 @@ export const SECTION = {
   tools_asked: 32,
   tool_jaws: 33,
   tool_power: 34,
+  tool_force: 35,
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
@@ -2437,6 +2448,8 @@ export const PARAMETERS = {
       meaning: "of the voltage: its peak over its root mean square" },
     { name: 'current_max_a', unit: 'A', least: 0.01, most: 10, default: 2,
       meaning: "most current, root mean square" },
+    { name: 'force_filter_s', unit: 's', least: 0, most: 1, default: 0.02,
+      meaning: "time constant of its filtered force; 0: no filter" },
   ],
   fascia: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,

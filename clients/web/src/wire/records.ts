@@ -13,6 +13,13 @@ export interface ToolName {
   shape: ToolShape;
 }
 
+/** Force and torque of the frame's tick, without filter and bound, and the time constant of the filter; 0: no filter. */
+export interface RawForce {
+  forceN: Vector;
+  torqueNm: Vector;
+  filterS: number;
+}
+
 export interface ToolState extends ToolName {
   sequence: number;
   positionM: Vector;
@@ -21,8 +28,9 @@ export interface ToolState extends ToolName {
   jaw: number; // what the jaws hold keeps it so
   askedJaw: number; // where it is led to
   jawForceN: number; // with which the jaws press what they hold; 0 from servers that do not tell it
-  forceN: Vector;
-  torqueNm: Vector;
+  forceN: Vector; // of the tissue on the tool, filtered, force_max_n at most
+  torqueNm: Vector; // about the tip, filtered likewise
+  raw: RawForce | null; // null from servers that do not send it
   tipTemperatureC: number;
   energyJ: number;
   deliveredW: number; // into tissue in the last step; 0 from servers that do not tell it
@@ -68,6 +76,7 @@ const TOOL_BYTES = 84;
 const ASKED_BYTES = 28;
 const JAW_BYTES = 8;
 const POWER_BYTES = 8;
+const FORCE_BYTES = 28;
 const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn, touchingCutShort
 const TOOLS_MAX = 8;
 
@@ -113,6 +122,7 @@ function readTool(view: DataView, offset: number, name: ToolName): ToolState {
     jawForceN: 0,
     forceN: readVector(view, offset + 40),
     torqueNm: readVector(view, offset + 52),
+    raw: null,
     tipTemperatureC: view.getFloat32(offset + 64, true),
     energyJ: view.getFloat32(offset + 68, true),
     deliveredW: 0,
@@ -147,6 +157,16 @@ export function readPower(payload: Uint8Array, tools: readonly ToolState[]): Too
   if (payload.byteLength !== tools.length * POWER_BYTES) throw new WireError('power does not match the tools');
   const view = viewOf(payload);
   return tools.map((tool, i) => ({ ...tool, deliveredW: view.getFloat32(i * POWER_BYTES, true), loadOhm: view.getFloat32(i * POWER_BYTES + 4, true) }));
+}
+
+/** Without the section raw forces are not known, as readTools tells. */
+export function readForces(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
+  if (payload.byteLength !== tools.length * FORCE_BYTES) throw new WireError('raw forces do not match their tools');
+  const view = viewOf(payload);
+  return tools.map((tool, i) => {
+    const at = i * FORCE_BYTES;
+    return { ...tool, raw: { forceN: readVector(view, at), torqueNm: readVector(view, at + 12), filterS: view.getFloat32(at + 24, true) } };
+  });
 }
 
 // Without the section every tool is where it is asked to be, as readTools tells.

@@ -49,7 +49,10 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
     for (let i = 0; i < FRAMES; i++) {
       expect(decoder.decode(read('frame', i)).kind).toBe('applied');
       expectState(decoder, i);
+      for (const { raw } of decoder.state.tools) expect(raw !== null).toBe(i % 5 !== 4); // as tests/protocol/wire/tissue.c sends it
     }
+    const last = FRAMES - 1;
+    expect(decoder.state.tools[0]?.raw).toEqual({ forceN: [0, 1, 2].map((c) => 0.125 * (last + c)), torqueNm: [0, 1, 2].map((c) => -0.0625 * (last + c)), filterS: Math.fround(0.02 * (last % 3)) });
     expect(decoder.state.tools.map((tool) => tool.name)).toEqual(['hook', 'left-grasper']);
     expect(decoder.state.statistics).toMatchObject({ iterations: 10, contacts: FRAMES - 1, contactsLeftOut: 2 * (FRAMES - 1), elementsTorn: 3 * (FRAMES - 1), touchingCutShort: 5 * (FRAMES - 1) });
     expect(decoder.state.statistics?.stageS.slice(0, 2)).toEqual([0.25, 0.5]);
