@@ -60,7 +60,13 @@
 	X("temperature_c", tool->tip_temperature_c)                                                    \
 	X("energy_j", tool->energy_j)                                                                  \
 	X("delivered_w", tool->delivered_w)                                                            \
-	X("load_ohm", tool->load_ohm)
+	X("load_ohm", tool->load_ohm)                                                                  \
+	X("filtered_force_x_n", tool->force_n[0])                                                      \
+	X("filtered_force_y_n", tool->force_n[1])                                                      \
+	X("filtered_force_z_n", tool->force_n[2])                                                      \
+	X("filtered_torque_x_nm", tool->torque_nm[0])                                                  \
+	X("filtered_torque_y_nm", tool->torque_nm[1])                                                  \
+	X("filtered_torque_z_nm", tool->torque_nm[2])
 
 static int32_t long_inverted(const cau_statistics *statistics)
 {

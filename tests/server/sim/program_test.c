@@ -159,7 +159,10 @@ static void ticks_tell_forces(void **state)
 	assert_non_null(last);
 	double up = cell_of(last, column_of(text, "hook_force_z_n"));
 	assert_true(up > 0);
-	assert_true(cell_of(last, column_of(text, "tool_force_max_n")) >= up);
+	double most = cell_of(last, column_of(text, "tool_force_max_n"));
+	assert_true(most >= up);
+	double filtered = cell_of(last, column_of(text, "hook_filtered_force_z_n"));
+	assert_true(filtered > 0 && filtered <= most);
 	free(text);
 }
 
