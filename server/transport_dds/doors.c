@@ -22,6 +22,7 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 		[TOPIC_STATE] = {"cautery/tool_state", &cautery_ToolState_desc},
 		[TOPIC_GRASP] = {"cautery/tool_grasp", &cautery_ToolGrasp_desc},
 		[TOPIC_POWER] = {"cautery/tool_power", &cautery_ToolPower_desc},
+		[TOPIC_FORCE] = {"cautery/tool_force", &cautery_ToolForce_desc},
 		[TOPIC_STATUS] = {"cautery/session_status", &cautery_SessionStatus_desc},
 		[TOPIC_TOPOLOGY] = {"cautery/topology", &cautery_Frame_desc},
 		[TOPIC_KEY_FRAME] = {"cautery/key_frame", &cautery_Frame_desc},
@@ -133,9 +134,10 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 		cau_topic topic;
 		const dds_qos_t *qos;
 	} outlets[] = {
-		{&session->state, TOPIC_STATE, kept},  {&session->grasp, TOPIC_GRASP, kept},
-		{&session->power, TOPIC_POWER, kept},  {&stream->topology, TOPIC_TOPOLOGY, kept},
-		{&stream->key, TOPIC_KEY_FRAME, kept}, {&stream->delta, TOPIC_DELTA, chain},
+		{&session->state, TOPIC_STATE, kept},      {&session->grasp, TOPIC_GRASP, kept},
+		{&session->power, TOPIC_POWER, kept},      {&session->force, TOPIC_FORCE, kept},
+		{&stream->topology, TOPIC_TOPOLOGY, kept}, {&stream->key, TOPIC_KEY_FRAME, kept},
+		{&stream->delta, TOPIC_DELTA, chain},
 	};
 	uint32_t number = cau_hosted_number(session->hosted);
 	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++)
@@ -205,9 +207,9 @@ static void close_writers(cau_dds *dds, cau_dds_session *session)
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	if (session->status_writer > 0)
 		dds_dispose(session->status_writer, &gone);
-	cau_dds_outlet *at_once[] = {&session->state,      &session->grasp,
-	                             &session->power,      &session->stream.topology,
-	                             &session->stream.key, &session->stream.delta};
+	cau_dds_outlet *at_once[] = {
+		&session->state,           &session->grasp,      &session->power,       &session->force,
+		&session->stream.topology, &session->stream.key, &session->stream.delta};
 	for (size_t i = 0; i < sizeof at_once / sizeof at_once[0]; i++)
 		cau_dds_close_outlet(at_once[i]);
 	cau_dds_bid_farewell(dds, session->publisher, session->status_writer);
@@ -338,6 +340,8 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 	     &geometry_msgs_msg_dds__PoseStamped__desc},
 		{&tool->force_topic, &tool->force, "measured_cf",
 	     &geometry_msgs_msg_dds__WrenchStamped__desc},
+		{&tool->raw_force_topic, &tool->raw_force, "raw/measured_cf",
+	     &geometry_msgs_msg_dds__WrenchStamped__desc},
 	};
 	dds->ends_changed = true;
 	open_ros_doors(dds, session, tool, prefix, doors, sizeof doors / sizeof doors[0]);
@@ -395,8 +399,10 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 	cau_dds_close_outlet(&tool->pose);
 	cau_dds_close_outlet(&tool->asked);
 	cau_dds_close_outlet(&tool->force);
-	dds_entity_t *const made[] = {&tool->operating_writer, &tool->pose_topic, &tool->asked_topic,
-	                              &tool->force_topic, &tool->operating_topic};
+	cau_dds_close_outlet(&tool->raw_force);
+	dds_entity_t *const made[] = {&tool->operating_writer, &tool->pose_topic,
+	                              &tool->asked_topic,      &tool->force_topic,
+	                              &tool->raw_force_topic,  &tool->operating_topic};
 	delete_topics(made, sizeof made / sizeof made[0]);
 	*tool = (cau_dds_tool){0};
 }

@@ -32,6 +32,7 @@ typedef enum cau_topic {
 	TOPIC_STATE,
 	TOPIC_GRASP,
 	TOPIC_POWER,
+	TOPIC_FORCE,
 	TOPIC_STATUS,
 	TOPIC_TOPOLOGY,
 	TOPIC_KEY_FRAME,
@@ -98,8 +99,9 @@ typedef struct cau_dds_tool {
 	// closed where the ROS 2 name is taken
 	cau_door servo_cp, servo_jp, energize, state_command;
 	cau_door loose_cp, loose_jp; // of best effort; open once such a writer is there
-	dds_entity_t pose_topic, asked_topic, force_topic, jaw_topic, asked_jaw_topic;
+	dds_entity_t pose_topic, asked_topic, force_topic, raw_force_topic, jaw_topic, asked_jaw_topic;
 	cau_dds_outlet pose, asked, force;              // measured_cp, setpoint_cp, measured_cf
+	cau_dds_outlet raw_force;                       // raw/measured_cf
 	cau_dds_outlet jaw, asked_jaw;                  // jaw/measured_js, jaw/setpoint_js
 	dds_entity_t operating_topic, operating_writer; // operating_state
 	cau_dds_operating operating, operating_told;
@@ -139,7 +141,7 @@ typedef struct cau_dds_session {
 	cau_door native, setting;
 	cau_dds_keys keys; // what these doors let in
 	dds_entity_t status_writer;
-	cau_dds_outlet state, grasp, power;
+	cau_dds_outlet state, grasp, power, force;
 	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last seen
 	uint64_t states_tick;
 	double states_s;  // when they were last written for nobody

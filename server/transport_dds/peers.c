@@ -57,10 +57,10 @@ static end find_native(cau_dds *dds, const cau_dds_peer *peer)
 			const char *name;
 			dds_entity_t writer;
 		} writers[] = {
-			{"tool_state", s->state.writer},         {"tool_grasp", s->grasp.writer},
-			{"tool_power", s->power.writer},         {"session_status", s->status_writer},
-			{"topology", s->stream.topology.writer}, {"key_frame", s->stream.key.writer},
-			{"delta", s->stream.delta.writer}};
+			{"tool_state", s->state.writer},      {"tool_grasp", s->grasp.writer},
+			{"tool_power", s->power.writer},      {"tool_force", s->force.writer},
+			{"session_status", s->status_writer}, {"topology", s->stream.topology.writer},
+			{"key_frame", s->stream.key.writer},  {"delta", s->stream.delta.writer}};
 		for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++)
 			if (strcmp(leaf, writers[i].name) == 0)
 				return (end){.entity = writers[i].writer, .session = id};
@@ -84,6 +84,7 @@ static end find_in_tool(const cau_dds_session *session, cau_dds_tool *tool, cons
 		{tool->pose_topic, tool->pose.writer, false, NULL, NULL},
 		{tool->asked_topic, tool->asked.writer, false, NULL, NULL},
 		{tool->force_topic, tool->force.writer, false, NULL, NULL},
+		{tool->raw_force_topic, tool->raw_force.writer, false, NULL, NULL},
 		{tool->jaw_topic, tool->jaw.writer, false, NULL, NULL},
 		{tool->asked_jaw_topic, tool->asked_jaw.writer, false, NULL, NULL},
 		{tool->operating_topic, tool->operating_writer, false, NULL, NULL},

@@ -154,13 +154,14 @@ static bool is_session_read(const cau_dds_session *session)
 {
 	const cau_dds_stream *stream = &session->stream;
 	bool any = cau_dds_is_read(&session->state) || cau_dds_is_read(&session->grasp) ||
-	           cau_dds_is_read(&session->power) || cau_dds_is_read(&stream->topology) ||
-	           cau_dds_is_read(&stream->key) || cau_dds_is_read(&stream->delta);
+	           cau_dds_is_read(&session->power) || cau_dds_is_read(&session->force) ||
+	           cau_dds_is_read(&stream->topology) || cau_dds_is_read(&stream->key) ||
+	           cau_dds_is_read(&stream->delta);
 	for (int i = 0; i < CAU_MAX_TOOLS && !any; i++) {
 		const cau_dds_tool *tool = &session->tools[i];
 		any = cau_dds_is_read(&tool->pose) || cau_dds_is_read(&tool->asked) ||
-		      cau_dds_is_read(&tool->force) || cau_dds_is_read(&tool->jaw) ||
-		      cau_dds_is_read(&tool->asked_jaw);
+		      cau_dds_is_read(&tool->force) || cau_dds_is_read(&tool->raw_force) ||
+		      cau_dds_is_read(&tool->jaw) || cau_dds_is_read(&tool->asked_jaw);
 	}
 	return any;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the server says of tools: cautery/tool_state, cautery/tool_grasp, cautery/tool_power,
-// measured_cp, setpoint_cp, measured_cf, jaw/measured_js, jaw/setpoint_js.
+// cautery/tool_force, measured_cp, setpoint_cp, measured_cf, raw/measured_cf, jaw/measured_js,
+// jaw/setpoint_js.
 #include <math.h>
 #include <string.h>
 
@@ -78,6 +79,19 @@ static void publish_power(const cau_dds_session *session, const cau_tool_state *
 	dds_write(session->power.writer, &sample);
 }
 
+static void publish_force(const cau_dds_session *session, const cau_tool_state *state,
+                          uint64_t tick)
+{
+	cautery_ToolForce sample = {.tick = tick, .filter_s = state->definition.force_filter_s};
+	snprintf(sample.session, sizeof sample.session, "%s", cau_hosted_id(session->hosted));
+	snprintf(sample.tool, sizeof sample.tool, "%s", state->name);
+	memcpy(sample.raw_force_n, state->raw_force_n, sizeof sample.raw_force_n);
+	memcpy(sample.raw_torque_nm, state->raw_torque_nm, sizeof sample.raw_torque_nm);
+	memcpy(sample.force_n, state->force_n, sizeof sample.force_n);
+	memcpy(sample.torque_nm, state->torque_nm, sizeof sample.torque_nm);
+	dds_write(session->force.writer, &sample);
+}
+
 bool cau_dds_has_jaws(const cau_tool_state *state)
 {
 #define X(code, word, hot, jaws, ...) jaws,
@@ -133,16 +147,22 @@ static void publish_joint(cau_dds_outlet *outlet, double angle_rad, double *mome
 	dds_write(outlet->writer, &jaw);
 }
 
+static void publish_wrench(cau_dds_outlet *outlet, const double f[3], const double t[3],
+                           bool changed)
+{
+	if (!is_due(outlet, changed))
+		return;
+	geometry_msgs_msg_dds__WrenchStamped_ sample = {header_now(),
+	                                                {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
+	dds_write(outlet->writer, &sample);
+}
+
 static void publish_measured(cau_dds_tool *wire, const cau_tool_state *state, bool changed)
 {
-	const double *f = state->force_n, *t = state->torque_nm;
 	publish_pose(&wire->pose, &state->pose, changed);
 	publish_pose(&wire->asked, &state->asked_pose, changed);
-	if (is_due(&wire->force, changed)) {
-		geometry_msgs_msg_dds__WrenchStamped_ force = {header_now(),
-		                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
-		dds_write(wire->force.writer, &force);
-	}
+	publish_wrench(&wire->force, state->force_n, state->torque_nm, changed);
+	publish_wrench(&wire->raw_force, state->raw_force_n, state->raw_torque_nm, changed);
 	const double open_rad = state->definition.jaw_open_rad;
 	double moment_nm = state->jaw_force_n * state->definition.tip_length_m;
 	publish_joint(&wire->jaw, state->jaw * open_rad, &moment_nm, changed);
@@ -163,6 +183,10 @@ void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
 	memcpy(none.session, gone.session, sizeof none.session);
 	memcpy(none.tool, gone.tool, sizeof none.tool);
 	dds_dispose(session->power.writer, &none);
+	cautery_ToolForce unloaded = {0};
+	memcpy(unloaded.session, gone.session, sizeof unloaded.session);
+	memcpy(unloaded.tool, gone.tool, sizeof unloaded.tool);
+	dds_dispose(session->force.writer, &unloaded);
 }
 
 // What a late joiner must not be told of wrongly, not for a second.
@@ -177,9 +201,9 @@ double cau_dds_states_due(const cau_dds_session *session)
 	return session->states_owed ? session->states_s + UNREAD_PERIOD_S : INFINITY;
 }
 
-// A topic of some tools' own beside cautery/tool_state.
+// A topic of tools beside cautery/tool_state.
 typedef struct own_topic {
-	bool (*has)(const cau_tool_state *state);
+	bool (*has)(const cau_tool_state *state); // which tools; NULL: all
 	void (*publish)(const cau_dds_session *session, const cau_tool_state *state, uint64_t tick);
 	bool is_read, newcomers;
 } own_topic;
@@ -196,7 +220,8 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 {
 	bool is_read = cau_dds_is_read(&session->state);
 	const own_topic own[] = {own_topic_of(&session->grasp, cau_dds_has_jaws, publish_grasp),
-	                         own_topic_of(&session->power, has_energy, publish_power)};
+	                         own_topic_of(&session->power, has_energy, publish_power),
+	                         own_topic_of(&session->force, NULL, publish_force)};
 	bool all = cau_dds_take_newcomers(&session->state) || now_s >= cau_dds_states_due(session);
 	if (all) {
 		session->states_owed = false;
@@ -213,7 +238,7 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 		else
 			session->states_owed |= changed;
 		for (size_t k = 0; k < sizeof own / sizeof *own; k++) {
-			if (!own[k].has(&tools[i].state))
+			if (own[k].has && !own[k].has(&tools[i].state))
 				continue;
 			if (all || own[k].newcomers || (changed && own[k].is_read))
 				own[k].publish(session, &tools[i].state, tick);

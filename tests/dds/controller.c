@@ -50,10 +50,11 @@ typedef struct controller {
 	double position_m[3], aim_m[3];
 	double last_write_s;
 	dds_entity_t participant, publisher, command, pose, level, state_reader, grasp_reader,
-		power_reader, setting;
+		power_reader, force_reader, setting;
 	cautery_ToolState state;
 	cautery_ToolGrasp holding;
 	cautery_ToolPower power;
+	cautery_ToolForce felt;
 	bool sets;    // set_w is to be written
 	double set_w; // of its generator
 	crtk crtk;    // ros
@@ -104,6 +105,8 @@ static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 	c->grasp_reader = native_reader(subscriber, &cautery_ToolGrasp_desc, "cautery/tool_grasp",
 	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
 	c->power_reader = native_reader(subscriber, &cautery_ToolPower_desc, "cautery/tool_power",
+	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
+	c->force_reader = native_reader(subscriber, &cautery_ToolForce_desc, "cautery/tool_force",
 	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
 }
 
@@ -258,19 +261,23 @@ static void tell_state(const controller *c, const char *event)
 	const cautery_ToolState *s = &c->state;
 	const cautery_ToolGrasp *h = &c->holding;
 	const cautery_ToolPower *p = &c->power;
+	const cautery_ToolForce *f = &c->felt;
 	printf("{\"event\":\"%s\",\"has\":%s,\"stormed\":%llu,\"tick\":%llu,\"sequence\":%llu,"
 	       "\"position_m\":[%.6f,%.6f,%.6f],\"energized\":%s,\"energy_off\":%d,\"driver\":%u,"
 	       "\"driver_name\":\"%s\",\"grasping\":%s,\"jaw\":%.6f,\"asked_jaw\":%.6f,"
 	       "\"jaw_force_n\":%.6f,\"held\":%u,\"slipping\":%s,\"holding\":%s,"
 	       "\"has_power\":%s,\"set_w\":%.6f,\"power_w\":%.6f,\"load_ohm\":%.6f,\"energy_j\":%.6f,"
-	       "\"power_on\":%s}\n",
+	       "\"power_on\":%s,\"has_force\":%s,\"force_tick\":%llu,\"filter_s\":%.17g,"
+	       "\"raw_z_n\":%.17g,\"z_n\":%.17g,\"state_z_n\":%.17g}\n",
 	       event, c->has_state ? "true" : "false", (unsigned long long)c->stormed,
 	       (unsigned long long)s->tick, (unsigned long long)s->sequence_number, s->position_m[0],
 	       s->position_m[1], s->position_m[2], s->energized ? "true" : "false", (int)s->energy_off,
 	       s->driver, s->driver_name, s->grasping ? "true" : "false", h->jaw, h->asked_jaw,
 	       h->jaw_force_n, h->grasped_vertices, h->slipping ? "true" : "false",
 	       h->grasping ? "true" : "false", *p->tool ? "true" : "false", p->set_w, p->power_w,
-	       p->load_ohm, p->energy_j, p->energized ? "true" : "false");
+	       p->load_ohm, p->energy_j, p->energized ? "true" : "false", *f->tool ? "true" : "false",
+	       (unsigned long long)f->tick, f->filter_s, f->raw_force_n[2], f->force_n[2],
+	       s->force_n[2]);
 }
 
 static void take_state(void *user, const void *sample)
@@ -301,6 +308,14 @@ static void take_power(void *user, const void *sample)
 	const cautery_ToolPower *s = sample;
 	if (strcmp(s->tool, c->tool) == 0)
 		c->power = *s;
+}
+
+static void take_force(void *user, const void *sample)
+{
+	controller *c = user;
+	const cautery_ToolForce *s = sample;
+	if (strcmp(s->tool, c->tool) == 0)
+		c->felt = *s;
 }
 
 static void obey(void *user, const char *line)
@@ -354,6 +369,7 @@ static void run(controller *c)
 		take_each(c->state_reader, take_state, c);
 		take_each(c->grasp_reader, take_grasp, c);
 		take_each(c->power_reader, take_power, c);
+		take_each(c->force_reader, take_force, c);
 		if (c->ros)
 			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)

@@ -44,6 +44,10 @@ void crtk_open(crtk *c, dds_entity_t participant, const char *session, const cha
 	     false},
 		{&c->pose_reader, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
 		{&c->asked_reader, "setpoint_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
+		{&c->force_reader, "measured_cf", &geometry_msgs_msg_dds__WrenchStamped__desc, false,
+	     false},
+		{&c->raw_force_reader, "raw/measured_cf", &geometry_msgs_msg_dds__WrenchStamped__desc,
+	     false, false},
 	};
 	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
 		dds_entity_t topic = ros_topic(participant, session, tool, ends[i].name, ends[i].type);
@@ -122,6 +126,11 @@ static void take_asked(void *user, const void *sample)
 	c->asked_m[2] = p->z_;
 }
 
+static void take_force(void *user, const void *sample)
+{
+	*(double *)user = ((const geometry_msgs_msg_dds__WrenchStamped_ *)sample)->wrench_.force_.z_;
+}
+
 void crtk_read(crtk *c)
 {
 	take_each(c->state_reader, take_state, c);
@@ -129,6 +138,8 @@ void crtk_read(crtk *c)
 	take_each(c->asked_jaw_reader, take_asked_jaw, c);
 	take_each(c->pose_reader, take_pose, c);
 	take_each(c->asked_reader, take_asked, c);
+	take_each(c->force_reader, take_force, &c->z_n);
+	take_each(c->raw_force_reader, take_force, &c->raw_z_n);
 }
 
 void crtk_command(const crtk *c, const char *word)
@@ -151,8 +162,8 @@ void crtk_tell(const crtk *c)
 {
 	printf("{\"event\":\"crtk\",\"state\":\"%s\",\"homed\":%s,\"busy\":%s,\"states\":%d,"
 	       "\"jaw_rad\":%.6f,\"asked_jaw_rad\":%.6f,\"jaw_nm\":%.6f,\"position_m\":[%.6f,%.6f,%.6f]"
-	       ",\"asked_m\":[%.6f,%.6f,%.6f],\"jaw_topics\":%d}\n",
+	       ",\"asked_m\":[%.6f,%.6f,%.6f],\"jaw_topics\":%d,\"z_n\":%.17g,\"raw_z_n\":%.17g}\n",
 	       c->state, c->homed ? "true" : "false", c->busy ? "true" : "false", c->states, c->jaw_rad,
 	       c->asked_jaw_rad, c->jaw_nm, c->position_m[0], c->position_m[1], c->position_m[2],
-	       c->asked_m[0], c->asked_m[1], c->asked_m[2], count_jaw_topics(c));
+	       c->asked_m[0], c->asked_m[1], c->asked_m[2], count_jaw_topics(c), c->z_n, c->raw_z_n);
 }

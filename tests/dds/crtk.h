@@ -7,10 +7,11 @@
 
 typedef struct crtk {
 	dds_entity_t command_writer, jaw_writer, state_reader, jaw_reader, pose_reader, asked_reader,
-		asked_jaw_reader;
+		asked_jaw_reader, force_reader, raw_force_reader;
 	char state[16];
 	bool homed, busy;
-	int states, poses; // samples that came
+	int states, poses;   // samples that came
+	double z_n, raw_z_n; // of measured_cf and raw/measured_cf
 	double jaw_rad, asked_jaw_rad, jaw_nm, position_m[3],
 		asked_m[3]; // the last two of measured_cp and setpoint_cp
 } crtk;
