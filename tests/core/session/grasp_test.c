@@ -331,7 +331,7 @@ static void a_setting_keeps_what_jaws_hold(void **state)
 		OF(slip_force_n, 2.1, false),     OF(force_max_n, 19, false),
 		OF(close_force_n, 7.5, false),    OF(power_w, 40, false),
 		OF(peak_v, 190, false),           OF(crest_factor, 2, false),
-		OF(current_max_a, 1, false),
+		OF(current_max_a, 1, false),      OF(force_filter_s, 0.05, false),
 	};
 #define ONE(...) +1
 	assert_int_equal(sizeof changes / sizeof changes[0], CAU_TOOL_TABLE(ONE)); // each of them
