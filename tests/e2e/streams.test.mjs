@@ -194,8 +194,8 @@ test('profiles: rate, channels and step are what was asked for', async () => {
 	await Promise.all([client.close(), other.close()]);
 });
 
-// The codings of a frame's element sections: 0 plain, 1 meshoptimizer's. Names, tools and statistics have no elements.
-const codings = (bytes) => [...sections(bytes, header(bytes))].filter(([type]) => ![6, 7, 8, 32, 33].includes(type)).map(([, payload]) => payload[2]);
+// The codings of a frame's element sections: 0 plain, 1 meshoptimizer's. Sections of tools (6, 7, 32 to 35) and statistics (8) have none.
+const codings = (bytes) => [...sections(bytes, header(bytes))].filter(([type]) => ![6, 7, 8, 32, 33, 34, 35].includes(type)).map(([, payload]) => payload[2]);
 
 test('plain where it is asked for: no codec in any frame, and the same picture', async () => {
 	const client = await daemon.connect(), plain = await daemon.connect();
