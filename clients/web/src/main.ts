@@ -233,6 +233,8 @@ export interface Inspection {
   /** least and largest x, y, z of the tissue, m */
   extent(): { least: number[]; most: number[] };
   project(point: readonly [number, number, number]): { x: number; y: number };
+  /** pictures in full detail, however slow, or again as quick as the machine needs them */
+  holdFull(held: boolean): void;
 }
 
 const inspection: Inspection = {
@@ -270,5 +272,6 @@ const inspection: Inspection = {
     return { least: min.toArray(), most: max.toArray() };
   },
   project: (point) => viewport.project(point),
+  holdFull: (held) => viewport.pace?.holdFull(held),
 };
 Object.assign(window, { cautery: inspection });

@@ -12,6 +12,8 @@ const NOTCH_M = 0.0005;
 const LIFT = 20; // notches
 const BESIDE: Point = [-0.02, 0, 0]; // where the tool in the middle hides no jaws
 const ZOOM = 4, ZOOM_JAWS = 1; // notches: they fill some of the picture
+const RESTED_M = 1e-4; // that a tool at rest moves at most, in so many frames
+const RESTED_FRAMES = 10;
 const RIM = 0.92; // of the ball's radius
 const RIM_BLUE = 10; // of 255, blue less red: 40 of the ghost, -50 of metal and tissue without it
 
@@ -32,6 +34,16 @@ describe('what tissue stops', () => {
     await viewer.page.mouse.move(x, y);
   };
 
+  /** Where the tool is and where it is led to, once it has come to rest: on its way it is behind, too. */
+  const rested = async (): Promise<{ tip: readonly number[]; asked: readonly number[] }> => {
+    for (let before = await viewer.state(); ; ) {
+      await viewer.until((count) => window.cautery.framesDecoded >= count, before.framesDecoded + RESTED_FRAMES, 'frames later');
+      const now = await viewer.state();
+      if (Math.hypot(...now.tip.map((x, i) => x - before.tip[i])) < RESTED_M) return now;
+      before = now;
+    }
+  };
+
   beforeAll(async () => {
     viewer = await stage.open();
     await viewer.live('d1-fat');
@@ -46,17 +58,20 @@ describe('what tissue stops', () => {
     await viewer.until((near) => Math.hypot(window.cautery.tip[0], window.cautery.tip[1]) < near, OVER_M, 'it is over the slab');
     expect((await viewer.state()).ghost).toBe(false);
     let notches = 0;
-    for (let { tip, asked } = await viewer.state(); tip[2] < asked[2] + BEHIND_M; { tip, asked } = await viewer.state()) {
+    for (let { tip, asked } = await rested(); tip[2] < asked[2] + BEHIND_M; { tip, asked } = await rested()) {
       await turnWheel(NOTCHES);
       notches += NOTCHES;
       await viewer.drawn();
     }
     expect((await viewer.state()).ghost).toBe(true);
+    await viewer.full(true);
     await viewer.screenshot('asked-ghost');
     const { asked: [ax, ay, az], tool } = await viewer.state();
     const off = RIM * (tool?.hot_radius_m ?? 0);
     const rim = (await viewer.coloursAt([[ax - off, ay, az], [ax + off, ay, az]], 1)).map(blue);
+    process.stdout.write(`the rim: ${rim.map((value) => value.toFixed(0)).join(' and ')} more of blue than of red\n`);
     expect((rim[0] + rim[1]) / 2).toBeGreaterThan(RIM_BLUE);
+    await viewer.full(false);
     await turnWheel(-notches);
     await viewer.until(() => !window.cautery.ghost, null, 'it is where it is led to');
     await page.mouse.up();
@@ -78,13 +93,15 @@ describe('what tissue stops', () => {
     expect(jaw).toBeLessThan(1);
     await viewer.until(() => /holds \d+ points pressed with [\d.]+ N/.test(document.querySelector('#panel-tools')?.textContent ?? ''), null, 'the page says so');
     await page.getByText('Tool in hand').scrollIntoViewIfNeeded();
-    await viewer.drawn();
+    await viewer.full(true);
     await viewer.screenshot('asked-jaws');
+    await viewer.full(false);
     await turnWheel(-LIFT);
     await viewer.until((z) => window.cautery.tip[2] > z, LIFT * NOTCH_M / 2, 'they have been lifted');
     await viewer.until(() => /holds \d+ points/.test(document.querySelector('#panel-tools')?.textContent ?? ''), null, 'they hold what they pull');
-    await viewer.drawn();
+    await viewer.full(true);
     await viewer.screenshot('asked-pull');
+    await viewer.full(false);
     await turnWheel(LIFT);
     await page.mouse.up();
     await viewer.until(() => window.cautery.jaw === 1 && !window.cautery.ghost, null, 'they are open, and no ghost is there');

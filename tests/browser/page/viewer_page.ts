@@ -102,6 +102,12 @@ export class ViewerPage {
     await this.until((count) => window.cautery.idle || window.cautery.picturesDrawn > count + 1, picturesDrawn, 'a new picture');
   }
 
+  /** Pictures in full detail, although they move and however slow they are, or again as the machine needs them. */
+  async full(held: boolean): Promise<void> {
+    await this.page.evaluate((on) => window.cautery.holdFull(on), held);
+    await this.drawn();
+  }
+
   async pause(): Promise<void> {
     await this.page.getByRole('button', { name: 'Pause' }).click();
     await this.until(() => window.cautery.paused, null, 'paused');

@@ -11,7 +11,8 @@ import { ClipPlane } from './clip_plane';
 import { Field } from './field';
 import { framedPoints } from './framing';
 import { Orbit, type CameraPose } from './orbit';
-import { Pace } from './pace';
+import { FULL, Pace, type Detail } from './pace';
+import { Samples } from './samples';
 import { placeShadows } from './shadows';
 import { Shown } from './shown';
 import { Smoke } from './smoke';
@@ -40,7 +41,7 @@ const SHARPEN_MS = 300;
 
 function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer | null {
   try {
-    return new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    return new WebGLRenderer({ canvas, antialias: false, powerPreference: 'high-performance' });
   } catch {
     return null; // the page says so in its picture's place
   }
@@ -50,6 +51,7 @@ export class Viewport {
   readonly orbit = new Orbit();
   /** null: this browser has no WebGL 2; everything but the picture works */
   private readonly renderer: WebGLRenderer | null;
+  private readonly samples: Samples | null;
   tissue: TissueView | null = null;
   picturesDrawn = 0;
   readonly shown = new Shown();
@@ -57,10 +59,8 @@ export class Viewport {
   readonly pace: Pace | null;
   private contextLost = false;
   /** of moving pictures, from pace */
-  private scale = 1;
-  private rescale = false; // where the next picture is drawn: that clears the canvas
-  /** the picture shown is in full although moving ones are not */
-  private sharp = false;
+  private moving: Detail = FULL;
+  private detail: Detail = FULL; // of the picture that is drawn
   private changedAt = 0;
   private readonly scene = new Scene();
   private readonly shared = makeSharedUniforms();
@@ -88,9 +88,9 @@ export class Viewport {
     private readonly coveredBelow: () => number,
   ) {
     this.renderer = makeRenderer(canvas);
-    this.pace = this.renderer && new Pace(this.renderer.getContext() as WebGL2RenderingContext, (scale) => {
-      this.scale = scale;
-      this.rescale = true;
+    this.samples = this.renderer && new Samples(this.renderer);
+    this.pace = this.renderer && new Pace(this.renderer.getContext() as WebGL2RenderingContext, (detail) => {
+      this.moving = detail;
       this.invalidate();
     });
     canvas.addEventListener('webglcontextlost', () => {
@@ -100,6 +100,7 @@ export class Viewport {
     canvas.addEventListener('webglcontextrestored', () => {
       this.contextLost = false;
       this.pace?.reset();
+      this.samples?.lose();
       this.resize();
     });
     this.field = new Field(this.shared, this.background);
@@ -203,7 +204,7 @@ export class Viewport {
 
   resize(): void {
     this.orbit.resize(this.canvas.clientWidth, this.canvas.clientHeight, this.coveredBelow());
-    this.setScale(this.scale);
+    this.setDetail(this.moving);
     this.invalidate();
   }
 
@@ -220,38 +221,39 @@ export class Viewport {
     }
     this.dirty = false;
     this.changedAt = now;
-    if (this.sharp || this.rescale) this.setScale(this.scale);
+    if (this.detail !== this.moving) this.setDetail(this.moving); // here, since that clears the canvas
     this.render();
     this.pace.drawn(now);
   }
 
-  /** Nothing is left to draw, and what is drawn is sharp. */
+  /** Nothing is left to draw, and what is drawn is in full detail. */
   get idle(): boolean {
-    return !this.dirty && this.pace !== null && this.pace.ready() && (this.sharp || this.scale === 1);
+    return !this.dirty && this.pace !== null && this.pace.ready() && this.detail === FULL;
   }
 
-  /** A picture that stands still is drawn once more in full, however coarse moving ones are. */
+  /** A picture that stands still is drawn once more in full, however little detail moving ones have. */
   private sharpen(now: number): void {
-    if (this.scale === 1 || this.sharp || now - this.changedAt < SHARPEN_MS) return;
-    this.setScale(1);
-    this.sharp = true;
+    if (this.detail === FULL || now - this.changedAt < SHARPEN_MS) return;
+    this.setDetail(FULL);
     this.render();
   }
 
   private render(): void {
     this.placeLamp();
     this.placeArrow();
-    this.renderer?.render(this.scene, this.orbit.camera);
+    const draw = (): void => this.renderer?.render(this.scene, this.orbit.camera);
+    if (this.detail.smooth) this.samples?.draw(draw);
+    else draw();
     this.shown.draw(this.taken ? this.session : null);
     this.picturesDrawn++;
   }
 
-  private setScale(scale: number): void {
+  private setDetail(detail: Detail): void {
     const { clientWidth, clientHeight } = this.canvas;
-    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2) * scale);
+    this.detail = detail;
+    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2) * detail.scale);
     this.renderer?.setSize(clientWidth, clientHeight, false);
     this.smoke.resize(this.canvas.height);
-    this.sharp = this.rescale = false;
   }
 
   /** milliseconds that the last picture took to be there */
@@ -269,7 +271,7 @@ export class Viewport {
   /** The picture as PNG. */
   async png(): Promise<Blob> {
     if (this.graphics !== 'ready') throw new Error('there is no picture to save');
-    this.setScale(1);
+    this.setDetail(FULL);
     this.render();
     return new Promise<Blob>((resolve, reject) =>
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be written'))), 'image/png'),
