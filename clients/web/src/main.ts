@@ -30,6 +30,7 @@ import { showHelp, showLink, showNotices, showReading } from './panels/overlay';
 import { plotsPanel } from './panels/plots';
 import { showRuler } from './panels/ruler';
 import { showSaid } from './panels/said';
+import { sensesSection } from './panels/senses';
 import { saveReceived, sessionsPanel } from './panels/sessions';
 import { showPast } from './panels/past';
 import { makeTabs } from './panels/tabs';
@@ -38,6 +39,7 @@ import { askForToken } from './panels/token';
 import { toolsPanel } from './panels/tools';
 import { showVeil } from './panels/veil';
 import { viewPanel } from './panels/view';
+import { Sounds } from './scene/sound';
 import { Viewport } from './scene/viewport';
 import { Link } from './wire/link';
 import type { Layer, Tool } from './wire/messages.gen';
@@ -76,6 +78,7 @@ const link: Link = new Link({
   },
 });
 const control = new Control(model, link);
+const sounds = new Sounds(model);
 const hand = new ToolHand(model, control, viewport);
 const ruler = new Ruler(new Aim(viewport));
 const pins = new PinBrush(new Aim(viewport), (selection) => {
@@ -111,7 +114,7 @@ const placeSaid = showSaid(model, viewport, pointer);
 showNotices(control);
 showReading(control);
 showHelp();
-operatePanel(control, hand, viewport, { token: () => lastToken, rename: () => connect(lastToken) }, devicesSection(pedal, makeSpaceMouse));
+operatePanel(control, hand, viewport, { token: () => lastToken, rename: () => connect(lastToken) }, [sensesSection(viewport, sounds), devicesSection(pedal, makeSpaceMouse)]);
 const chooseMode = modeSwitch((mode) => {
   tabs.show(mode === 'research');
   if (mode === 'research') return;
@@ -220,6 +223,11 @@ export interface Inspection {
   tool: Tool | null;
   pictureMs: number;
   picturesDrawn: number;
+  /** of smoke in the air */
+  puffs: number;
+  /** Hz of the activation tone, 0 without; loudness of the sizzle, 0 to 1; alarms so far */
+  heard: { toneHz: number; sizzle: number };
+  alarms: number;
   /** nothing is left to draw */
   idle: boolean;
   /** of recent frames: published to decoded */
@@ -259,6 +267,9 @@ const inspection: Inspection = {
   get tool() { return model.tool; },
   get pictureMs() { return viewport.pictureMs; },
   get picturesDrawn() { return viewport.picturesDrawn; },
+  get puffs() { return viewport.smoke.count; },
+  get heard() { return sounds.heard; },
+  get alarms() { return sounds.alarms; },
   get idle() { return viewport.idle; },
   latenciesMs: () => model.samples.map((sample) => sample.latencyMs),
   layer: (name) => model.joined?.description.definition.layers?.find((layer) => layer.name === name) ?? null,

@@ -15,7 +15,7 @@ const ZOOM = 4, ZOOM_JAWS = 1; // notches: they fill some of the picture
 const RESTED_M = 1e-4; // that a tool at rest moves at most, in so many frames
 const RESTED_FRAMES = 10;
 const RIM = 0.92; // of the ball's radius
-const RIM_BLUE = 10; // of 255, blue less red: 40 of the ghost, -50 of metal and tissue without it
+const RIM_BLUE = 10; // of 255, blue less red: 170 of the ghost, -50 of metal and tissue without it
 
 const blue = ([r, , b]: Colour): number => b - r;
 

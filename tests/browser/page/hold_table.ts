@@ -213,7 +213,11 @@ export const LOSSES: readonly Loss[] = [
     name: 'focus moved to another control', does: (way) => (isPointer(way) || way.kind === 'key' ? 'off' : 'stays'),
     happen: (hands) => focusOn(hands, '#pause'),
   },
-  { name: 'focus moved to a field', does: always, happen: (hands) => focusOn(hands, 'input[name=person]') },
+  {
+    // Left again afterwards: a pair that is played again has to move it there again.
+    name: 'focus moved to a field', does: always, happen: (hands) => focusOn(hands, 'input[name=person]'),
+    undo: (hands) => hands.evaluate(() => document.querySelector<HTMLElement>('input[name=person]')!.blur(), null),
+  },
   {
     name: 'page hidden', does: always,
     happen: inPage(() => {

@@ -229,7 +229,11 @@ export class ViewerPage {
 
   /** Mean colours, 0 to 255, of small squares of the page at points of the tissue, all of one picture. */
   async coloursAt(points: readonly [number, number, number][], half = 2): Promise<Colour[]> {
-    const places = await Promise.all(points.map((point) => this.project(point)));
+    return this.coloursOf(await Promise.all(points.map((point) => this.project(point))), half);
+  }
+
+  /** The same of places of the page, CSS pixels. */
+  async coloursOf(places: readonly { x: number; y: number }[], half = 2): Promise<Colour[]> {
     const png = (await this.page.screenshot()).toString('base64');
     return this.page.evaluate(async ({ data, places, half }) => {
       const image = new Image();

@@ -9,8 +9,10 @@ import type { Viewport } from '../scene/viewport';
 export class Aim {
   constructor(private readonly viewport: Viewport) {}
 
-  /** The nearest tissue that is drawn there, or where it would be if it had no gap there; null beside it. */
+  /** The nearest tissue that is drawn there, or where it would be if it had no gap there; null beside it, and where the picture
+   * is dark. */
   onSurface(x: number, y: number): Vector3 | null {
+    if (!this.viewport.sees(x, y)) return null;
     const { origin, direction } = this.viewport.orbit.ray(x, y);
     const distance = this.meet(origin, direction);
     return distance === null ? null : origin.addScaledVector(direction, distance);

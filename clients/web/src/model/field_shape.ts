@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The operative field that tissue is set into, drawn only: a bed under it, walls of fat around it up to a
-// rim of skin, and a cloth with a window. Rings around the tissue's rectangle, the same points in each.
+// The operative field around tissue, drawn only: walls of fat up to a rim of skin and a cloth with a window, or
+// tissue of the same kind on and on. Rings around the tissue's rectangle, the same points in each.
 import type { LayerDescription, Scene } from '../wire/messages.gen';
 
 /** Corners of an upright box, m. */
 export interface Extent {
   least: readonly [number, number, number];
   most: readonly [number, number, number];
+}
+
+/** Material coordinates as a plane over x and y: at x = y = 0, and for a metre along each (m). */
+export interface Sheath {
+  /** what is on top: a sheet, a membrane on fat, or fat alone */
+  kind: 'fascia' | 'membrane' | 'fat';
+  origin: readonly number[];
+  alongX: readonly number[];
+  alongY: readonly number[];
 }
 
 /** What lies in the field. */
@@ -18,6 +27,8 @@ export interface Surroundings {
   edgeZ: number;
   /** it lies in a body; else it hangs freely */
   inBody: boolean;
+  /** material coordinates of what continues it */
+  sheath: Sheath;
 }
 
 export interface FieldShape {
@@ -35,15 +46,18 @@ const EDGE_POINTS = 22; // on each side of the rectangle
 const CORNER_POINTS = 7; // of a quarter turn
 const EDGE_SHARE = 0.02; // of the tissue's width, that its edge is wide
 const USUAL_M = 0.12; // width of tissue for which the lengths below are meant
-const BOWL_M = 0.009; // under a sheet that nothing lies under
-const UNDER_M = 0.001;
-const OVERLAP_M = 0.0012; // of the shelf with the tissue that it goes around: no line is seen between them
-const HIDDEN_M = 0.0004; // below tissue that lies on it, so that only one of the two is seen
+export const OVERLAP_M = 0.0012; // of the shelf with the tissue that it goes around: no line is seen between them
+export const HIDDEN_M = 0.0004; // below tissue that lies on it, so that only one of the two is seen
+const SKIRT_M = 0.03; // of what lies around tissue, down beside it: no gap is seen where the bed has gone down
 
 /** Metres from the tissue's edge outwards, and above it. */
 const WALL: readonly (readonly [number, number, number])[] = [
   [0, -0.0003, 1], [0.0012, 0.0004, 1], [0.003, 0.0013, 1], [0.006, 0.0031, 1], [0.0095, 0.0049, 1], [0.0122, 0.006, 1.15],
   [0.0132, 0.0069, 1.9], [0.0144, 0.0073, 2], [0.019, 0.0075, 2], [0.027, 0.0078, 2], [0.034, 0.0079, 2],
+];
+const SHEATH: readonly (readonly [number, number])[] = [
+  [0.0002, -SKIRT_M], [0.0002, -0.0008], [-0.0009, 0.00012], [-0.0006, 0.00035], [0.0008, 0.00035], [0.002, 0.0002], [0.006, 0], [0.012, 0.0002], [0.019, 0.0008], [0.027, 0.0016],
+  [0.036, 0.003], [0.047, 0.0055], [0.06, 0.009], [0.08, 0.016], [0.11, 0.028], [0.15, 0.05], [0.21, 0.095], [0.3, 0.2], [0.42, 0.5],
 ];
 const FARTHEST_M = 0.8;
 const BELOW_M = 0.012; // of tissue that hangs freely
@@ -82,7 +96,7 @@ function rays(): Ray[] {
 const RAYS = rays();
 
 /** A hilly ground without a seam, about -1 to 1; x and y in waves. */
-function hills(x: number, y: number): number {
+export function hills(x: number, y: number): number {
   return (Math.sin(x + 1.7 * Math.sin(0.6 * y)) + Math.sin(1.3 * y + 1.9 * Math.sin(0.7 * x) + 1) + 0.6 * Math.sin(2.1 * x - 1.6 * y)) / 2.6;
 }
 
@@ -122,47 +136,39 @@ function around(box: Extent, grown: number): (ray: Ray) => [number, number] {
   return ({ x, y, nx, ny }) => [mx + hx * x + grown * nx, my + hy * y + grown * ny];
 }
 
-/** Under the tissue: a well that solid tissue stands in, and a shelf around it up to the edge; or a bowl. */
-function addBed(rings: Rings, { all, solid, edgeZ }: Surroundings, scale: number): void {
-  const [mx, my] = middle(all);
-  if (!solid) {
-    const [hx, hy] = half(all);
-    for (const share of [0, 0.35, 0.65, 0.85, 0.95]) {
-      const z = edgeZ - HIDDEN_M - scale * BOWL_M * (1 - share ** 6);
-      rings.add(ZONES.muscle, ({ x, y }) => [mx + share * hx * x, my + share * hy * y, z + 0.0012 * scale * hills((90 * hx * share * x) / scale, (90 * hy * share * y) / scale)]);
-    }
-    return;
-  }
-  const floor = solid.least[2] - UNDER_M;
-  const inner = around(solid, -OVERLAP_M);
-  rings.add(ZONES.muscle, () => [mx, my, floor]);
-  rings.add(ZONES.muscle, (ray) => [...inner(ray), floor]);
-  const edge = around(all, -0.0002);
-  for (const share of [0, 0.33, 0.66, 1]) {
-    const z = (1 - share) * Math.min(solid.most[2], edgeZ) + share * edgeZ - HIDDEN_M - (share > 0 && share < 1 ? HIDDEN_M : 0);
-    rings.add(ZONES.fat, (ray) => {
-      const [from, to] = [inner(ray), edge(ray)];
-      return [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]), z];
-    });
-  }
-}
-
 /** Tissue that is held all around, or stands on its ground, lies in a body; what hangs freely does not. */
 function liesInBody({ pins = [], layers = [] }: Scene): boolean {
   return pins.some(({ kind }) => kind === 'rim') || (pins.some(({ kind }) => kind === 'box') && layers.some(({ kind }) => kind === 'fat'));
 }
 
+/** Walls up to a rim of skin, as in an open operation. */
 export function fleshAround(surroundings: Surroundings): FieldShape {
   const { all, edgeZ } = surroundings;
   const scale = scaleOf(all);
   const rings = new Rings();
-  addBed(rings, surroundings, scale);
+  const edge = around(all, 0);
+  rings.add(ZONES.fat, (ray) => [...edge(ray), edgeZ - scale * SKIRT_M]);
   for (const [out, up, zone] of WALL) {
     const place = around(all, scale * out);
     const rough = 0.0009 * scale * Math.min(out / 0.006, 1) * (zone > 1.5 ? 0.4 : 1);
     rings.add(zone, (ray) => {
       const [x, y] = place(ray);
       return [x, y, edgeZ + scale * up + rough * hills((420 * x) / scale, (420 * y) / scale)];
+    });
+  }
+  return rings.shape();
+}
+
+/** The tissue's own kind on and on, over its border, as in a body that a trocar leads into: hilly, and rising to a wall. */
+export function sheathAround({ all, edgeZ }: Surroundings): FieldShape {
+  const scale = scaleOf(all);
+  const rings = new Rings();
+  for (const [out, up] of SHEATH) {
+    const place = around(all, scale * out);
+    const rough = 0.004 * scale * Math.min(Math.max(out - 0.002, 0) / 0.03, 1);
+    rings.add(0, (ray) => {
+      const [x, y] = place(ray);
+      return [x, y, edgeZ + scale * up + rough * (1 + hills((110 * x) / scale, (110 * y) / scale))];
     });
   }
   return rings.shape();
@@ -197,7 +203,7 @@ export function clothUnder({ all }: Surroundings): FieldShape {
   return rings.shape();
 }
 
-function scaleOf(all: Extent): number {
+export function scaleOf(all: Extent): number {
   return Math.max(...half(all)) / (USUAL_M / 2);
 }
 
@@ -225,13 +231,33 @@ function edgeHeight(position: Float32Array, corners: Int32Array, { least, most }
   return height;
 }
 
-/** From rest positions, corners of faces (vertex of each) and layers; null without faces. */
-export function surroundingsOf(rest: Float32Array, faces: Int32Array, layers: readonly LayerDescription[], scene: Scene): Surroundings | null {
+/** The plane through material coordinates over rest positions of some corners, by least squares. */
+function planeOver(rest: Float32Array, material: Float32Array, corners: Int32Array): Omit<Sheath, 'kind'> {
+  const mean = (of: Float32Array, c: number): number => corners.reduce((sum, v) => sum + of[3 * v + c], 0) / corners.length;
+  const [mx, my] = [mean(rest, 0), mean(rest, 1)];
+  const moment = (value: (v: number) => number): number => corners.reduce((sum, v) => sum + value(v), 0);
+  const [dx, dy] = [(v: number): number => rest[3 * v] - mx, (v: number): number => rest[3 * v + 1] - my];
+  const [xx, xy, yy] = [moment((v) => dx(v) ** 2), moment((v) => dx(v) * dy(v)), moment((v) => dy(v) ** 2)];
+  const size = xx * yy - xy * xy || 1;
+  const axes = [0, 1, 2].map((c) => {
+    const middle = mean(material, c);
+    const [mxx, mxy] = [moment((v) => dx(v) * (material[3 * v + c] - middle)), moment((v) => dy(v) * (material[3 * v + c] - middle))];
+    const [x, y] = [(yy * mxx - xy * mxy) / size, (xx * mxy - xy * mxx) / size];
+    return { x, y, origin: middle - x * mx - y * my };
+  });
+  return { origin: axes.map(({ origin }) => origin), alongX: axes.map(({ x }) => x), alongY: axes.map(({ y }) => y) };
+}
+
+/** From rest positions and material coordinates, corners of faces (vertex of each) and layers; null without faces. */
+export function surroundingsOf(rest: Float32Array, material: Float32Array, faces: Int32Array, layers: readonly LayerDescription[], scene: Scene): Surroundings | null {
   const all = extentOf(rest, faces);
   if (!all) return null;
-  const corners = layers
-    .filter(({ kind }) => kind === 'fat')
-    .map(({ first_face: first, face_count: count }) => faces.subarray(3 * first, 3 * (first + count)));
+  const cornersOf = ({ first_face: first, face_count: count }: LayerDescription): Int32Array => faces.subarray(3 * first, 3 * (first + count));
+  const corners = layers.filter(({ kind }) => kind === 'fat').map(cornersOf);
+  const top: Sheath['kind'] = (['fascia', 'membrane'] as const).find((wanted) => layers.some(({ kind }) => kind === wanted)) ?? 'fat';
+  const sheet = layers.find(({ kind }) => kind === 'fascia');
+  const upper = faces.filter((v) => rest[3 * v + 2] >= (all.least[2] + all.most[2]) / 2);
+  const sheath = { kind: top, ...planeOver(rest, material, sheet ? cornersOf(sheet) : upper) };
   const solid = corners.length > 0 ? extentOf(rest, Int32Array.from(corners.flatMap((of) => [...of]))) : null;
-  return { all, solid, edgeZ: edgeHeight(rest, faces, all), inBody: liesInBody(scene) };
+  return { all, solid, edgeZ: edgeHeight(rest, faces, all), inBody: liesInBody(scene), sheath };
 }

@@ -3,7 +3,7 @@
 import type { CameraPose } from '../scene/orbit';
 import type { Viewport } from '../scene/viewport';
 import { cameraText, readCamera } from './address';
-import { button, element } from './dom';
+import { button, element, field } from './dom';
 
 const FROM_ABOVE = 1.5; // rad
 const ALONG = 0.25;
@@ -14,6 +14,22 @@ const KEPT = 'views';
 const VIEWS_MAX = 12;
 const NAME_MAX = 24;
 
+const FIELDS = [['trocar', 'by trocar'], ['open', 'open']] as const;
+const FIELD_KEPT = 'field';
+
+/** The round picture of an endoscope, or the open field; the browser keeps the choice. One for each place that shows it. */
+function fieldChoice(viewport: Viewport): HTMLElement {
+  const choose = element('select', { name: 'field' }, ...FIELDS.map(([value, words]) => element('option', { value }, words)));
+  choose.value = localStorage.getItem(FIELD_KEPT) === 'open' ? 'open' : 'trocar';
+  choose.addEventListener('change', () => {
+    localStorage.setItem(FIELD_KEPT, choose.value);
+    viewport.setTrocar(choose.value === 'trocar');
+    for (const other of document.querySelectorAll<HTMLSelectElement>('select[name=field]')) other.value = choose.value;
+  });
+  viewport.setTrocar(choose.value === 'trocar');
+  return field('View', choose);
+}
+
 /** Standard views. */
 export function cameraButtons(viewport: Viewport): HTMLElement {
   const { orbit } = viewport;
@@ -22,7 +38,7 @@ export function cameraButtons(viewport: Viewport): HTMLElement {
       move();
       viewport.invalidate();
     });
-  return element(
+  const buttons = element(
     'div',
     { class: 'buttons' },
     to('Home', () => orbit.reset()),
@@ -33,6 +49,7 @@ export function cameraButtons(viewport: Viewport): HTMLElement {
     to('Nearer', () => orbit.zoom(NEARER)),
     to('Farther', () => orbit.zoom(1 / NEARER)),
   );
+  return element('div', { class: 'form' }, fieldChoice(viewport), buttons);
 }
 
 interface View {

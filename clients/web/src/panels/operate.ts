@@ -98,8 +98,8 @@ function session(control: Control): HTMLElement {
   return section;
 }
 
-export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, self: Self, devices: HTMLElement): void {
+export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, self: Self, more: readonly HTMLElement[]): void {
   const problem = problemPlace();
-  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), devices);
+  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), ...more);
   control.model.emit('tools', undefined);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the camera's home shows: the tissue, and each tool's tip with a part of its shaft.
+// What the camera's home shows: each tool's tip with a part of its shaft, and the tissue: all of it, or in a round picture
+// the middles of its sides, so that it reaches the picture's edge.
 import { Vector3 } from 'three';
 
 import type { Extent } from '../model/field_shape';
@@ -7,7 +8,7 @@ import type { ToolState } from '../wire/records';
 
 const SHAFT_SHOWN = 0.12; // of the tissue's diagonal
 
-export function framedPoints({ least, most }: Extent, tools: readonly ToolState[]): Vector3[] {
+export function framedPoints({ least, most }: Extent, tools: readonly ToolState[], round: boolean): Vector3[] {
   const [min, max] = [new Vector3(...least), new Vector3(...most)];
   const middle = min.clone().add(max).multiplyScalar(0.5);
   const reach = max.distanceTo(min);
@@ -18,5 +19,6 @@ export function framedPoints({ least, most }: Extent, tools: readonly ToolState[
     .map(({ positionM }) => new Vector3(...positionM))
     .filter((tip) => tip.distanceTo(middle) < reach) // one that is far away would make the tissue small
     .flatMap((tip) => [tip, tip.clone().setZ(tip.z + SHAFT_SHOWN * reach)]);
-  return [...corners, ...tips];
+  const sides = [[min.x, middle.y], [max.x, middle.y], [middle.x, min.y], [middle.x, max.y]].map(([x, y]) => new Vector3(x, y, max.z));
+  return [...(round ? sides : corners), ...tips];
 }

@@ -30,6 +30,8 @@ export class Orbit {
   private atHome = true;
   /** of the picture's height, at its foot, that buttons cover */
   private covered = 0;
+  /** of the round picture that what is framed goes into, in halves of the picture's height; null: all of it is seen */
+  private circle: number | null = null;
 
   constructor() {
     this.camera.up.set(0, 0, 1);
@@ -116,7 +118,8 @@ export class Orbit {
     return { x, y };
   }
 
-  resize(width: number, height: number, coveredBelow: number): void {
+  resize(width: number, height: number, coveredBelow: number, circle: number | null): void {
+    this.circle = circle;
     this.covered = Math.min(coveredBelow / Math.max(height, 1), 0.5);
     this.camera.aspect = width / Math.max(height, 1);
     this.camera.updateProjectionMatrix();
@@ -131,17 +134,21 @@ export class Orbit {
     }
     this.target.set(0, 0, 0);
     for (const point of this.framed) this.target.addScaledVector(point, 1 / this.framed.length);
-    const bottom = FREE.bottom - 2 * this.covered;
+    const round = FREE.side * (this.circle ?? Infinity);
+    const side = Math.min(FREE.side, round / this.camera.aspect);
+    const top = Math.min(FREE.top, round);
+    const bottom = Math.min(FREE.bottom - 2 * this.covered, round);
     for (let i = 0; i < FITTING_STEPS; i++) {
       this.place();
       const seen = this.framed.map((point) => this.picturePlace(point));
       const [left, right] = [Math.min(...seen.map(({ x }) => x)), Math.max(...seen.map(({ x }) => x))];
       const [low, high] = [Math.min(...seen.map(({ y }) => y)), Math.max(...seen.map(({ y }) => y))];
-      const share = Math.max((right - left) / (2 * FREE.side), (high - low) / (FREE.top + bottom));
+      const out = Math.max(...seen.map(({ x, y }) => Math.hypot(x * this.camera.aspect, y)));
+      const share = Math.max((right - left) / (2 * side), (high - low) / (top + bottom), out / round);
       const half = this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
       const { x, y } = this.axes();
       this.target.addScaledVector(x, ((left + right) / 2) * half * this.camera.aspect);
-      this.target.addScaledVector(y, ((low + high - FREE.top + bottom) / 2) * half);
+      this.target.addScaledVector(y, ((low + high - top + bottom) / 2) * half);
       this.distance = Math.min(Math.max(this.distance * share, 2 * NEAREST_M), FARTHEST_M);
     }
     this.place();

@@ -5,7 +5,7 @@ import { Vector3 } from 'three';
 
 import { toolSizes } from '../model/tool_parts';
 import type { ToolState } from '../wire/records';
-import { CAPSULES_MAX, GLOWS_MAX, type SharedUniforms } from './tissue_view';
+import { CAPSULES_MAX, FAR_AWAY, GLOWS_MAX, type SharedUniforms } from './tissue_view';
 import type { ToolView } from './tool_view';
 
 const GLOW = 0.12; // of a tip at its hottest
@@ -41,6 +41,10 @@ export function placeShadows(
     if (heat > 0 && glows < GLOWS_MAX) {
       glow.value[glows++].set(x, y, z, GLOW * heat);
     }
+  }
+  if (capsules === 0) {
+    capsuleFrom.value[0].set(...FAR_AWAY, 0); // the shader reads the first one always
+    capsuleTo.value[0].set(...FAR_AWAY);
   }
   capsuleCount.value = capsules;
 }

@@ -50,6 +50,7 @@ uniform sampler2D colourMap;
 uniform int mapChannel;   // -1: as tissue; else the channel of burn shown as colour
 uniform vec3 light;       // the lamp, world
 uniform float ambient;
+uniform vec2 scope;       // 1: the lamp is at the camera, and its light falls off; how far what is looked at is
 uniform vec4 clip;        // what is beyond this plane is cut away from the picture
 uniform int capsuleCount;
 uniform vec4 capsuleFrom[8]; // xyz and radius: parts of instruments that cast shadow
@@ -103,34 +104,45 @@ const vec3 FAR_LAMP = vec3(-0.220, 0.700, 0.679);
 
 struct Surface { vec3 colour; vec3 normal; float alpha; float gloss; float wet; };
 
+// Software computes both sides of an \`if\`, and what comes after a \`break\` once more: so loops break at their ends, and
+// nothing long stands behind a condition. The first capsule is always there.
 vec3 shade(Surface s, vec3 view) {
   vec3 toLight = normalize(light - vWorld);
   float shadow = 1.0, sky = 1.0;
   for (int i = 0; i < 8; i++) {
-    if (i >= capsuleCount) break;
     shadow *= lit(vWorld, toLight, capsuleFrom[i].xyz, capsuleTo[i], capsuleFrom[i].w);
     sky *= openness(vWorld, s.normal, capsuleFrom[i].xyz, capsuleTo[i], capsuleFrom[i].w);
+    if (i + 1 >= capsuleCount) break;
   }
   float turned = dot(s.normal, toLight);
   float wrapped = clamp((turned + 0.3) / 1.3, 0.0, 1.0);
   // Light that went through flesh comes out redder.
   vec3 through = vec3(0.20, 0.05, 0.03) * smoothstep(-0.6, 0.4, turned) * (1.0 - wrapped);
-  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 + through);
+  float away = length(light - vWorld) / scope.y;
+  float reaching = mix(1.0, min(1.30 / (0.40 + 0.60 * away * away), 1.7), scope.x);
+  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 * reaching + through);
+  // In a closed body light comes back from red tissue all around.
+  colour = max(mix(vec3(dot(colour, vec3(0.3, 0.5, 0.2))), colour, 1.0 + 0.08 * scope.x) * mix(vec3(1.0), vec3(1.05, 0.97, 0.96), scope.x), 0.0);
   vec3 halfway = normalize(toLight + view);
-  float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
+  // A film is uneven more steeply than what it wets: with the light at the camera its slopes are all that mirrors.
+  vec3 smooth_ = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
+  vec3 film = normalize(s.normal + 2.0 * scope.x * (s.normal - smooth_));
+  float shine = pow(max(dot(film, halfway), 0.0), s.gloss * (1.0 - 0.35 * scope.x)) * (1.0 + 3.0 * scope.x);
   // A wet film mirrors the room: a lamp across the table with a wide bright frame, and some light from everywhere.
   float mirrored = max(dot(reflect(-view, s.normal), FAR_LAMP), 0.0);
   float m2 = mirrored * mirrored, m8 = m2 * m2 * m2 * m2, m24 = m8 * m8 * m8, m64 = m24 * m24 * m8 * m8;
-  float across = (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
+  float across = (1.0 - scope.x) * (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
   float grazing = 1.0 - max(dot(s.normal, view), 0.0);
   float rim = grazing * grazing * grazing * grazing;
-  colour += s.wet * (shadow * shine + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
-  for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
-    if (glow[i].w <= 0.0) continue;
-    vec3 away = vWorld - glow[i].xyz;
-    colour += glow[i].w * exp(-dot(away, away) / 2.2e-5) * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour);
+  colour += s.wet * (shadow * shine * reaching + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
+  float glowing = 0.0;
+  for (int i = 0; i < 4; i++) {
+    vec3 off = vWorld - glow[i].xyz;
+    glowing += glow[i].w * exp(-dot(off, off) / 2.2e-5);
+    if (glow[i].w <= 0.0) break;
   }
-  return colour;
+  // Over a colour that tells a number a glow would tell another.
+  return mapChannel < 0 ? colour + glowing * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour) : colour;
 }
 
 // Heated tissue first blanches, then browns. It is black only where nearly all edges have parted. The colours change
@@ -140,16 +152,18 @@ void burnt(inout Surface s, vec3 pale, vec3 browned, float blotch) {
   // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.
   float e = max(vBurn.x, 0.85 * vBurn.z * vBurn.z);
   e += 0.3 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
-  s.colour = mix(s.colour, pale, 0.60 * smoothstep(0.08, 0.50, e));
+  // What it looked like stays in it: lobes and fibres are still seen in what has blanched.
+  float was = clamp(0.45 + dot(s.colour, vec3(0.3, 0.5, 0.2)), 0.55, 1.15);
+  s.colour = mix(s.colour, was * pale, 0.60 * smoothstep(0.08, 0.50, e));
   s.colour = mix(s.colour, browned, 0.55 * smoothstep(0.60, 1.10, e));
   // Where a cut went a third to a half of a vertex's edges are gone: brown there, narrowly at the lip itself, and
   // black only where nearly all are gone.
   float lip = smoothstep(0.55, 1.0, vBurn.z);
-  float c = (vBurn.y + 0.30 * lip) * (0.40 + 1.2 * blotch);
+  float c = (vBurn.y + 0.30 * lip) * (0.68 + 0.64 * blotch);
   s.colour = mix(s.colour, browned * vec3(0.62, 0.52, 0.46), 0.85 * smoothstep(0.18, 0.60, c));
   s.colour = mix(s.colour, browned * vec3(0.20, 0.17, 0.16), 0.85 * smoothstep(0.55, 1.00, c));
   s.colour = mix(s.colour, vec3(0.030, 0.019, 0.014), 0.85 * smoothstep(0.95, 1.25, c));
-  s.wet *= 1.0 - 0.45 * smoothstep(0.3, 0.9, e);
+  s.wet *= 1.0 - 0.80 * smoothstep(0.15, 0.70, e); // dried
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
 }
 
@@ -161,29 +175,28 @@ const float EXPOSURE = 0.62;
 vec3 ringed(vec3 colour) {
   for (int i = 0; i < 4; i++) {
     float radius = tips[i].w;
-    if (radius <= 0.0) break;
     float away = length(vWorld.xy - tips[i].xy);
     float height = tips[i].z - radius - vWorld.z;
     float width = max(0.0002, fwidth(away));
     float on = 1.0 - smoothstep(0.5, 1.5, abs(away - radius - 0.5 * max(height, 0.0)) / width);
     on *= smoothstep(0.0003, 0.0012, height) * (1.0 - smoothstep(0.012, 0.025, height));
-    colour = mix(colour, vec3(0.93, 0.98, 1.0), 0.6 * on);
+    colour = mix(colour, vec3(0.93, 0.98, 1.0), radius > 0.0 ? 0.6 * on : 0.0);
+    if (radius <= 0.0) break;
   }
   return colour;
 }
 
 void finish(Surface s, vec3 view) {
   if (dot(vWorld, clip.xyz) > clip.w) discard;
-  vec3 colour;
-  if (mapChannel < 0) colour = ringed(toned(EXPOSURE * shade(s, view)));
-  else {
+  bool told = mapChannel >= 0;
+  if (told) {
     // As bright under the lamp as in the legend: more would bleach what tells a number.
     s.colour = 0.75 * pow(texture(colourMap, vec2(vBurn[mapChannel], 0.5)).rgb, vec3(2.2));
     s.wet = 0.05;
     s.alpha = 1.0;
-    colour = shade(s, view);
   }
-  fragment = linearToOutputTexel(vec4(colour, s.alpha));
+  vec3 colour = shade(s, view);
+  fragment = linearToOutputTexel(vec4(told ? colour : ringed(toned(EXPOSURE * colour)), s.alpha));
 }
 
 // What is only drawn has no scalar: grey beside colours that tell one.

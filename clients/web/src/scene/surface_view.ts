@@ -15,7 +15,7 @@ import {
 
 import { SURFACE_FLOATS, type SurfaceShape } from '../model/surface';
 import { SURFACE_VERTEX } from './surface_light';
-import { FRAGMENTS } from './tissue_shader';
+import { FRAGMENTS, type SurfaceKind } from './tissue_shader';
 import type { SharedUniforms } from './tissue_view';
 
 const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['burn', 4, 9], ['tip', 1, 13]] as const;
@@ -28,7 +28,7 @@ export class SurfaceView {
   private index: BufferAttribute | null = null;
   private shown = true;
 
-  constructor(shared: SharedUniforms, kind: Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>) {
+  constructor(shared: SharedUniforms, kind: SurfaceKind) {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: SURFACE_VERTEX,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How tissue and what lies around it look: a fragment shader for each kind. Lengths in metres, colours linear.
+// How tissue looks: a fragment shader for each kind. Lengths in metres, colours linear.
 import { COMMON } from './surface_light';
 
 // A pearly sheet of collagen: pale bundles that wander, thinner and glassier between them, where what
 // lies below shows through, with vessels in it.
-const FASCIA_LOOK = /* glsl */ `
+export const FASCIA_LOOK = /* glsl */ `
+float bundled(vec3 along) { return n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz)); }
 float weave(vec3 along, out float bundle, out float strand) {
-  bundle = n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz));
+  bundle = bundled(along);
   strand = n(vec3(34.0 * along.x + 97.0 * along.y, 560.0 * along.yz) + 0.37);
   return 0.6 * bundle + 0.4 * strand;
 }
@@ -89,11 +90,12 @@ void main() {
 }`;
 
 // Lobes of fat, domed, with septa between them.
-const FAT_LOOK = /* glsl */ `
+export const FAT_LOOK = /* glsl */ `
 const vec3 STRAW = vec3(0.80, 0.57, 0.25);
 float domes(vec3 m) { return lobed(m * 33.0) + 0.22 * lobed(m * 91.0); }
 Surface fat(vec3 normal, vec3 m, float bulge, out float grain) {
-  vec3 bent = m + 0.0024 * (n(m * 27.0) - 0.5) * vec3(1.0, -0.8, 0.6);
+  float warp = n(m * 27.0);
+  vec3 bent = m + 0.0024 * (warp - 0.5) * vec3(1.0, -0.8, 0.6);
   float here = domes(bent);
   Steps over = steps(0.0004);
   vec2 rise = vec2(domes(bent + over.x), domes(bent + over.y)) - here;
@@ -106,18 +108,18 @@ Surface fat(vec3 normal, vec3 m, float bulge, out float grain) {
   s.colour *= 0.93 + 0.14 * grain;
   s.alpha = 1.0;
   s.gloss = 50.0;
-  s.wet = 0.4;
+  s.wet = mix(0.06, 0.45, smoothstep(0.42, 0.64, warp)); // the film lies in patches
   return s;
 }
 `;
 
-const MEMBRANE_LOOK = /* glsl */ `
+export const MEMBRANE_LOOK = /* glsl */ `
 Surface membrane(vec3 normal, vec3 m, out float film) {
   Surface s = fat(normal, m, 0.0008, film);
   s.colour = mix(s.colour, vec3(0.74, 0.38, 0.31), 0.30);
   s.colour = mix(s.colour, vec3(0.34, 0.03, 0.035), 0.7 * vessel(m.yx + vec2(0.031, 0.012)));
   s.gloss = 60.0;
-  s.wet = 0.5;
+  s.wet *= 1.2;
   return s;
 }
 `;
@@ -129,7 +131,12 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   float film;
   Surface s = membrane(normal, vMaterial, film);
-  burnt(s, vec3(0.68, 0.48, 0.28), vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
+  // Heat shrivels the film: it is rough and mottled there, by some hundredths of a millimetre.
+  float fine = n(vMaterial * 430.0);
+  float heated = smoothstep(0.08, 0.40, vBurn.x);
+  s.normal = bend(s.normal, steps(0.0), vec2(dFdx(fine), dFdy(fine)), 0.00010 * heated);
+  s.colour *= 1.0 + 0.5 * heated * (fine - 0.5);
+  burnt(s, vec3(0.68, 0.48, 0.28), vec3(0.46, 0.185, 0.07), 0.35 * film + 0.35 * n(vMaterial * 70.0) + 0.3 * fine);
   finish(s, view);
 }`;
 
@@ -163,73 +170,12 @@ void main() {
   s.colour = mix(vec3(0.62, 0.30, 0.10), vec3(0.90, 0.65, 0.26), dome) * (0.92 + 0.16 * n(vMaterial * 120.0));
   s.alpha = 1.0;
   s.gloss = 50.0;
-  s.wet = 0.5;
+  s.wet = 0.3;
   burnt(s, STRAW, vec3(0.47, 0.24, 0.075), 0.55 * (1.0 - dome) + 0.45 * patchy);
   float blood = smoothstep(0.54, 0.68, n(vMaterial * 24.0 + 0.23)) * (1.0 - 0.6 * dome);
   s.colour = mix(s.colour, vec3(0.33, 0.045, 0.03), 0.45 * blood);
   s.colour *= vec3(0.56, 0.50, 0.44) + vec3(0.38, 0.44, 0.48) * dome;
   finish(s, view);
-}`;
-
-// Around the tissue, drawn only: muscle under it, walls of fat in its membrane, the cut edge of the skin. It fills
-// much of the picture and is looked past: fat of one size of lobes, few readings of textures, and skin, which
-// most of it is, with one alone, keep the picture from taking much longer than without it.
-const FLESH = /* glsl */ `
-// Where pixels go different ways none knows how many texels it covers: it is told.
-float near(sampler3D of, vec3 p, float texels) { return textureLod(of, p, log2(texels)).r; }
-vec3 inside(vec3 m, float zone, float film, float pixel, Steps over, out vec2 rise) {
-  float blotch = near(noise, m * 15.0 + 0.3, 720.0 * pixel);
-  vec3 bent = 33.0 * (m + 0.0024 * (blotch - 0.5) * vec3(1.0, -0.8, 0.6));
-  float wide = 1056.0 * pixel;
-  float lobe = near(lobes, bent, wide);
-  rise = vec2(near(lobes, bent + 33.0 * over.x, wide), near(lobes, bent + 33.0 * over.y, wide)) - lobe;
-  vec3 colour = mix(vec3(0.60, 0.27, 0.09), vec3(0.88, 0.62, 0.22), smoothstep(0.05, 0.65, lobe));
-  colour = mix(colour, vec3(0.93, 0.72, 0.36), 0.4 * smoothstep(0.6, 1.0, lobe));
-  colour = mix(colour * (0.93 + 0.14 * film), vec3(0.74, 0.38, 0.31), 0.30);
-  float blood = textureLod(vessels, (m.yx + vec2(0.031, 0.012)) / 0.14, log2(1371.0 * pixel)).r;
-  colour = mix(colour, vec3(0.34, 0.03, 0.035), 0.7 * smoothstep(0.45, 0.55, blood));
-  colour = mix(colour, vec3(0.62, 0.20, 0.13), 0.45 * smoothstep(0.45, 0.65, blotch));
-  float stripe = near(noise, vec3(28.0 * m.x, 260.0 * m.y + 70.0 * blotch, 40.0 * m.z), 5000.0 * pixel);
-  vec3 muscle = mix(vec3(0.27, 0.040, 0.032), vec3(0.38, 0.075, 0.058), smoothstep(0.3, 0.7, stripe));
-  colour = mix(muscle, colour, smoothstep(0.55, 0.95, zone));
-  return mix(colour, vec3(0.82, 0.62, 0.52), smoothstep(1.2, 1.5, zone + 0.3 * (film - 0.5)));
-}
-void main() {
-  vec3 view = normalize(cameraPosition - vWorld);
-  vec3 normal = normalize(vNormal);
-  if (dot(normal, view) < 0.0) normal = -normal;
-  vec3 m = vMaterial;
-  float zone = 3.0 * vBurn.w;
-  float pixel = max(length(dFdx(m)), length(dFdy(m)));
-  Steps over = steps(0.0004);
-  float film = n(m * 120.0);
-  float skin = smoothstep(1.75, 1.95, zone + 0.1 * (film - 0.5));
-  vec2 rise = vec2(0.0);
-  Surface s;
-  s.colour = vec3(0.62, 0.33, 0.205) * (0.92 + 0.16 * film);
-  if (skin < 1.0) s.colour = mix(inside(m, zone, film, pixel, over, rise), s.colour, skin);
-  s.normal = bend(normal, over, rise, 0.0009 * (1.0 - skin));
-  s.alpha = 1.0;
-  s.gloss = 60.0;
-  s.wet = mix(0.5, 0.10, skin);
-  show(s, view);
-}`;
-
-const CLOTH = /* glsl */ `
-uniform vec3 cloth;
-uniform vec3 background;
-void main() {
-  vec3 view = normalize(cameraPosition - vWorld);
-  vec3 normal = normalize(vNormal);
-  if (dot(normal, view) < 0.0) normal = -normal;
-  Surface s;
-  s.normal = normal;
-  s.colour = cloth * (0.9 + 0.2 * n(vec3(vWorld.xy * 45.0, 0.2)));
-  s.alpha = 1.0;
-  s.gloss = 20.0;
-  s.wet = 0.03;
-  show(s, view);
-  fragment.rgb = mix(fragment.rgb, background, smoothstep(0.5, 1.0, vBurn.w));
 }`;
 
 export const FRAGMENTS = {
@@ -239,7 +185,5 @@ export const FRAGMENTS = {
   membrane: COMMON + FAT_LOOK + MEMBRANE_LOOK + MEMBRANE,
   fat: COMMON + FAT_LOOK + FAT,
   bared: COMMON + FAT_LOOK + BARED,
-  flesh: COMMON + FLESH,
-  cloth: COMMON + CLOTH,
 } as const;
-export type SurfaceKind = Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>;
+export type SurfaceKind = keyof typeof FRAGMENTS;

@@ -12,6 +12,7 @@ import {
   LinearFilter,
   Mesh,
   ShaderMaterial,
+  Vector2,
   Vector3,
   Vector4,
   type IUniform,
@@ -26,6 +27,8 @@ import { SurfaceView } from './surface_view';
 import { FRAGMENTS, type SurfaceKind } from './tissue_shader';
 
 export const CAPSULES_MAX = 8;
+/** m: where a capsule shades nothing. */
+export const FAR_AWAY = [0, 0, 1000] as const;
 export const GLOWS_MAX = 4;
 
 export interface SharedUniforms {
@@ -37,6 +40,7 @@ export interface SharedUniforms {
   mapChannel: IUniform<number>;
   light: IUniform<Vector3>;
   ambient: IUniform<number>;
+  scope: IUniform<Vector2>;
   clip: IUniform<Vector4>;
   capsuleCount: IUniform<number>;
   capsuleFrom: IUniform<Vector4[]>;
@@ -62,10 +66,11 @@ export function makeSharedUniforms(): SharedUniforms {
     mapChannel: { value: -1 },
     light: { value: new Vector3(0, 0, 1) },
     ambient: { value: 0.42 },
+    scope: { value: new Vector2(0, 1) },
     clip: { value: new Vector4(0, 0, 0, 1) }, // nothing
     capsuleCount: { value: 0 },
-    capsuleFrom: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector4()) },
-    capsuleTo: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector3()) },
+    capsuleFrom: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector4(...FAR_AWAY, 0)) },
+    capsuleTo: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector3(...FAR_AWAY)) },
     glow: { value: Array.from({ length: GLOWS_MAX }, () => new Vector4()) },
     tips: { value: Array.from({ length: GLOWS_MAX }, () => new Vector4()) },
   };
@@ -147,11 +152,12 @@ export class TissueView {
     return before;
   }
 
-  showLayer(layer: string, visible: boolean): void {
+  /** bordered: sheets have walls at their borders. Those that go on beyond them have none, since they shine through. */
+  showLayer(layer: string, visible: boolean, bordered: boolean): void {
     this.joined.batches.forEach((batch, b) => {
       if (batch.layer !== layer) return;
       this.meshes[b].visible = visible;
-      for (const view of this.beside(b)) view.show(visible);
+      for (const view of this.beside(b)) view.show(visible && (bordered || view !== this.edges[b]));
     });
   }
 

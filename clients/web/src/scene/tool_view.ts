@@ -8,7 +8,7 @@ import { toolParts, toolSizes, type ToolPart } from '../model/tool_parts';
 import { solidGeometry } from './tool_solids';
 import type { Tool } from '../wire/messages.gen';
 
-const VERTEX = /* glsl */ `
+const vertex = (moved: string): string => /* glsl */ `
 out vec3 vNormalWorld;
 out vec3 vWorld;
 void main() {
@@ -16,7 +16,11 @@ void main() {
   vWorld = world.xyz;
   vNormalWorld = mat3(modelMatrix) * normal;
   gl_Position = projectionMatrix * viewMatrix * world;
+  ${moved}
 }`;
+const VERTEX = vertex('');
+// Before all that is in the field, and behind what is black around a round picture, which is nearest of all.
+const GHOST_VERTEX = vertex('gl_Position.z = -0.999 * gl_Position.w;');
 
 // Brushed steel under a lamp in a dim room: the room is a gradient that the metal mirrors.
 const FRAGMENT = /* glsl */ `
@@ -50,8 +54,9 @@ in vec3 vWorld;
 out vec4 fragment;
 void main() {
   float facing = abs(dot(normalize(vNormalWorld), normalize(cameraPosition - vWorld)));
-  float rim = pow(1.0 - facing, 2.0);
-  fragment = linearToOutputTexel(vec4(vec3(0.08, 0.75, 1.0), 0.18 + 0.80 * rim));
+  // Of its own light, and dense soon within the rim: tissue under a lamp at the lens is as bright as it is.
+  float rim = smoothstep(0.10, 0.70, 1.0 - facing);
+  fragment = linearToOutputTexel(vec4(vec3(0.02, 0.70, 1.0), 0.16 + 0.80 * rim));
 }`;
 /** In some shapes the rod is as wide as its sleeve. It is drawn thinner by this much, so that no two surfaces coincide
  * and flicker. */
@@ -81,11 +86,13 @@ export class ToolView {
     const sleeve = this.makeMaterial(light, new Color(0.035, 0.038, 0.045), 0.12, { value: 0 });
     sleeve.polygonOffset = true; // over the end of what it holds, which may be as wide
     sleeve.polygonOffsetFactor = sleeve.polygonOffsetUnits = -2;
+    const neck = this.makeMaterial(light, new Color(0.060, 0.066, 0.078), 0.10, { value: 0 });
     const parts = toolParts(definition);
     for (const part of parts) {
       const isShaft = part === parts.at(-1);
       const under = part.solid === 'capsule' && !part.hot && !isShaft ? { ...part, radius: part.radius - UNDER_SLEEVE_M } : part;
-      const mesh = new Mesh(solidGeometry(under), part.hot ? hot : isShaft ? sleeve : steel);
+      // The neck of a hook is insulated like its shaft: only the wire is bare.
+      const mesh = new Mesh(solidGeometry(under), part.hot ? hot : isShaft ? sleeve : definition.shape === 'hook' ? neck : steel);
       mesh.userData['hot'] = part.hot;
       this.place(mesh, part);
     }
@@ -153,12 +160,11 @@ export class ToolView {
   private makeMaterial(light: IUniform<Vector3>, base: Color, mirror: number, heat: IUniform<number>): ShaderMaterial {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
-      vertexShader: VERTEX,
+      vertexShader: this.ghost ? GHOST_VERTEX : VERTEX,
       fragmentShader: this.ghost ? GHOST_FRAGMENT : FRAGMENT,
       uniforms: { light, base: { value: base }, mirror: { value: mirror }, heat },
       transparent: this.ghost,
       depthWrite: !this.ghost,
-      depthTest: !this.ghost,
     });
     this.materials.push(material);
     return material;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The picture: tissue, the field around it, instruments, smoke. Draws only when something changed.
-import { ArrowHelper, Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
+import { Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
 
 import { MAP_OF, type Scalar } from '../model/colour_maps';
 import { SCALAR } from '../model/tissue';
@@ -9,10 +9,13 @@ import type { ToolState } from '../wire/records';
 import type { Frame, FrameBuffers, Joined } from '../wire/worker_messages';
 import { ClipPlane } from './clip_plane';
 import { Field } from './field';
+import { ForceArrow } from './force_arrow';
 import { framedPoints } from './framing';
+import { placeLamp } from './lamp';
 import { Orbit, type CameraPose } from './orbit';
 import { FULL, Pace, type Detail } from './pace';
 import { Samples } from './samples';
+import { circleRadius, inCircle, Scope } from './scope';
 import { placeShadows } from './shadows';
 import { Shown } from './shown';
 import { Smoke } from './smoke';
@@ -35,7 +38,6 @@ export interface Pose {
 }
 
 const CHANNELS = { tissue: -1, exposure: 0, charring: 1, stress: SCALAR, temperature: SCALAR } as const;
-const METRES_PER_NEWTON = 0.02;
 const BODY_TEMPERATURE_C = 37;
 const SHARPEN_MS = 300;
 
@@ -67,10 +69,14 @@ export class Viewport {
   readonly clip = new ClipPlane(this.shared.clip);
   private readonly colourMaps = { cividis: this.shared.colourMap.value, heat: mapTexture('heat') };
   private readonly tools: ToolViews;
-  private readonly smoke = new Smoke();
-  private readonly arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 0.01, 0xf5b301);
+  readonly smoke = new Smoke();
+  private readonly arrow = new ForceArrow();
   private readonly way = new WayView();
   private readonly field: Field;
+  private readonly scope = new Scope();
+  private dark = true;
+  /** through a trocar: round, with the light at the camera; else the open field */
+  private throughTrocar = true;
   private readonly background: IUniform<Color> = { value: new Color() };
   private options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
   private states: ToolState[] = [];
@@ -105,8 +111,7 @@ export class Viewport {
     });
     this.field = new Field(this.shared, this.background);
     this.tools = new ToolViews(this.scene, this.shared.light);
-    this.arrow.visible = false;
-    this.scene.add(this.field.group, this.smoke.points, this.arrow, this.way.points);
+    this.scene.add(this.field.group, this.scope.group, this.smoke.points, this.arrow.arrow, this.way.points);
     this.setTheme(true);
   }
 
@@ -120,9 +125,24 @@ export class Viewport {
     this.background.value.set(dark ? 0x14181c : 0xdfe5e8);
     this.scene.background = this.background.value;
     this.field.setTheme(dark);
-    this.shared.ambient.value = dark ? 0.4 : 0.52;
-    this.smoke.setLight(dark);
+    this.dark = dark;
     this.invalidate();
+  }
+
+  setTrocar(trocar: boolean): void {
+    this.throughTrocar = trocar;
+    this.scope.group.visible = trocar;
+    this.field.setTrocar(trocar);
+    this.setTheme(this.dark);
+    this.setOptions(this.options);
+    const home = this.orbit.pose === null;
+    this.resize();
+    if (home) this.frameTissue();
+  }
+
+  /** Whether a place of the picture, both coordinates from -1 to 1, shows anything. */
+  sees(x: number, y: number): boolean {
+    return !this.throughTrocar || inCircle(x, y, this.orbit.camera.aspect);
   }
 
   setSession(joined: Joined | null): void {
@@ -133,7 +153,7 @@ export class Viewport {
     }
     this.taken = false;
     this.setTools([]);
-    this.field.place(joined?.surroundings ?? null);
+    this.field.place(joined);
     if (joined) {
       this.tissue = new TissueView(joined, this.shared);
       this.scene.add(this.tissue.group);
@@ -164,8 +184,11 @@ export class Viewport {
       if (this.wantedPose) this.orbit.restore(this.wantedPose);
       this.wantedPose = null;
     }
+    this.smoke.watch(frame);
     if (frame.changed || this.options.forceArrow) this.invalidate();
-    return this.tissue ? this.tissue.take(frame) : null;
+    if (!this.tissue) return null;
+    if (frame.changed) this.field.follow(frame.buffers.position);
+    return this.tissue.take(frame);
   }
 
   /** Whether an instrument is drawn where it is led to, too. */
@@ -194,7 +217,7 @@ export class Viewport {
     if (options.colouring !== 'tissue') this.shared.colourMap.value = this.colourMaps[MAP_OF[options.colouring]];
     this.tissue?.setWireframe(options.wireframe);
     for (const batch of this.tissue?.joined.batches ?? [])
-      this.tissue?.showLayer(batch.layer, !options.hiddenLayers.has(batch.layer));
+      this.tissue?.showLayer(batch.layer, !options.hiddenLayers.has(batch.layer), !(this.throughTrocar && this.tissue.joined.surroundings?.inBody));
     this.invalidate();
   }
 
@@ -203,7 +226,9 @@ export class Viewport {
   }
 
   resize(): void {
-    this.orbit.resize(this.canvas.clientWidth, this.canvas.clientHeight, this.coveredBelow());
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return; // hidden: pressed where it was as soon as it is back
+    this.orbit.resize(width, height, this.coveredBelow(), this.throughTrocar ? circleRadius(width / height) : null);
     this.setDetail(this.moving);
     this.invalidate();
   }
@@ -211,7 +236,7 @@ export class Viewport {
   /** Draws if anything changed; called once per animation frame. */
   draw(): void {
     const now = performance.now();
-    if (this.smoke.advance(Math.min((now - this.lastDrawn) / 1000, 0.1), this.smoking())) this.dirty = true;
+    if (this.smoke.advance((now - this.lastDrawn) / 1000, this.states, this.tools.solid)) this.dirty = true;
     this.lastDrawn = now;
     if (!this.pace || this.contextLost || !this.pace.ready()) return;
     this.shown.finish();
@@ -239,8 +264,8 @@ export class Viewport {
   }
 
   private render(): void {
-    this.placeLamp();
-    this.placeArrow();
+    placeLamp(this.shared, this.orbit, this.throughTrocar, this.dark);
+    this.arrow.place(this.options.forceArrow, this.states);
     const draw = (): void => this.renderer?.render(this.scene, this.orbit.camera);
     if (this.detail.smooth) this.samples?.draw(draw);
     else draw();
@@ -254,6 +279,7 @@ export class Viewport {
     this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2) * detail.scale);
     this.renderer?.setSize(clientWidth, clientHeight, false);
     this.smoke.resize(this.canvas.height);
+    this.scope.resize(this.canvas.width, this.canvas.height);
   }
 
   /** milliseconds that the last picture took to be there */
@@ -281,42 +307,12 @@ export class Viewport {
   private frameTissue(): void {
     const all = this.tissue?.joined.surroundings?.all;
     if (!all) return;
-    this.orbit.frame(framedPoints(all, this.states));
+    this.orbit.frame(framedPoints(all, this.states, this.throughTrocar));
     this.framed = true;
-  }
-
-  /** A lamp beside the camera, above it. */
-  private placeLamp(): void {
-    const { x, y } = this.orbit.axes();
-    const distance = this.orbit.camera.position.distanceTo(this.orbit.target);
-    this.shared.light.value
-      .copy(this.orbit.camera.position)
-      .addScaledVector(x, -0.55 * distance)
-      .addScaledVector(y, 0.75 * distance);
   }
 
   private heatOf(state: ToolState): number {
     if (!state.energized) return 0;
     return Math.min(Math.max((state.tipTemperatureC - BODY_TEMPERATURE_C) / 130, 0.15), 1);
-  }
-
-  private smoking(): Vector3[] {
-    const sources: Vector3[] = [];
-    for (const state of this.states) {
-      const view = this.tools.solid.get(state.name);
-      if (view && state.energized && state.touchedLayers !== 0) sources.push(view.group.position);
-    }
-    return sources;
-  }
-
-  private placeArrow(): void {
-    const pressed = this.states.find((state) => Math.hypot(...state.forceN) > 1e-3);
-    this.arrow.visible = this.options.forceArrow && pressed !== undefined;
-    if (!pressed || !this.arrow.visible) return;
-    const force = new Vector3(...pressed.forceN);
-    const length = Math.min(Math.max(force.length() * METRES_PER_NEWTON, 0.004), 0.08);
-    this.arrow.position.set(...pressed.positionM);
-    this.arrow.setDirection(force.normalize());
-    this.arrow.setLength(length, 0.3 * length, 0.15 * length);
   }
 }

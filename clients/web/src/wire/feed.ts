@@ -46,7 +46,7 @@ export class Feed {
     const thicknessM = Object.fromEntries(sheets.filter((sheet): sheet is [string, number] => sheet[1] !== undefined));
     this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, scalar, material, thicknessM });
     const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
-    const surroundings = surroundingsOf(rest, topology.faces, layers, description.definition);
+    const surroundings = surroundingsOf(rest, material, topology.faces, layers, description.definition);
     this.joined = { description, stream, batches, rest, material, surroundings };
     this.spare = {
       position: new Float32Array(3 * vertexCount),

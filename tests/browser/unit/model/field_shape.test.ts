@@ -2,7 +2,8 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
-import { clothAround, clothUnder, fleshAround, surroundingsOf, type FieldShape, type Surroundings } from '../../../../clients/web/src/model/field_shape';
+import { Bed } from '../../../../clients/web/src/model/bed';
+import { clothAround, clothUnder, fleshAround, sheathAround, surroundingsOf, type FieldShape, type Surroundings } from '../../../../clients/web/src/model/field_shape';
 import { lobeValues, vesselValues } from '../../../../clients/web/src/model/patterns';
 import type { LayerDescription, Scene } from '../../../../clients/web/src/wire/messages.gen';
 
@@ -10,12 +11,14 @@ const scene = (name: string): Scene => JSON.parse(readFileSync(fileURLToPath(new
 
 /** A sheet of 120 x 100 mm at z = 2 mm, and under it fat of 100 x 50 mm down to -8 mm. */
 const REST = Float32Array.from([-0.06, -0.05, 0.002, 0.06, -0.05, 0.002, 0, 0.05, 0.002, -0.05, -0.025, -0.008, 0.05, 0.025, 0, 0, 0, 0, 9, 9, 9]);
+/** Turned by a quarter and moved. */
+const MATERIAL = Float32Array.from({ length: REST.length }, (_, i) => [REST[i + 1] + 0.1, -REST[i - 1], 0][i % 3]);
 const FACES = Int32Array.from([0, 1, 2, 3, 4, 5]); // none has the last vertex
 const layers = (kinds: LayerDescription['kind'][]): LayerDescription[] =>
   kinds.map((kind, i) => ({ name: kind, kind, first_face: i, face_count: 1, element_count: 1 }));
 
 function surroundings(kinds: LayerDescription['kind'][], name: string): Surroundings {
-  const found = surroundingsOf(REST, FACES, layers(kinds), scene(name));
+  const found = surroundingsOf(REST, MATERIAL, FACES, layers(kinds), scene(name));
   if (!found) throw new Error('there is tissue');
   return found;
 }
@@ -47,7 +50,7 @@ describe('the field around tissue', () => {
     expect(all.most[0]).toBeCloseTo(0.06, 6);
     expect(solid?.most[0]).toBeCloseTo(0.05, 6);
     expect(edgeZ).toBeCloseTo(0.002, 6);
-    expect(surroundingsOf(REST, Int32Array.from([]), [], scene('fascia'))).toBeNull();
+    expect(surroundingsOf(REST, MATERIAL, Int32Array.from([]), [], scene('fascia'))).toBeNull();
   });
 
   it.each(['fascia', 'fat', 'fat-neohookean', 'layers'])('%s lies in a body', (name) => {
@@ -59,16 +62,18 @@ describe('the field around tissue', () => {
   });
 
   it('is nowhere above the tissue that lies in it, nor inside fat', () => {
-    const layered = fleshAround(surroundings(['fascia', 'fat'], 'layers'));
-    expect(heightInside(layered, 0.0595, 0.0495)).toBeLessThan(0.002);
-    expect(heightInside(layered, 0.0484, 0.0234)).toBeLessThan(-0.008);
-    expect(heightInside(fleshAround(surroundings(['fascia', 'fascia'], 'fascia')), 0.0595, 0.0495)).toBeLessThan(0.002);
+    const around = surroundings(['fascia', 'fat'], 'layers');
+    expect(heightInside(fleshAround(around), 0.0595, 0.0495)).toBeLessThan(0.002);
+    const bed = new Bed(around, REST).shape;
+    expect(heightInside(bed, 1, 1)).toBeLessThan(0.002);
+    expect(heightInside(bed, 0.0485, 0.0235)).toBeLessThan(-0.008);
+    expect(heightInside(new Bed(surroundings(['fascia', 'fascia'], 'fascia'), REST).shape, 1, 1)).toBeLessThan(0.002);
     expect(heightInside(clothAround(surroundings(['fascia', 'fat'], 'layers')), 0.0595, 0.0495)).toBe(-Infinity);
     expect(heightInside(clothUnder(surroundings(['fascia', 'fat'], 'layers')), 1, 1)).toBeLessThan(-0.008);
   });
 
   it('has no hole between its rings', () => {
-    for (const shape of [fleshAround(surroundings(['fascia', 'fat'], 'layers')), clothAround(surroundings(['fascia', 'fat'], 'layers'))]) {
+    for (const shape of [fleshAround(surroundings(['fascia', 'fat'], 'layers')), sheathAround(surroundings(['fascia', 'fat'], 'layers')), clothAround(surroundings(['fascia', 'fat'], 'layers'))]) {
       const counts = [...sides(shape.index).values()];
       const rim = shape.position.length / 3 / (Math.max(...shape.index) + 1);
       expect(rim).toBe(1);
@@ -76,6 +81,100 @@ describe('the field around tissue', () => {
       const perRing = counts.filter((count) => count === 1).length / 2; // the first ring and the last one
       expect((shape.position.length / 3) % perRing).toBe(0);
     }
+  });
+});
+
+describe('what continues tissue in a body', () => {
+  const around = surroundings(['fascia', 'fat'], 'layers');
+  const { position } = sheathAround(around);
+
+  it('has the material coordinates of the sheet that it continues', () => {
+    const { sheath } = around;
+    expect(sheath.kind).toBe('fascia');
+    const at = (x: number, y: number): number[] => [0, 1, 2].map((c) => sheath.origin[c] + sheath.alongX[c] * x + sheath.alongY[c] * y);
+    for (const [x, y] of [[0, 0], [0.06, -0.05], [-0.2, 0.3]]) {
+      const [u, v, w] = at(x, y);
+      expect(u).toBeCloseTo(y + 0.1, 5);
+      expect(v).toBeCloseTo(-x, 5);
+      expect(w).toBeCloseTo(0, 5);
+    }
+    expect(surroundings(['fat', 'fat'], 'fat').sheath.kind).toBe('fat');
+    expect(surroundings(['fat', 'membrane'], 'fat').sheath.kind).toBe('membrane');
+  });
+
+  it('covers the border of the tissue and no more of it, and goes on farther than a camera at home sees', () => {
+    const inside = heightInside(sheathAround(around), 0.059, 0.049);
+    expect(inside).toBe(-Infinity);
+    const border = [...position].filter((_, i) => i % 3 === 2 && Math.abs(position[i - 2]) <= 0.06 && Math.abs(position[i - 1]) <= 0.05);
+    expect(border.length).toBeGreaterThan(50);
+    expect(Math.min(...border)).toBeGreaterThan(0.002);
+    expect(Math.max(...position)).toBeGreaterThan(0.4);
+  });
+});
+
+describe('the bed under a sheet', () => {
+  const CELLS = 40;
+  const corner = (i: number, j: number): [number, number] => [-0.06 + (0.12 * i) / CELLS, -0.05 + (0.1 * j) / CELLS];
+  /** A sheet of squares of 3 mm whose height is a function of the place; its border stays. */
+  const sheet = (height: (x: number, y: number) => number): Float32Array => {
+    const position = new Float32Array(3 * (CELLS + 1) ** 2);
+    for (let j = 0, v = 0; j <= CELLS; j++)
+      for (let i = 0; i <= CELLS; i++, v++) {
+        const [x, y] = corner(i, j);
+        const inner = i > 0 && j > 0 && i < CELLS && j < CELLS;
+        position.set([x, y, 0.002 + (inner ? height(x, y) : 0)], 3 * v);
+      }
+    return position;
+  };
+  /** Of the triangle of a shape that holds a place, seen along z. */
+  const heightAt = ({ position, index }: FieldShape, x: number, y: number): number => {
+    // Without arrays in the loop, which would take most of the time.
+    for (let f = 0; f < index.length; f += 3) {
+      const a = 3 * index[f], b = 3 * index[f + 1], c = 3 * index[f + 2];
+      const ax = position[a], ay = position[a + 1], bx = position[b] - ax, by = position[b + 1] - ay, cx = position[c] - ax, cy = position[c + 1] - ay;
+      const area = bx * cy - cx * by;
+      const u = ((x - ax) * cy - cx * (y - ay)) / area;
+      const v = (bx * (y - ay) - (x - ax) * by) / area;
+      if (u < -1e-6 || v < -1e-6 || u + v > 1 + 1e-6) continue;
+      return position[a + 2] + u * (position[b + 2] - position[a + 2]) + v * (position[c + 2] - position[a + 2]);
+    }
+    throw new Error('there is bed everywhere');
+  };
+  /** How far it comes above the sheet, at most, at the sheet's corners and in the middles of its squares. */
+  const pierces = (bed: Bed, at: Float32Array): number => {
+    let most = -Infinity;
+    for (let j = 0; j < CELLS; j++)
+      for (let i = 0; i < CELLS; i++) {
+        const z = (di: number, dj: number): number => at[3 * ((j + dj) * (CELLS + 1) + i + di) + 2];
+        const [x, y] = corner(i, j);
+        const [mx, my] = corner(i + 0.5, j + 0.5);
+        if (i > 0 && j > 0) most = Math.max(most, heightAt(bed.shape, x, y) - z(0, 0));
+        most = Math.max(most, heightAt(bed.shape, mx, my) - Math.min((z(0, 0) + z(1, 1)) / 2, (z(1, 0) + z(0, 1)) / 2));
+      }
+    return most;
+  };
+  const waves = (x: number, y: number): number => 0.012 * Math.sin(260 * x + 1) * Math.sin(310 * y);
+
+  it.each([['layers', ['fascia', 'fat']], ['fascia', ['fascia', 'fascia']]] as const)('is never above it, however wavy, in %s', (name, kinds) => {
+    const flat = sheet(() => 0);
+    const around = surroundings([...kinds], name);
+    const bed = new Bed(around, flat);
+    const wavy = sheet(waves);
+    expect(pierces(bed, flat)).toBeLessThan(0);
+    expect(pierces(bed, wavy)).toBeGreaterThan(0.002); // it would, if it did not follow
+    expect(bed.follow(wavy)).toBe(true);
+    expect(pierces(bed, wavy)).toBeLessThan(0);
+  });
+
+  it('is at rest again when the sheet is, and says when nothing changes', () => {
+    const flat = sheet(() => 0);
+    const bed = new Bed(surroundings(['fascia', 'fascia'], 'fascia'), flat);
+    const before = bed.shape.position.slice();
+    expect(bed.follow(flat)).toBe(false);
+    bed.follow(sheet(waves));
+    expect(bed.follow(flat)).toBe(true);
+    expect(bed.shape.position).toEqual(before);
+    expect(bed.follow(flat)).toBe(false);
   });
 });
 

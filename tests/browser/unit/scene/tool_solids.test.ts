@@ -3,7 +3,7 @@
 // core's, and every point of the core's surface is drawn, within a tenth of a millimetre.
 import { spawnSync } from 'node:child_process';
 
-import { Matrix4, Mesh, Triangle, Vector3, type BufferGeometry } from 'three';
+import { Matrix4, Mesh, Triangle, Vector3, type BufferGeometry, type Color, type ShaderMaterial } from 'three';
 
 import { hasJaws } from '../../../../clients/web/src/model/tool_parts';
 import { ToolView } from '../../../../clients/web/src/scene/tool_view';
@@ -97,6 +97,24 @@ function distanceTo(triangles: readonly Triangle[], point: Vector3): number {
   for (const triangle of triangles) least = Math.min(least, triangle.closestPointToPoint(point, nearest).distanceToSquared(point));
   return Math.sqrt(least);
 }
+
+describe('a hook', () => {
+  it('has insulation on all but its wire', () => {
+    const view = new ToolView({ name: 'it', shape: 'hook' }, { value: new Vector3() });
+    const brightness = (hot: boolean): number[] => {
+      const found: number[] = [];
+      view.group.traverse((object) => {
+        if (!(object instanceof Mesh) || object.userData['hot'] !== hot) return;
+        const { r, g, b } = (object.material as ShaderMaterial).uniforms['base'].value as Color;
+        found.push((r + g + b) / 3);
+      });
+      return found;
+    };
+    expect(brightness(false)).toHaveLength(2);
+    expect(Math.max(...brightness(false))).toBeLessThan(0.1);
+    expect(Math.min(...brightness(true))).toBeGreaterThan(0.5);
+  });
+});
 
 describe.each(TOOL_SHAPES)('the drawn %s', (shape) => {
   it.each(SIZES)('is the core’s, hot radius %f m, tip %f m, shaft %f m', (...sizes) => {
