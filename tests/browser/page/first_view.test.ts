@@ -140,8 +140,9 @@ describe('the first view', () => {
     expect(await page.locator('#cue').isVisible()).toBe(false);
     const open = await page.evaluate(() => [-0.026, -0.023, -0.02, -0.017, -0.014].some((x) => !window.cautery.drawnAt('fascia', x, 0)));
     expect(open, 'the cut begins where the cue does').toBe(true);
-    await viewer.drawn();
+    await viewer.full(true);
     await viewer.screenshot(picture.replace('first-view', 'cutting'));
+    await viewer.full(false);
     await hand.release();
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');
     expect(await cues(viewer), 'the cue does not come back').toBe(0);

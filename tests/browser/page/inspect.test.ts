@@ -60,6 +60,8 @@ describe('looking closely', () => {
     await forces.getByRole('button', { name: 'Apply the force' }).click();
     await other.page.getByRole('tab', { name: 'View' }).click();
     await other.page.getByLabel('Show what is under the pointer').check();
+    // Of a request that takes long there are words over the middle of the picture, which would take the pointer.
+    await other.until(() => document.querySelector('[aria-busy=true]') === null && document.querySelector('#veil')?.checkVisibility() === false, null, 'nothing is over the picture');
     const { x, y } = await other.project([0.004, 0.003, 0]);
     await other.page.mouse.move(x, y);
     const stress = (): boolean => Number(/([\d.e+-]+) kPa/.exec(document.querySelector('#inspected')?.textContent ?? '')?.[1] ?? 0) > 0;
