@@ -214,10 +214,10 @@ typedef struct cau_tool_state {
 	// Force of the tissue on the tool and torque about its tip, filtered with force_filter_s. The
 	// force is force_max_n at most, the torque force_max_n * tip_length_m.
 	double force_n[3];
-	double torque_nm[3];
+	double torque_nm[3]; // about the tip
 	// The same without filter and bound. Both pairs are of the step that ended at this tick.
 	double raw_force_n[3];
-	double raw_torque_nm[3];
+	double raw_torque_nm[3];  // about the tip
 	double tip_temperature_c; // of the hot part
 	double energy_j;   // heat taken up by tissue, rough; with energy `tissue`, its power over time
 	uint64_t sequence; // last applied command's
