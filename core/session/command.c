@@ -133,7 +133,8 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 }
 
 // ---- application
-// Whether heat's grid and what the jaws hold may stay: they depend on these alone.
+// Whether the heat grid and the grasp of the old definition suit the new one. They depend on these
+// members alone.
 static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
 {
 	return now->shape == def->shape && now->hot_radius_m == def->hot_radius_m &&
@@ -143,7 +144,7 @@ static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
 	       now->diffusivity_m2_s == def->diffusivity_m2_s;
 }
 
-// Another form: the grid is cold, and jaws let go.
+// Takes another shape or other sizes: the heat grid is made new and cold, and the jaws open.
 static cau_status change_form(cau_session *session, cau_tool *tool, const cau_tool_def *def,
                               cau_error *error)
 {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tetrahedra that are inside out. A step may leave some, and the next ones mend it as a rule. Laws
-// whose energy has a minimum there (StVK) can keep them for good, without any number that is not
-// finite: so what stays is counted by layer, for a report.
+// Tetrahedra that are inside out. A step may leave some, and the next steps usually mend them. The
+// energy of StVK has a minimum there, so that law can keep them for good, and every number stays
+// finite. Those that stay are counted by layer, and the session reports them.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Half a second: the oscillation of tissue that is thrown about is over by then.
+// Inversions of a fast motion last for some ticks. After half a second they are no part of it.
 static const double long_s = 0.5;
 
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error)
@@ -16,7 +16,9 @@ cau_status cau_session_make_inversion(cau_session *session, cau_error *error)
 	cau_inversion *inversion = &session->inversion;
 	inversion->ticks = cau_arena_array(
 		&session->arena, (size_t)session->tissue.tetrahedron_count + 1, sizeof *inversion->ticks);
-	inversion->long_ticks = (uint16_t)fmin(ceil(long_s / session->solver.step_s), UINT16_MAX);
+	CAU_ASSERT(session->solver.step_s >= long_s / UINT16_MAX, "steps of %g s",
+	           session->solver.step_s);
+	inversion->long_ticks = (uint16_t)ceil(long_s / session->solver.step_s);
 	return inversion->ticks ? CAU_OK
 	                        : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 }
@@ -44,14 +46,17 @@ void cau_session_follow_inversion(cau_session *session)
 	const cau_tissue *tissue = &session->tissue;
 	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
 	CAU_ASSERT(inversion->long_ticks > 0, "nothing stays for %d ticks", inversion->long_ticks);
-	memset(inversion->long_count, 0, sizeof inversion->long_count);
-	if (!inversion->count && !inversion->followed)
+	if (!inversion->count) {
+		if (inversion->followed)
+			cau_session_forget_inversion(session);
 		return;
-	inversion->followed = inversion->count > 0;
+	}
+	memset(inversion->long_count, 0, sizeof inversion->long_count);
+	inversion->followed = true;
 	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
 		uint16_t *ticks = &inversion->ticks[i];
 		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
-		if (!inversion->count || !alive[i] || !cau_session_is_inverted(session->position, vertex))
+		if (!alive[i] || !cau_session_is_inverted(session->position, vertex))
 			*ticks = 0;
 		else if (*ticks < inversion->long_ticks)
 			++*ticks;

@@ -45,7 +45,7 @@ typedef struct cau_tool {
 // energy.c: energy that a tick added without a source, and the shares whose laws it changed.
 typedef struct cau_energy {
 	double gain_j;    // of the last tick
-	double scale_j;   // what it is to be held against
+	double scale_j;   // energy at its start and work in it (cautery/session.h: energy_scale_j)
 	double elastic_j; // at its start
 	double end_j;     // and at its end
 	bool stale;       // every share is to be evaluated before the next tick
@@ -54,14 +54,14 @@ typedef struct cau_energy {
 	double *sum_j;    // (chunk_count x 4): scratch
 } cau_energy;
 
-// inversion.c: tetrahedra that are inside out. The ticks are not in snapshots: after a restore they
-// are counted anew.
+// inversion.c: tetrahedra that are inside out. Snapshots do not hold the ticks. After a restore the
+// count begins at 0.
 typedef struct cau_inversion {
 	int32_t count;                      // after the last tick
-	int32_t long_count[CAU_MAX_LAYERS]; // of these, by layer: since half a second
-	uint16_t *ticks;                    // (tetrahedron_count): since when, at most long_ticks
-	uint16_t long_ticks;                // half a second
-	bool followed;                      // some ticks are not 0
+	int32_t long_count[CAU_MAX_LAYERS]; // by layer: those that have been so for half a second
+	uint16_t *ticks;     // (tetrahedron_count): consecutive ticks inside out, at most long_ticks
+	uint16_t long_ticks; // of half a second
+	bool followed;       // some of `ticks` may not be 0
 } cau_inversion;
 
 // rest.c: whether the tissue is at rest, and since when it has been quiet.
@@ -307,8 +307,8 @@ void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
 // Greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
-// inversion.c: its array; counts what stays inside out, after a tick's solve. Whether a tetrahedron
-// has no volume above 0; position is m, (n x 3).
+// inversion.c: allocates its array. After a tick's solve, counts the tetrahedra that stay inside
+// out. Whether a tetrahedron's volume is 0 or less; position is m, (n x 3).
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error);
 void cau_session_follow_inversion(cau_session *session);
 void cau_session_forget_inversion(cau_session *session); // after a restore

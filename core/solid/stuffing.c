@@ -444,7 +444,7 @@ static cau_status compact(cau_tets *tets, cau_error *error)
 static cau_status run_pass(pass of, cau_error *error)
 {
 	if (!of.tets->count)
-		return CAU_OK; // no tetrahedron is inside: there is nothing to divide
+		return CAU_OK; // the lattice is empty: there is nothing to cut
 	run(&of);
 	free(of.sign);
 	free(of.cuts);

@@ -239,8 +239,8 @@ typedef struct cau_statistics {
 	double residual;    // relative, after the last iteration
 	int32_t backtracks; // increments that were refused because they raised the objective
 	int32_t inverted;   // tetrahedra with negative volume after the step
-	// Of these, by layer of the scene: those that have had it for half a second. They do not come
-	// back by themselves: the material's law is the reason, or what its limits ask for.
+	// By layer of the scene: how many of these have been inverted for half a second. They seldom
+	// come back by themselves. The usual cause is the material's law (StVK) or its strain limit.
 	int32_t long_inverted[CAU_MAX_LAYERS];
 	int32_t edges_parted;      // since creation
 	int32_t elements_removed;  // since creation
@@ -264,8 +264,8 @@ typedef struct cau_statistics {
 	// counts as loss. In a converged step it is 0 or less but for rounding (and buckling). It is 0
 	// where a law has no energy (linearised limits, model energy, the diagonal system).
 	double energy_gain_j;
-	// What the gain is held against, J: elastic and kinetic energy as the step began, and the work
-	// of gravity, tools, led supports and forces in it, without its sign.
+	// The energy that the gain is compared with, J: elastic and kinetic energy at the start of the
+	// step, and the absolute work of gravity, tools, led supports and forces in it.
 	double energy_scale_j;
 	// Reported error: the step's estimated distance to its solution, relative to its own motion, of
 	// all vertices or of the worst chunk of them (solve/accuracy.h). Where tissue moves it is at

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke and sound: there while tissue burns, gone afterwards, each turned off by its box, and no smoke for who wants less
-// motion. The alarm comes where a page loses its daemon with energy on.
+// Smoke and sound are there while tissue burns and end afterwards. Each has a box that turns it off. With reduced motion
+// there is no smoke. The alarm comes where a page loses its daemon with energy on.
 import { Stage } from './stage';
 import { MOVING, ViewerPage } from './viewer_page';
 

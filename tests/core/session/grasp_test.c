@@ -279,7 +279,7 @@ typedef struct change {
 	const char *field;
 	size_t offset;
 	double value;
-	bool form; // without it the tool has another form, and lets go
+	bool form; // a size or the grid: the jaws open
 } change;
 
 #define OF(field, value, form)                                                                     \
@@ -316,7 +316,7 @@ static void assert_change(const change *changed)
 	free(scene);
 }
 
-// Jaws that coagulate what they hold must not let go because somebody chooses other watts.
+// Forceps coagulate tissue between their jaws. Another power must not open them.
 static void a_setting_keeps_what_jaws_hold(void **state)
 {
 	(void)state;

@@ -90,7 +90,7 @@ static void what_comes_right_is_counted_no_more(void **state)
 	free(scene);
 }
 
-// A slab that falls: what its steps have is the energy of its motion and what gravity does.
+// A slab that falls: the energy of a step is that of its motion and the work of gravity.
 static void a_gain_has_its_scale(void **state)
 {
 	(void)state;

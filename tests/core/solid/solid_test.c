@@ -262,8 +262,8 @@ static void beginnings_are_refused(void **state)
 	free(bytes);
 }
 
-// Two pieces on two voxels, a thousandth of their size apart: no edge is short enough for what is
-// there, and the first label leaves nothing for the second to divide.
+// One layer of nine voxels with three labels. Its lattice has no tetrahedron at the first edge that
+// is tried, which is no fault: a shorter edge follows.
 static void what_is_thinner_than_any_edge_is_refused(void **state)
 {
 	(void)state;

@@ -376,8 +376,8 @@ static cau_buffer *joined_topology(cau_streams *streams, const cau_stream_shape 
 	return stream->topology;
 }
 
-// A new session has no epoch yet. What is encoded then serves who joins later, and is the same as
-// without.
+// A new session has no epoch yet. The topology that is encoded then equals the one that the first
+// subscriber would have had encoded.
 static void test_a_topology_is_encoded_before_anybody_joins(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Smoke as puffs that rise from where tissue burns, drift with slow air, spread, and are gone after some seconds. More of
-// them come where elements are removed. Only sight, until a channel tells how much smoke there is.
+// them come where elements are removed. It is decoration: no channel has the amount of smoke yet.
 
 export const PUFFS = 128;
 const LIFE_S = 3.2; // of a mean puff: as long as a still room keeps a wisp in view

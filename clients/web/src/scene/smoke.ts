@@ -65,7 +65,7 @@ export class Smoke {
     return this.puffs.count;
   }
 
-  /** A wish of the user's; who wants less motion has none. */
+  /** The user's setting. Without it, or with reduced motion, there is no smoke. */
   turn(on: boolean): void {
     this.wanted = on;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes audible what model/sounds.ts says, all of it computed. A browser lets a page sound only after a press on it.
+// Plays the sounds that model/sounds.ts chooses. All are computed. A browser allows sound only after a press on the page.
 import { heardOf, heartbeatLost, type Heard } from '../model/sounds';
 import type { Model } from '../model/model';
 import type { ToolState } from '../wire/records';
@@ -50,7 +50,7 @@ function makeVoices(): Voices {
 }
 
 export class Sounds {
-  /** what is heard now, after the user's wishes */
+  /** what sounds now: the instruments' sounds that the user's settings allow */
   heard: Heard = { toneHz: 0, sizzle: 0 };
   /** since the page came up */
   alarms = 0;

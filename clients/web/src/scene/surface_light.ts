@@ -50,7 +50,7 @@ uniform sampler2D colourMap;
 uniform int mapChannel;   // -1: as tissue; else the channel of burn shown as colour
 uniform vec3 light;       // the lamp, world
 uniform float ambient;
-uniform vec2 scope;       // 1: the lamp is at the camera, and its light falls off; how far what is looked at is
+uniform vec2 scope;       // 1 if the lamp is at the camera, so that its light falls off; distance to the looked-at point
 uniform vec4 clip;        // what is beyond this plane is cut away from the picture
 uniform int capsuleCount;
 uniform vec4 capsuleFrom[8]; // xyz and radius: parts of instruments that cast shadow
@@ -124,7 +124,7 @@ vec3 shade(Surface s, vec3 view) {
   // In a closed body light comes back from red tissue all around.
   colour = max(mix(vec3(dot(colour, vec3(0.3, 0.5, 0.2))), colour, 1.0 + 0.08 * scope.x) * mix(vec3(1.0), vec3(1.05, 0.97, 0.96), scope.x), 0.0);
   vec3 halfway = normalize(toLight + view);
-  // A film is uneven more steeply than what it wets: with the light at the camera its slopes are all that mirrors.
+  // The film's slopes are steeper than the tissue's. With the light at the camera only slopes mirror it.
   vec3 smooth_ = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
   vec3 film = normalize(s.normal + 2.0 * scope.x * (s.normal - smooth_));
   float shine = pow(max(dot(film, halfway), 0.0), s.gloss * (1.0 - 0.35 * scope.x)) * (1.0 + 3.0 * scope.x);
@@ -141,7 +141,7 @@ vec3 shade(Surface s, vec3 view) {
     glowing += glow[i].w * exp(-dot(off, off) / 2.2e-5);
     if (glow[i].w <= 0.0) break;
   }
-  // Over a colour that tells a number a glow would tell another.
+  // A glow would change a colour that stands for a number.
   return mapChannel < 0 ? colour + glowing * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour) : colour;
 }
 
@@ -152,7 +152,7 @@ void burnt(inout Surface s, vec3 pale, vec3 browned, float blotch) {
   // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.
   float e = max(vBurn.x, 0.85 * vBurn.z * vBurn.z);
   e += 0.3 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
-  // What it looked like stays in it: lobes and fibres are still seen in what has blanched.
+  // Blanched tissue keeps its pattern: lobes and fibres are still seen.
   float was = clamp(0.45 + dot(s.colour, vec3(0.3, 0.5, 0.2)), 0.55, 1.15);
   s.colour = mix(s.colour, was * pale, 0.60 * smoothstep(0.08, 0.50, e));
   s.colour = mix(s.colour, browned, 0.55 * smoothstep(0.60, 1.10, e));

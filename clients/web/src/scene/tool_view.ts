@@ -19,7 +19,7 @@ void main() {
   ${moved}
 }`;
 const VERTEX = vertex('');
-// Before all that is in the field, and behind what is black around a round picture, which is nearest of all.
+// Drawing order: in front of the field, and behind the black around a round picture.
 const GHOST_VERTEX = vertex('gl_Position.z = -0.999 * gl_Position.w;');
 
 // Brushed steel under a lamp in a dim room: the room is a gradient that the metal mirrors.

@@ -145,21 +145,21 @@ export function readTools(payload: Uint8Array, names: readonly ToolName[]): Tool
   return names.map((name, i) => readTool(view, i * TOOL_BYTES, name));
 }
 
-/** Without the section jaws are where they are asked to be, as readTools tells. */
+/** Without the section jaws are where they are asked to be: see readTools. */
 export function readJaws(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * JAW_BYTES) throw new WireError('jaws do not match their tools');
   const view = viewOf(payload);
   return tools.map((tool, i) => ({ ...tool, askedJaw: view.getFloat32(i * JAW_BYTES, true), jawForceN: view.getFloat32(i * JAW_BYTES + 4, true) }));
 }
 
-/** Without the section no generator gives power, as readTools tells. */
+/** Without the section no generator gives power: see readTools. */
 export function readPower(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * POWER_BYTES) throw new WireError('power does not match the tools');
   const view = viewOf(payload);
   return tools.map((tool, i) => ({ ...tool, deliveredW: view.getFloat32(i * POWER_BYTES, true), loadOhm: view.getFloat32(i * POWER_BYTES + 4, true) }));
 }
 
-/** Without the section raw forces are not known, as readTools tells. */
+/** Without the section raw forces are not known: see readTools. */
 export function readForces(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * FORCE_BYTES) throw new WireError('raw forces do not match their tools');
   const view = viewOf(payload);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke that drifts and clears, and what is heard of instruments.
+// Smoke that drifts and clears, and the sounds of instruments.
 import { Puffs } from '../../../../clients/web/src/model/puffs';
 import { heardOf, heartbeatLost, modeOf, TONE_HZ } from '../../../../clients/web/src/model/sounds';
 import type { Tool } from '../../../../clients/web/src/wire/messages.gen';
