@@ -365,6 +365,35 @@ static cau_status check_mesh(const cau_scene_def *scene, int32_t index, cau_erro
 	return status;
 }
 
+static cau_status check_vessel(const cau_scene_def *scene, int32_t index, cau_error *error)
+{
+	const cau_vessel_def *object = &scene->vessels[index];
+	char path[PATH_BYTES];
+	snprintf(path, sizeof path, "vessels[%d]", index);
+	cau_status status = check_name(object->name, path, "name", error);
+	for (int32_t i = 0; i < index && !status; i++)
+		if (!strcmp(scene->vessels[i].name, object->name))
+			status = cau_fail(error, CAU_ALREADY_EXISTS, path, "two vessels are named \"%s\"",
+			                  object->name);
+	CAU_VESSEL_TABLE(CHECK_FIELD)
+	if (!status && !(object->wall_m < object->radius_m))
+		status = cau_fail(error, CAU_BAD_VALUE, path,
+		                  "a wall of %g m leaves no lumen in a tube of radius %g m", object->wall_m,
+		                  object->radius_m);
+	if (!status && !(object->point_count >= 2 && object->point_count <= CAU_MAX_VESSEL_POINTS))
+		status = cau_fail(error, CAU_BAD_VALUE, path, "%d points; 2 to %d are allowed",
+		                  object->point_count, CAU_MAX_VESSEL_POINTS);
+	for (int32_t i = 0; i < object->point_count && !status; i++)
+		status = finite_vector(object->points_m[i], 3, CAU_PLACE_MOST_M, path, "points_m", error);
+	int32_t layer = find_layer(scene, object->layer);
+	if (!status && (layer < 0 || scene->layers[layer].kind != CAU_LAYER_FAT))
+		status = missing(path, "layer", "layer of fat", object->layer, error);
+	if (!status && scene->energy != CAU_ENERGY_TISSUE)
+		status =
+			cau_fail(error, CAU_BAD_VALUE, path, "vessels need energy \"tissue\": heat seals them");
+	return status;
+}
+
 static cau_status check_counts(const cau_scene_def *scene, cau_error *error)
 {
 	const struct {
@@ -375,6 +404,7 @@ static cau_status check_counts(const cau_scene_def *scene, cau_error *error)
 		{"layers", scene->layer_count, 1, CAU_MAX_LAYERS},
 		{"pins", scene->pin_count, 0, CAU_MAX_PINS},
 		{"tools", scene->tool_count, 0, CAU_MAX_TOOLS},
+		{"vessels", scene->vessel_count, 0, CAU_MAX_VESSELS},
 	};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
 		if (counts[i].count < counts[i].least || counts[i].count > counts[i].most)
@@ -444,6 +474,8 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error)
 		snprintf(path, sizeof path, "tools[%d]", i);
 		status = cau_tool_check(&scene->tools[i], path, scene->step_s, error);
 	}
+	for (int32_t i = 0; i < scene->vessel_count && !status; i++)
+		status = check_vessel(scene, i, error);
 	if (!status && scene->energy == CAU_ENERGY_TISSUE && scene->parting != CAU_PARTING_ELEMENTS)
 		status = cau_fail(error, CAU_BAD_VALUE, "parting",
 		                  "energy \"tissue\" parts elements: set parting to \"elements\"");

@@ -154,6 +154,8 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts");
 	if (!status)
 		status = cau_session_make_cells(session, error);
+	if (!status)
+		status = cau_session_make_vessels(session, error);
 	for (int32_t i = 0; i < session->scene->tool_count && !status; i++)
 		status = cau_session_add_tool(session, &session->scene->tools[i], error);
 	if (!status && !session->faulted)
@@ -165,6 +167,8 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 	if (!status)
 		status =
 			cau_frame_create(&session->frame, &session->tissue, &session->dissection, arena, error);
+	if (!status)
+		cau_session_look_at_vessels(session);
 	return status;
 }
 
@@ -180,6 +184,19 @@ static uint64_t hash_bioheat(uint64_t hash, const cau_scene_def *scene)
 	for (int32_t i = 0; i < scene->layer_count; i++) {
 		hash = cau_hash_word(hash, (uint64_t)scene->layers[i].tissue);
 		hash = cau_hash_bytes(hash, &scene->layers[i].perfusion, sizeof(double));
+	}
+	return hash;
+}
+
+static uint64_t hash_vessels(uint64_t hash, const cau_scene_def *scene)
+{
+	for (int32_t i = 0; i < scene->vessel_count; i++) {
+		const cau_vessel_def *vessel = &scene->vessels[i];
+		const double sizes[] = {vessel->radius_m, vessel->wall_m, vessel->pressure_pa,
+		                        vessel->end_pressure_pa, vessel->supply_m};
+		hash = cau_hash_bytes(hash, sizes, sizeof sizes);
+		hash = cau_hash_bytes(hash, vessel->points_m,
+		                      (size_t)vessel->point_count * sizeof vessel->points_m[0]);
 	}
 	return hash;
 }
@@ -202,7 +219,7 @@ static uint64_t hash_definition(const cau_session *session)
 		hash = cau_hash_bytes(hash, contact, sizeof contact);
 	}
 	if (scene->energy != CAU_ENERGY_PAPER)
-		hash = hash_bioheat(hash, scene);
+		hash = hash_vessels(hash_bioheat(hash, scene), scene);
 	for (int32_t i = 0; i < scene->layer_count; i++)
 		if (scene->layers[i].coagulated_tear < 1) // 1: left out of older snapshots
 			hash = cau_hash_bytes(cau_hash_word(hash, (uint64_t)i),

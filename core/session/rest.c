@@ -93,7 +93,7 @@ static bool is_left_alone(const cau_session *session)
 	    update->waiting_count || update->making ||
 	    (session->solver.collide && session->collide.held_back_count))
 		return false;
-	if (!cau_session_has_cooled(session))
+	if (!cau_session_has_cooled(session) || cau_session_bleeds(session))
 		return false;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		if (!is_still(&session->tool[i]))

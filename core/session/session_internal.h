@@ -15,6 +15,7 @@
 #include "solve/matrix_update.h"
 #include "solve/solver.h"
 #include "tissue/tissue.h"
+#include "vessel/vessels.h"
 
 enum { CAU_MAX_GRASPED = 96, CAU_MAX_REFUSALS = 32 };
 
@@ -105,6 +106,7 @@ struct cau_session {
 	cau_shrink shrink;
 	cau_near near;
 	cau_tissue_cells *cells; // of energy `tissue`; NULL: energy `paper`
+	cau_vessels *vessels;    // NULL: the scene has none
 	cau_contact_set contact;
 	cau_collide collide;             // meet.c: where solver.collide points, if anywhere
 	struct cau_candidate *candidate; // reach.c: scratch
@@ -278,6 +280,12 @@ cau_status cau_session_make_cells(cau_session *session, cau_error *error);
 cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def);
 void cau_session_operate(cau_session *session);
 bool cau_session_has_cooled(const cau_session *session);
+// bleed.c: makes the scene's vessels; finds what is open from the state alone; a tick of seals,
+// bleeding and blood; whether blood flows.
+cau_status cau_session_make_vessels(cau_session *session, cau_error *error);
+void cau_session_look_at_vessels(cau_session *session);
+void cau_session_bleed(cau_session *session);
+bool cau_session_bleeds(const cau_session *session);
 // burn.c. cau_session_burn is energy `paper`: heat, exposure, parting. cau_session_end_burn follows
 // with either energy, and shrinks the tissue beside removed elements.
 void cau_session_burn(cau_session *session);

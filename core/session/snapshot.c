@@ -125,6 +125,18 @@ static void take_cells(cau_session *session, snapshot_state *state)
 	cau_tissue_cells_copy(session->cells, cells);
 }
 
+static void take_vessels(cau_session *session, const snapshot_state *state)
+{
+	cau_vessels *vessels = session->vessels;
+	if (!vessels)
+		return;
+	memcpy(vessels->fusion, state->fusion, (size_t)vessels->station_count * sizeof(double));
+	memcpy(vessels->blood.volume_m3, state->blood_m3,
+	       (size_t)vessels->blood.vertex_count * sizeof(double));
+	for (int32_t i = 0; i < vessels->vessel_count; i++)
+		vessels->vessel[i].state.shed_m3 = state->shed_m3[i];
+}
+
 static void take_reals(void *const *to, void *const *from, int count, int32_t slots, bool single)
 {
 	for (int i = 0; i < count; i++)
@@ -305,11 +317,13 @@ static cau_status take(cau_session *session, snapshot_state *state, cau_error *e
 	take_elements(session, state);
 	take_contact(session, state);
 	take_cells(session, state);
+	take_vessels(session, state);
 	take_lists(session, state);
 	session->watch.left_m = 0;
 	session->energy.stale = session->spin.stale = true;
 	status = replay_factor(session, &state->head, error);
 	cau_frame_rebuild(&session->frame, &session->dissection);
+	cau_session_look_at_vessels(session);
 	cau_session_renew_scalars(session);
 	return status;
 }
@@ -346,6 +360,8 @@ uint64_t cau_session_hash(const cau_session *session)
 	hash = cau_hash_bytes(hash, session->dissection.doses.gone, doses);
 	if (session->cells)
 		hash = cau_tissue_cells_hash(session->cells, hash);
+	if (session->vessels)
+		hash = cau_vessels_hash(session->vessels, hash);
 	const cau_tears *tears = &session->dissection.tears;
 	if (tears->over_count) // what tears nothing has the hash that it had before there were tears
 		hash = cau_hash_bytes(hash, tears->over, (size_t)tears->over_count * sizeof *tears->over);

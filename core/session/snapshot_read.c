@@ -116,6 +116,10 @@ static cau_status make_copies(const cau_session *session, snapshot_state *state,
 	if (state->cells &&
 	    cau_tissue_cells_create_like(state->cells, session->cells, &state->copies, error))
 		copies.missing = true;
+	if (session->vessels) {
+		state->fusion = array(&copies, (size_t)session->vessels->station_count, sizeof(double));
+		state->blood_m3 = array(&copies, n, sizeof(double));
+	}
 	make_columns(&copies, session, state);
 	return copies.missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore") : CAU_OK;
 }

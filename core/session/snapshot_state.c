@@ -180,6 +180,12 @@ void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapsho
 	                          .quiet_from = own->rest.from,
 	                          .exempt_before = own->collide.exempt_before,
 	                          .cells = own->cells};
+	if (own->vessels) {
+		state->fusion = own->vessels->fusion;
+		state->blood_m3 = own->vessels->blood.volume_m3;
+		for (int32_t i = 0; i < own->vessels->vessel_count; i++)
+			state->shed_m3[i] = own->vessels->vessel[i].state.shed_m3;
+	}
 	view_head(session, &state->head);
 }
 
@@ -396,6 +402,17 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 		cau_snapshot_doubles(archive, "energy", energy[i], 1, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 }
 
+static void pass_vessels(snapshot_archive *archive, const cau_vessels *vessels,
+                         snapshot_state *state)
+{
+	cau_snapshot_doubles(archive, "seal of a vessel", state->fusion, (size_t)vessels->station_count,
+	                     0, SNAPSHOT_ANY);
+	cau_snapshot_doubles(archive, "blood at a vertex", state->blood_m3,
+	                     (size_t)vessels->blood.vertex_count, 0, SNAPSHOT_ANY);
+	cau_snapshot_doubles(archive, "blood of a vessel", state->shed_m3,
+	                     (size_t)vessels->vessel_count, 0, SNAPSHOT_ANY);
+}
+
 void cau_snapshot_pass_state(snapshot_archive *archive, const cau_session *session,
                              snapshot_state *state)
 {
@@ -410,6 +427,8 @@ void cau_snapshot_pass_state(snapshot_archive *archive, const cau_session *sessi
 	pass_memory(archive, session, state);
 	if (state->cells)
 		pass_cells(archive, state->cells);
+	if (session->vessels)
+		pass_vessels(archive, session->vessels, state);
 	for (int32_t i = 0; i < state->head.command_count && !archive->wrong; i++)
 		cau_snapshot_pass_command(archive, &state->command[i]);
 	for (int32_t i = 0; i < state->head.tool_count && !archive->wrong; i++)

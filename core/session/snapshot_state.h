@@ -12,8 +12,8 @@
 #include "session/snapshot_bytes.h"
 
 enum {
-	// 13: a tool's force_filter_s. No release wrote earlier versions, and none is read.
-	CAU_SNAPSHOT_VERSION = 13,
+	// 14: vessels and blood. No release wrote earlier versions, and none is read.
+	CAU_SNAPSHOT_VERSION = 14,
 	CAU_SNAPSHOT_HASH_BYTES = 8, // the last
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };
@@ -63,6 +63,9 @@ typedef struct snapshot_state {
 	double *quiet_from;                     // m, (vertex_count x 3)
 	uint8_t *exempt_before;                 // (vertex_count), with a contact thickness
 	cau_tissue_cells *cells;                // with energy `tissue`
+	double *fusion;                         // (station_count), with vessels
+	double *blood_m3;                       // (vertex_count), with vessels
+	double shed_m3[CAU_MAX_VESSELS];        // with vessels
 	cau_arena copies;                       // read: what all of this lies in
 } snapshot_state;
 

@@ -242,6 +242,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_stage_end(session, CAU_STAGE_DISSECT);
 	cau_frame_update(&session->frame, &session->dissection, session->position_start,
 	                 session->position); // frame/frame_state.c
+	cau_session_bleed(session);          // bleed.c
 	cau_session_show_scalars(session);   // view.c
 	cau_session_fall_asleep(session);    // rest.c
 	cau_session_stage_end(session, CAU_STAGE_FRAME);

@@ -116,6 +116,12 @@ static void follow_temperature(cau_session *session)
 	heat_by_cells(session);
 }
 
+static void make_blood(cau_session *session)
+{
+	for (int32_t v = 0; session->vessels && v < session->tissue.vertex_count; v++)
+		session->frame.blood[v] = (float)cau_blood_depth(&session->vessels->blood, v);
+}
+
 // How a scalar is made while somebody watches it: from the state alone, and after a step that
 // followed such a state. A scalar without a row is part of every step (cau_frame_update).
 typedef struct scalar_source {
@@ -126,6 +132,7 @@ typedef struct scalar_source {
 static const scalar_source sources[CAU_SCALAR_COUNT] = {
 	[CAU_SCALAR_STRESS] = {make_stress, make_stress},
 	[CAU_SCALAR_TEMPERATURE] = {make_temperature, follow_temperature},
+	[CAU_SCALAR_BLOOD] = {make_blood, make_blood},
 };
 
 static bool is_watched(uint32_t channels, int scalar)
@@ -212,6 +219,8 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		session->tool_view[i] = session->tool[i].state;
+	for (int32_t i = 0; session->vessels && i < session->vessels->vessel_count; i++)
+		frame->vessels[frame->vessel_count++] = &session->vessels->vessel[i].state;
 	fill_statistics(session, &frame->statistics);
 }
 

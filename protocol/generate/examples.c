@@ -8,7 +8,7 @@
 #include "cautery/topology_codec.h"
 #include "generate/write.h"
 
-enum { ROW_BYTES = 16, VERTICES = 3, CAPACITY = 4096 };
+enum { ROW_BYTES = 16, VERTICES = 3, CAPACITY = 4096, ENCODER_BYTES = 1 << 14 };
 
 static const uint64_t epoch = 0x0123456789abcdef;
 
@@ -54,7 +54,7 @@ static void encode(FILE *out, cau_frame_encoder *encoder, const cau_stream_sampl
 
 static void write_frames(FILE *out)
 {
-	static _Alignas(16) uint8_t storage[CAPACITY];
+	static _Alignas(16) uint8_t storage[ENCODER_BYTES];
 	cau_stream_def def = stream();
 	cau_frame_encoder *encoder;
 	double position[3 * VERTICES] = {0.0, 0.0, 0.0, 0.001, 0.0, 0.0, 0.0, 0.001, -0.00005};

@@ -157,6 +157,7 @@ static cau_scene_def scene_defaults;
 static cau_mesh_def mesh_defaults;
 static cau_tool_def tool_defaults;
 static cau_selection selection_defaults;
+static cau_vessel_def vessel_defaults;
 
 static const char *const layer_words[] = {
 #define X(code, name) name,
@@ -226,6 +227,13 @@ static void add_scene_parts(model *to)
 	add_record(tool, &cau_tool_name_record, NULL, -1);
 	add_record(tool, &cau_tool_record, &tool_defaults, -1);
 	add_record(tool, &cau_pose_record, NULL, -1);
+	type *point = add_type(to, "VesselPoint", "a point of the middle line of a vessel");
+	point->strict = true;
+	add_record(point, &cau_vessel_point_record, NULL, -1);
+	type *vessel = add_type(to, "Vessel", "a blood vessel in a layer of fat");
+	vessel->strict = true;
+	add_record(vessel, &cau_vessel_record, &vessel_defaults, -1);
+	add_objects(vessel, "points", "VesselPoint", CAU_MAX_VESSEL_POINTS, "its middle line");
 	type *pull = add_type(to, "Pull", "a scripted pull, for measurements");
 	pull->strict = true;
 	add_record(pull, &cau_pull_record, &scene_defaults.pull, -1);
@@ -240,6 +248,7 @@ static void add_scene_types(model *to)
 	cau_default_scene_def(&scene_defaults);
 	cau_default_mesh_def(&mesh_defaults);
 	cau_default_tool_def(&tool_defaults, CAU_TOOL_HOOK);
+	cau_default_vessel_def(&vessel_defaults);
 	cau_default_selection(&selection_defaults, CAU_SELECT_RIM);
 	for (int kind = 0; kind < CAU_LAYER_COUNT; kind++)
 		cau_default_layer_def(&layer_defaults[kind], kind);
@@ -252,6 +261,7 @@ static void add_scene_types(model *to)
 	add_objects(scene, "layers", "Layer", CAU_MAX_LAYERS, "layers of tissue");
 	add_objects(scene, "pins", "Selection", CAU_MAX_PINS, "vertices that are held");
 	add_objects(scene, "tools", "Tool", CAU_MAX_TOOLS, "tools that are there from the start");
+	add_objects(scene, "vessels", "Vessel", CAU_MAX_VESSELS, "blood vessels");
 	add_object(scene, "pull", "Pull", false, "a scripted pull");
 	add_object(scene, "cut", "Cut", false, "a scripted cut");
 }

@@ -19,6 +19,8 @@ extern const cau_record cau_selection_record;       // cau_selection, by kind
 extern const cau_record cau_tool_name_record;       // cau_tool_def's name
 extern const cau_record cau_tool_record;            // cau_tool_def without name and pose
 extern const cau_record cau_pose_record;            // cau_pose
+extern const cau_record cau_vessel_record;          // cau_vessel_def without its points
+extern const cau_record cau_vessel_point_record;    // double[3]: one of its points
 extern const cau_record cau_pull_record;            // cau_pull_def without its selection
 extern const cau_record cau_cut_record;             // cau_cut_def
 extern const cau_record cau_command_record;         // cau_command without `as`, by kind

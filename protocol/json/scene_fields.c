@@ -171,6 +171,25 @@ static const cau_field pose_fields[] = {
 #undef STRUCT
 RECORD(cau_pose_record, "a pose", pose_fields, NULL)
 
+#define STRUCT cau_vessel_def
+static const cau_field vessel_fields[] = {
+	{OTHER(name, NAME, "name of the vessel"), .required = true},
+	{OTHER(layer, NAME, "layer of fat in which it lies"), .required = true},
+	CAU_VESSEL_TABLE(SCALAR)};
+#undef STRUCT
+RECORD(cau_vessel_record, "a vessel", vessel_fields, NULL)
+
+typedef struct vessel_point {
+	double at_m[3];
+} vessel_point;
+#define STRUCT vessel_point
+static const cau_field vessel_point_fields[] = {
+	{VECTOR(at_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m", "a place of the line, at rest"),
+     .required = true},
+};
+#undef STRUCT
+RECORD(cau_vessel_point_record, "a point of a vessel", vessel_point_fields, NULL)
+
 #define STRUCT cau_pull_def
 static const cau_field pull_fields[] = {
 	{VECTOR(move_m, 3, -CAU_PULL_MOST_M, CAU_PULL_MOST_M, "m", "way of the chosen vertices")},

@@ -133,6 +133,26 @@ static void read_list(cau_reader *reader, const cJSON *scene, const char *key, v
 	cau_reader_leave(reader, mark);
 }
 
+static void read_vessel_point(cau_reader *reader, const cJSON *object, void *element)
+{
+	cau_part part = {&cau_vessel_point_record, element, 0};
+	if (cau_read_object(reader, object))
+		cau_read_parts(reader, object, &part, 1, NULL, 0);
+}
+
+static void read_vessel(cau_reader *reader, const cJSON *object, void *element)
+{
+	static const char *const others[] = {"points"};
+	cau_vessel_def *vessel = element;
+	cau_part part = {&cau_vessel_record, vessel, 0};
+	cau_default_vessel_def(vessel);
+	if (!cau_read_object(reader, object))
+		return;
+	cau_read_parts(reader, object, &part, 1, others, 1);
+	read_list(reader, object, "points", vessel->points_m, sizeof *vessel->points_m,
+	          CAU_MAX_VESSEL_POINTS, &vessel->point_count, read_vessel_point);
+}
+
 static void read_pin(cau_reader *reader, const cJSON *object, void *element)
 {
 	cau_read_selection(reader, object, element);
@@ -140,12 +160,13 @@ static void read_pin(cau_reader *reader, const cJSON *object, void *element)
 
 void cau_read_scene(cau_reader *reader, const cJSON *value, cau_scene_def *scene)
 {
-	static const char *const others[] = {"meshes", "layers", "pins", "tools", "pull", "cut"};
+	static const char *const others[] = {"meshes",  "layers", "pins", "tools",
+	                                     "vessels", "pull",   "cut"};
 	cau_part part = {&cau_scene_record, scene, 0};
 	cau_default_scene_def(scene);
 	if (!cau_read_object(reader, value))
 		return;
-	cau_read_parts(reader, value, &part, 1, others, 6);
+	cau_read_parts(reader, value, &part, 1, others, 7);
 	read_list(reader, value, "meshes", scene->meshes, sizeof *scene->meshes, CAU_MAX_MESHES,
 	          &scene->mesh_count, read_mesh);
 	read_list(reader, value, "layers", scene->layers, sizeof *scene->layers, CAU_MAX_LAYERS,
@@ -154,6 +175,8 @@ void cau_read_scene(cau_reader *reader, const cJSON *value, cau_scene_def *scene
 	          &scene->pin_count, read_pin);
 	read_list(reader, value, "tools", scene->tools, sizeof *scene->tools, CAU_MAX_TOOLS,
 	          &scene->tool_count, read_tool);
+	read_list(reader, value, "vessels", scene->vessels, sizeof *scene->vessels, CAU_MAX_VESSELS,
+	          &scene->vessel_count, read_vessel);
 	const cJSON *pull = cau_value_member(value, "pull"), *cut = cau_value_member(value, "cut");
 	if (pull) {
 		size_t mark = cau_reader_enter(reader, "pull", 0);

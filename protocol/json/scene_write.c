@@ -67,6 +67,34 @@ static void write_tool(cau_json_writer *writer, const cau_tool_def *tool)
 	cau_json_close(writer);
 }
 
+static void write_vessel(cau_json_writer *writer, const cau_vessel_def *vessel)
+{
+	if (vessel->point_count < 0 || vessel->point_count > CAU_MAX_VESSEL_POINTS) {
+		cau_json_fail(writer, CAU_BAD_VALUE, "a vessel with too many points");
+		return;
+	}
+	cau_json_open(writer, NULL, '{');
+	write_part(writer, &cau_vessel_record, vessel, 0);
+	cau_json_open(writer, "points", '[');
+	for (int32_t i = 0; i < vessel->point_count; i++) {
+		cau_json_open(writer, NULL, '{');
+		write_part(writer, &cau_vessel_point_record, vessel->points_m[i], 0);
+		cau_json_close(writer);
+	}
+	cau_json_close(writer);
+	cau_json_close(writer);
+}
+
+static void write_vessels(cau_json_writer *writer, const cau_scene_def *scene)
+{
+	if (!scene->vessel_count)
+		return;
+	cau_json_open(writer, "vessels", '[');
+	for (int32_t i = 0; i < scene->vessel_count; i++)
+		write_vessel(writer, &scene->vessels[i]);
+	cau_json_close(writer);
+}
+
 static void write_motions(cau_json_writer *writer, const cau_scene_def *scene)
 {
 	if (scene->pull.present) {
@@ -87,7 +115,8 @@ static bool counts_fit(const cau_scene_def *scene)
 	return scene->mesh_count >= 0 && scene->mesh_count <= CAU_MAX_MESHES &&
 	       scene->layer_count >= 0 && scene->layer_count <= CAU_MAX_LAYERS &&
 	       scene->pin_count >= 0 && scene->pin_count <= CAU_MAX_PINS && scene->tool_count >= 0 &&
-	       scene->tool_count <= CAU_MAX_TOOLS;
+	       scene->tool_count <= CAU_MAX_TOOLS && scene->vessel_count >= 0 &&
+	       scene->vessel_count <= CAU_MAX_VESSELS;
 }
 
 void cau_write_scene(cau_json_writer *writer, const char *key, const cau_scene_def *scene)
@@ -117,6 +146,7 @@ void cau_write_scene(cau_json_writer *writer, const char *key, const cau_scene_d
 	for (int32_t i = 0; i < scene->tool_count; i++)
 		write_tool(writer, &scene->tools[i]);
 	cau_json_close(writer);
+	write_vessels(writer, scene);
 	write_motions(writer, scene);
 	cau_json_close(writer);
 }

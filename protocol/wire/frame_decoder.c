@@ -7,12 +7,14 @@
 #include "wire/arrays.h"
 #include "wire/header.h"
 #include "wire/records.h"
+#include "wire/vessel_records.h"
 
 struct cau_frame_decoder {
 	cau_stream_def def;
 	cau_stream_state state;
 	uint32_t *arrays[CAU_CHANNEL_COUNT];
 	cau_stream_tool tools[CAU_MAX_TOOLS];
+	cau_vessel_state vessels[CAU_MAX_VESSELS];
 	uint8_t *scratch;
 };
 
@@ -51,6 +53,7 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 	made->state.quantised = (const int32_t *)made->arrays[CAU_CHANNEL_INDEX_POSITIONS];
 	made->state.face_mask = made->arrays[CAU_CHANNEL_INDEX_MASK];
 	made->state.tools = made->tools;
+	made->state.vessels = made->vessels;
 	CAU_ASSERT((size_t)(made->scratch - (uint8_t *)storage) + cau_arrays_scratch_bytes(def) <=
 	               storage_bytes,
 	           "arrays beyond %zu bytes", storage_bytes);
@@ -113,7 +116,7 @@ static cau_status check_place(const cau_frame_decoder *decoder, const cau_frame_
 static void forget(cau_frame_decoder *decoder)
 {
 	memset(decoder->arrays[0], 0, 4 * cau_arrays_words(&decoder->def));
-	decoder->state.tool_count = 0;
+	decoder->state.tool_count = decoder->state.vessel_count = 0;
 	decoder->state.statistics = (cau_stream_statistics){0};
 }
 
@@ -179,6 +182,9 @@ static const char *read_section(cau_frame_decoder *decoder, const section_cursor
 	switch (channel) {
 	case CAU_CHANNEL_INDEX_TOOLS:
 		return read_tools(decoder, cursor);
+	case CAU_CHANNEL_INDEX_VESSELS:
+		return cau_vessels_read(cursor->payload, cursor->payload_bytes, decoder->vessels,
+		                        &state->vessel_count);
 	case CAU_CHANNEL_INDEX_STATISTICS:
 		return cau_statistics_read(cursor->payload, cursor->payload_bytes, &state->statistics);
 	default:

@@ -8,6 +8,7 @@
 #include "wire/bytes.h"
 #include "wire/header.h"
 #include "wire/records.h"
+#include "wire/vessel_records.h"
 
 size_t cau_frame_bytes_max(const cau_stream_def *def)
 {
@@ -19,7 +20,8 @@ size_t cau_frame_bytes_max(const cau_stream_def *def)
 	return bytes + (size_t)6 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
 	       (size_t)CAU_MAX_TOOLS * (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES + TOOL_JAW_BYTES +
 	                                TOOL_POWER_BYTES + TOOL_FORCE_BYTES) +
-	       STATISTICS_RECORD_BYTES;
+	       STATISTICS_RECORD_BYTES +
+	       (cau_stream_has(def, CAU_CHANNEL_INDEX_VESSELS) ? VESSELS_BYTES_MAX : 0);
 }
 
 static size_t struct_bytes(void)
@@ -86,7 +88,7 @@ static bool wants(const cau_frame_encoder *encoder, int channel)
 	return cau_stream_has(&encoder->def, channel);
 }
 
-// What the sample has of a channel; NULL: nothing. A sample may have no tools.
+// What the sample has of a channel; NULL: nothing. A sample may have no tools and no vessels.
 static const void *given(const cau_stream_sample *sample, int channel)
 {
 	switch (channel) {
@@ -95,6 +97,7 @@ static const void *given(const cau_stream_sample *sample, int channel)
 	case CAU_CHANNEL_INDEX_MASK:
 		return sample->face_mask;
 	case CAU_CHANNEL_INDEX_TOOLS:
+	case CAU_CHANNEL_INDEX_VESSELS:
 		return sample;
 	case CAU_CHANNEL_INDEX_STATISTICS:
 		return sample->statistics;
@@ -119,6 +122,14 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 		const char *wrong = cau_stream_tool_check(&sample->tools[i]);
 		if (wrong)
 			return cau_fail(error, CAU_BAD_VALUE, "tools", "tool %d: %s", i, wrong);
+	}
+	if (sample->vessel_count < 0 || sample->vessel_count > CAU_MAX_VESSELS)
+		return cau_fail(error, CAU_BAD_VALUE, "vessel_count", "%d is not within 0 and %d",
+		                sample->vessel_count, CAU_MAX_VESSELS);
+	for (int32_t i = 0; i < sample->vessel_count; i++) {
+		const char *wrong = cau_vessel_state_check(sample->vessels[i]);
+		if (wrong)
+			return cau_fail(error, CAU_BAD_VALUE, "vessels", "vessel %d: %s", i, wrong);
 	}
 	return isfinite(sample->time_s)
 	           ? CAU_OK
@@ -305,6 +316,10 @@ static void write_sections(const cau_frame_encoder *encoder, frame_part part, fr
 			continue;
 		if (channel == CAU_CHANNEL_INDEX_TOOLS)
 			write_tools(&encoder->tools, part.names, writer);
+		else if (channel == CAU_CHANNEL_INDEX_VESSELS)
+			end_section(writer, CAU_SECTION_VESSELS,
+			            cau_vessels_write(section_payload(writer), encoder->vessels,
+			                              encoder->vessel_count));
 		else if (channel == CAU_CHANNEL_INDEX_STATISTICS)
 			end_section(writer, CAU_SECTION_STATISTICS,
 			            cau_statistics_write(section_payload(writer), &encoder->statistics));
@@ -381,6 +396,9 @@ static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 	encoder->header.flags = sample->flags;
 	if (sample->statistics)
 		encoder->statistics = *sample->statistics;
+	encoder->vessel_count = sample->vessel_count;
+	for (int32_t i = 0; i < sample->vessel_count; i++)
+		encoder->vessels[i] = *sample->vessels[i];
 }
 
 static cau_status encode(cau_frame_encoder *encoder, const cau_stream_sample *sample, void *bytes,

@@ -19,6 +19,8 @@ struct cau_frame_encoder {
 	uint32_t *next[CAU_CHANNEL_COUNT]; // what they hold after the frame being made
 	cau_tool_set tools;
 	cau_stream_statistics statistics;
+	int32_t vessel_count;
+	cau_vessel_state vessels[CAU_MAX_VESSELS];
 	uint8_t *scratch;
 };
 

@@ -79,10 +79,7 @@ static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 	int event;
 	int change = change_of(order->kind, &event);
 	int state = cau_decided_state(h);
-	cau_frame frame;
-	cau_session_frame(h->core, &frame);
-	h->elements_removed = frame.statistics.elements_removed;
-	h->elements_torn = frame.statistics.elements_torn;
+	cau_event_know_tissue(h);
 	h->branch = branch;
 	h->stage[0] = 0;
 	cau_events_load(h);

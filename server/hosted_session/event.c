@@ -22,6 +22,16 @@ static void publish(cau_hosted *h, const cau_wire_timeline_event *event)
 	tell(h, event);
 }
 
+void cau_event_know_tissue(cau_hosted *h)
+{
+	cau_frame frame;
+	cau_session_frame(h->core, &frame);
+	h->elements_removed = frame.statistics.elements_removed;
+	h->elements_torn = frame.statistics.elements_torn;
+	for (int32_t i = 0; i < frame.vessel_count; i++)
+		h->vessel_flags[i] = frame.vessels[i]->flags;
+}
+
 // ---- cuts and tears -----------------------------------------------------------------------------
 // Those of neighbouring ticks are one event, which is told and stored once it is whole. One of each
 // may grow at a time.

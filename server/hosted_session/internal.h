@@ -127,8 +127,9 @@ struct cau_hosted {
 	double stepped_s;      // of the steps in this slice
 	cau_shelf *snapshot_shelf, *copy_shelf; // memory for checkpoints, and for what files show
 	int32_t elements_removed, elements_torn;
-	uint32_t inverted_layers; // whose tetrahedra were reported, a bit each
-	uint64_t gain_tick;       // of the last report that steps gained energy; 0: none
+	uint32_t vessel_flags[CAU_MAX_VESSELS]; // as reported
+	uint32_t inverted_layers;               // whose tetrahedra were reported, a bit each
+	uint64_t gain_tick;                     // of the last report that steps gained energy; 0: none
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
 	int32_t snapshot_count;
@@ -458,8 +459,10 @@ char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, ca
 void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client, int64_t count,
                    const char *detail);
 void cau_event_end_cut(cau_hosted *h); // before a session rests or goes elsewhere
-void cau_event_settle(cau_hosted *h);  // after each step
-void cau_events_load(cau_hosted *h);   // from the store: of the present branch up to the tick
+void cau_event_settle(cau_hosted *h);
+// Takes what the core has cut, and its vessels, as reported: after a replay or a rewind.
+void cau_event_know_tissue(cau_hosted *h); // after each step
+void cau_events_load(cau_hosted *h);       // from the store: of the present branch up to the tick
 typedef struct cau_event_page {
 	cau_wire_timeline_event *events; // newest first while it is read
 	int32_t count, capacity;

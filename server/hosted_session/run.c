@@ -78,6 +78,21 @@ static void note_gain(cau_hosted *h, const cau_statistics *now)
 	cau_event_add(h, CAU_EVENT_ENERGY_GAIN, NULL, NULL, 0, detail);
 }
 
+static void note_vessels(cau_hosted *h, const cau_frame *frame)
+{
+	for (int32_t i = 0; i < frame->vessel_count; i++) {
+		const cau_vessel_state *vessel = frame->vessels[i];
+		uint32_t before = h->vessel_flags[i], now = vessel->flags;
+		h->vessel_flags[i] = now;
+		if (now & ~before & CAU_VESSEL_SEALED)
+			cau_event_add(h, CAU_EVENT_SEALED, NULL, NULL, 0, vessel->name);
+		if ((now ^ before) & CAU_VESSEL_BLEEDS)
+			cau_event_add(h,
+			              now & CAU_VESSEL_BLEEDS ? CAU_EVENT_BLEEDING : CAU_EVENT_BLEEDING_STOPPED,
+			              NULL, NULL, 0, vessel->name);
+	}
+}
+
 static void note_refusals(cau_hosted *h, const cau_frame *frame)
 {
 	for (int32_t i = 0; i < frame->refusal_count; i++) {
@@ -123,6 +138,7 @@ static void step(cau_hosted *h)
 	note_cut(h, &frame);
 	note_inverted(h, &frame.statistics);
 	note_gain(h, &frame.statistics);
+	note_vessels(h, &frame);
 	cau_event_settle(h);
 	note_refusals(h, &frame);
 	pthread_mutex_lock(&h->mutex);
@@ -303,10 +319,7 @@ static void go_on_replaying(cau_hosted *h)
 		cau_hosted_fault(h, &error);
 	else if (!over)
 		return;
-	cau_frame frame;
-	cau_session_frame(h->core, &frame);
-	h->elements_removed = frame.statistics.elements_removed;
-	h->elements_torn = frame.statistics.elements_torn;
+	cau_event_know_tissue(h);
 	h->replaying = false;
 	cau_hosted_started(h);
 	cau_replay_finish(&h->replay);

@@ -93,6 +93,8 @@ void cau_show(const cau_session *core, cau_shown *shown)
 		.tool_count = frame->tool_count,
 		.tools = shown->tools,
 		.statistics = &shown->statistics,
+		.vessel_count = frame->vessel_count,
+		.vessels = frame->vessels,
 	};
 	memcpy(shown->sample.scalar, frame->scalar, sizeof shown->sample.scalar);
 }

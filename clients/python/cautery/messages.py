@@ -77,6 +77,8 @@ SECTION = {
     "tools": 7,
     "statistics": 8,
     "temperature": 9,
+    "vessels": 10,
+    "blood": 11,
     "tool_names": 6,
     "faces": 16,
     "face_layers": 17,
@@ -173,6 +175,8 @@ SCALARS = {
     "stress": Scalar(5, 0, 0, 65535, "Pa"),
     # what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c
     "temperature": Scalar(9, -20, 0.25, 65535, "degC"),
+    # depth of blood on the surface
+    "blood": Scalar(11, 0, 2e-05, 255, "m"),
 }
 
 
@@ -564,7 +568,7 @@ class Observe(TypedDict):
     """what session.advance is to answer with, besides tick and time"""
 
     # positions, mask, tools, and scalars by their names; `statistics` is in frames alone
-    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]]]
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
 
     # of positions and scalars: these alone, in this order; all by default (0 to 16777215)
     vertices: NotRequired[Sequence[int]]
@@ -596,7 +600,7 @@ class ObservedScalar(TypedDict):
     """a scalar channel"""
 
     # which
-    channel: Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]
+    channel: Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]
 
     # of the vertices, in the channel's unit (-1e+300 to 1e+300)
     values: Sequence[float]
@@ -936,7 +940,7 @@ class TimelineEvent(TypedDict):
     time_s: float
 
     # what
-    kind: Literal["created", "cut", "tear", "inverted", "energy_gain", "energy_on", "energy_off", "watchdog", "driver", "tool_added", "tool_removed", "refused", "fault", "rewind", "reset", "snapshot", "restore"]
+    kind: Literal["created", "cut", "tear", "inverted", "energy_gain", "bleeding", "bleeding_stopped", "sealed", "energy_on", "energy_off", "watchdog", "driver", "tool_added", "tool_removed", "refused", "fault", "rewind", "reset", "snapshot", "restore"]
 
     # with which tool
     tool: NotRequired[str]
@@ -984,7 +988,7 @@ class SessionFrameAt(TypedDict):
     tick: int
 
     # by default those that the table of channels marks
-    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]]]
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
 
     # quantisation; 5e-5 by default (1e-07 to 0.001 m)
     step_m: NotRequired[float]
@@ -1027,7 +1031,7 @@ class PastFrame(TypedDict):
     epoch: str
 
     # in the frame
-    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]]
+    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]
 
     # of positions and scalars (0 to 16777216)
     vertex_count: int
@@ -1293,7 +1297,7 @@ class SessionJoin(TypedDict):
     rate_hz: NotRequired[float]
 
     # by default those that the table of channels marks
-    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]]]
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
 
     # quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m)
     step_m: NotRequired[float]
@@ -1321,7 +1325,7 @@ class StreamDescription(TypedDict):
     rate_hz: float
 
     # granted
-    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]]
+    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]
 
     # of positions and scalars (0 to 16777216)
     vertex_count: int
@@ -1811,6 +1815,41 @@ class Tool(TypedDict):
 
     # unit quaternion w, x, y, z: tool frame (shaft along +z) to world
     rotation: NotRequired[Sequence[float]]
+
+
+class VesselPoint(TypedDict):
+    """a point of the middle line of a vessel"""
+
+    # a place of the line, at rest (-100 to 100 m)
+    at_m: Sequence[float]
+
+
+class Vessel(TypedDict):
+    """a blood vessel in a layer of fat"""
+
+    # name of the vessel
+    name: str
+
+    # layer of fat in which it lies
+    layer: str
+
+    # outer radius of the tube (0.0001 to 0.01 m)
+    radius_m: NotRequired[float]
+
+    # thickness of its wall; less than the radius (1e-05 to 0.005 m)
+    wall_m: NotRequired[float]
+
+    # of the blood, at its first point (0 to 40000 Pa)
+    pressure_pa: NotRequired[float]
+
+    # of the blood that comes back, at its last point (0 to 40000 Pa)
+    end_pressure_pa: NotRequired[float]
+
+    # length of such a tube that blood has come through (0.001 to 10 m)
+    supply_m: NotRequired[float]
+
+    # its middle line
+    points: NotRequired[Sequence[VesselPoint]]
 
 
 class Pull(TypedDict):
@@ -2383,6 +2422,9 @@ class Scene(TypedDict):
 
     # tools that are there from the start
     tools: NotRequired[Sequence[Tool]]
+
+    # blood vessels
+    vessels: NotRequired[Sequence[Vessel]]
 
     # a scripted pull
     pull: NotRequired[Pull]
@@ -3186,7 +3228,7 @@ class Calls:
         *,
         session: str | None = None,
         rate_hz: float | None = None,
-        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]] | None = None,
+        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]] | None = None,
         step_m: float | None = None,
         plain: bool | None = None,
     ) -> StreamDescription:
@@ -3497,7 +3539,7 @@ class Calls:
         *,
         session: str | None = None,
         tick: int,
-        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]] | None = None,
+        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]] | None = None,
         step_m: float | None = None,
         plain: bool | None = None,
     ) -> PastFrame:

@@ -66,6 +66,24 @@ class Tool:
 
 
 @dataclass(frozen=True)
+class Vessel:
+    """A blood vessel as a frame shows it (channel `vessels`)."""
+
+    name: str
+    parted: bool
+    pierced: bool  # its wall has a hole
+    shut: bool  # pressed so flat that nothing flows
+    sealed: bool  # a seal withstands the pressure of the blood
+    bleeds: bool
+    radius_m: float
+    bleeding_m3_s: float
+    shed_m3: float  # blood that has left it
+    burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
+    points: Floats  # (P, 3), m: its middle line
+    open: Floats  # (P,): share of the lumen's area that is open; below 0: parted there
+
+
+@dataclass(frozen=True)
 class State:
     """What a frame showed. The arrays are copies; V vertices, F faces."""
 
@@ -78,6 +96,7 @@ class State:
     scalars: Mapping[str, Floats]  # (V,) for each channel of the stream, as in `messages.SCALARS`
     tools: Mapping[str, Tool]
     statistics: Mapping[str, float]
+    vessels: Mapping[str, Vessel]  # empty without the channel `vessels`
 
 
 @dataclass(frozen=True)
@@ -193,6 +212,7 @@ class Stream:
         self._names: list[tuple[str, str]] = []
         self._tools: dict[str, Tool] = {}
         self._statistics: dict[str, float] = {}
+        self._vessels: dict[str, Vessel] = {}
         self._changed = threading.Condition()
         self._over: Exception | None = None
 
@@ -292,6 +312,8 @@ class Stream:
             self._tools = _with_power(payload, self._tools)
         elif number == SECTION["tool_force"]:
             self._tools = _with_raw_force(payload, self._tools)
+        elif number == SECTION["vessels"]:
+            self._vessels = _vessels(payload)
         elif number == SECTION["statistics"]:
             self._statistics = _statistics(payload)
 
@@ -309,7 +331,23 @@ class Stream:
             faulted=bool(header.flags & _FAULTED), positions=self._metres(self._held[SECTION["positions"]]),
             removed=bits[:len(self.faces)].astype(bool),
             scalars={name: self._scalar(name) for name in SCALARS if name in channels},
-            tools=dict(self._tools), statistics=dict(self._statistics))
+            tools=dict(self._tools), statistics=dict(self._statistics), vessels=dict(self._vessels))
+
+
+def _vessels(payload: bytes) -> dict[str, Vessel]:
+    vessels, at = {}, 4
+    for _ in range(int.from_bytes(payload[:4], "little")):
+        length, flags, count = struct.unpack_from("<BBH", payload, at)
+        radius, bleeding, shed, burst = struct.unpack_from("<4f", payload, at + 4)
+        name = payload[at + 20:at + 20 + length].decode()
+        at += 20 + -(-length // 4) * 4
+        line = np.frombuffer(payload, "<f4", 4 * count, at).reshape(count, 4).astype(float)
+        at += 16 * count
+        vessels[name] = Vessel(name, *(bool(flags >> bit & 1) for bit in range(5)), radius, bleeding, shed, burst,
+                               line[:, :3], line[:, 3])
+    if at != len(payload):
+        raise BadFrame("vessels of another length")
+    return vessels
 
 
 def _tool_names(payload: bytes) -> list[tuple[str, str]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ctypes import (CFUNCTYPE, POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64,
                     c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)
 
-NAME_BYTES, TEXT_BYTES, MAX_LAYERS = 49, 256, 12
+NAME_BYTES, TEXT_BYTES, MAX_LAYERS, MAX_VESSELS = 49, 256, 12, 8
 STATUSES = ("ok", "bad_value", "bad_syntax", "bad_mesh", "bad_state", "not_found", "already_exists", "limit",
             "unsupported", "no_memory", "io", "numerical", "faulted", "corrupt")
 SHAPES = ("sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper")
@@ -18,7 +18,7 @@ LAYER_KINDS = ("fascia", "membrane", "fat", "links")
 INSTRUCTION_SETS = ("baseline", "avx2", "avx512")
 STAGES = ("commands", "predict", "local", "global", "contact", "heat", "dissect", "frame")
 # Each scalar of a frame in order, and the bit by which it is watched.
-SCALARS = {"exposure": 1 << 2, "charring": 1 << 3, "stress": 1 << 4, "temperature": 1 << 7}
+SCALARS = {"exposure": 1 << 2, "charring": 1 << 3, "stress": 1 << 4, "temperature": 1 << 7, "blood": 1 << 9}
 TOOL_SIZES = ("hot_radius_m", "tip_length_m", "shaft_radius_m", "shaft_length_m", "jaw_open_rad", "temperature_c",
               "grid_cells", "grid_step_m", "diffusivity_m2_s", "max_speed_m_s", "max_turn_rad_s", "friction",
               "drag_ns_m", "grasp_stiffness_n_m", "slip_force_n", "force_max_n", "close_force_n", "power_w", "peak_v", "crest_factor",
@@ -111,7 +111,7 @@ class Frame(Structure):
                 ("moved_count", c_int32), ("moved", c_void_p), ("face_mask", c_void_p),
                 ("mask_changed_count", c_int32), ("mask_changed", c_void_p), ("vertex_visible", c_void_p),
                 ("scalar", c_void_p * len(SCALARS)), ("tool_count", c_int32), ("tools", POINTER(ToolState)),
-                ("refusal_count", c_int32), ("refusals", POINTER(Error)), ("statistics", Statistics)]
+                ("vessel_count", c_int32), ("vessels", c_void_p * MAX_VESSELS), ("refusal_count", c_int32), ("refusals", POINTER(Error)), ("statistics", Statistics)]
 
 
 # The struct of each class in the headers.

@@ -310,9 +310,11 @@ typedef struct cau_frame {
 	                                 // costly channel that is not watched
 	int32_t tool_count;              // at most CAU_MAX_TOOLS
 	const cau_tool_state *tools;     // (tool_count)
-	int32_t refusal_count;           // commands refused at their tick in this step
-	const cau_error *refusals;       // (refusal_count)
-	cau_statistics statistics;       // of this step
+	int32_t vessel_count;            // at most CAU_MAX_VESSELS
+	const cau_vessel_state *vessels[CAU_MAX_VESSELS]; // (vessel_count), in the scene's order
+	int32_t refusal_count;                            // commands refused at their tick in this step
+	const cau_error *refusals;                        // (refusal_count)
+	cau_statistics statistics;                        // of this step
 } cau_frame;
 
 // Fills *frame.

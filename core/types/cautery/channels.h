@@ -36,6 +36,8 @@
 
 #include <stdint.h>
 
+#include "cautery/scene.h"
+
 // clang-format off: rows of a table
 #define CAU_CHANNEL_ROWS(OWN, SCALAR, X)                                                           \
 	OWN(X, POSITIONS, positions, 1, BY_DEFAULT, "vertex positions")                                \
@@ -50,6 +52,8 @@
 	OWN(X, STATISTICS, statistics, 8, ON_REQUEST, "cost and condition of the last step")           \
 	SCALAR(X, TEMPERATURE, temperature, 9, ON_REQUEST, -20.0, 0.25, 65535, "degC",                 \
 	       "what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c")        \
+	OWN(X, VESSELS, vessels, 10, ON_REQUEST, "flags, bleeding, seal and line of every vessel")     \
+	SCALAR(X, BLOOD, blood, 11, ON_REQUEST, 0.0, 2e-5, 255, "m", "depth of blood on the surface")  \
 	/* a new row goes above this line */
 // clang-format on
 
@@ -101,3 +105,35 @@ static inline uint32_t cau_scalar_channel(cau_scalar scalar)
 #undef ROW
 	return channels[scalar];
 }
+
+// ---- vessels ------------------------------------------------------------------------------------
+// What the channel `vessels` has of each vessel; core/vessel/README.md has the model.
+enum { CAU_VESSEL_SHOWN_POINTS = 64 }; // of one vessel, at most
+
+// Flags of a vessel.
+enum {
+	CAU_VESSEL_CUT = 1 << 0,     // parted somewhere: nothing flows across
+	CAU_VESSEL_PIERCED = 1 << 1, // its wall has a hole somewhere
+	CAU_VESSEL_SHUT = 1 << 2,    // the tissue around it is pressed so flat that nothing flows
+	CAU_VESSEL_SEALED = 1 << 3,  // a seal withstands the pressure of the blood
+	CAU_VESSEL_BLEEDS = 1 << 4,  // blood leaves it
+	CAU_VESSEL_FLAGS = (1 << 5) - 1,
+};
+
+// One point of the middle line of a vessel, in the order of the line.
+typedef struct cau_vessel_point {
+	float position_m[3]; // in the world
+	float open;          // share of the lumen's area that is open, 0 to 1; below 0: parted here
+} cau_vessel_point;
+
+// A vessel after a step.
+typedef struct cau_vessel_state {
+	char name[CAU_NAME_BYTES]; // of the vessel
+	uint32_t flags;            // CAU_VESSEL_*
+	double radius_m;           // outer radius of the undeformed tube
+	double bleeding_m3_s;      // blood that left it in the last step, by time
+	double shed_m3;            // blood that has left it since creation
+	double burst_pa;           // predicted pressure at which its best seal opens; 0: no seal
+	int32_t point_count;       // at most CAU_VESSEL_SHOWN_POINTS
+	cau_vessel_point point[CAU_VESSEL_SHOWN_POINTS]; // (point_count)
+} cau_vessel_state;

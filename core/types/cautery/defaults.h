@@ -150,6 +150,13 @@ static inline void cau_default_tool_def(cau_tool_def *def, int shape)
 	cau_default_pose(&def->pose);
 }
 
+// Every size at its default; names empty, and no points.
+static inline void cau_default_vessel_def(cau_vessel_def *def)
+{
+	memset(def, 0, sizeof *def);
+	CAU_VESSEL_TABLE(CAU_SET_DEFAULT)
+}
+
 // Absent; 25 mm up in half a second where it is made present.
 static inline void cau_default_pull_def(cau_pull_def *def)
 {

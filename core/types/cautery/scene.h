@@ -28,13 +28,15 @@
 #include <stdint.h>
 
 enum {
-	CAU_NAME_BYTES = 49,    // [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes and a zero
-	CAU_TEXT_BYTES = 256,   // of a description or a file name, with its zero
-	CAU_MAX_MESHES = 8,     // of a scene
-	CAU_MAX_LAYERS = 12,    // of a scene
-	CAU_MAX_MATERIALS = 16, // of one layer: the default and its regions
-	CAU_MAX_PINS = 16,      // choices of pinned vertices of a scene
-	CAU_MAX_TOOLS = 8,      // of a session
+	CAU_NAME_BYTES = 49,        // [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes and a zero
+	CAU_TEXT_BYTES = 256,       // of a description or a file name, with its zero
+	CAU_MAX_MESHES = 8,         // of a scene
+	CAU_MAX_LAYERS = 12,        // of a scene
+	CAU_MAX_MATERIALS = 16,     // of one layer: the default and its regions
+	CAU_MAX_PINS = 16,          // choices of pinned vertices of a scene
+	CAU_MAX_TOOLS = 8,          // of a session
+	CAU_MAX_VESSELS = 8,        // of a scene
+	CAU_MAX_VESSEL_POINTS = 32, // of the line of one vessel
 };
 
 #define CAU_FIELD(field, default_, least, most, unit, meaning) double field;
@@ -307,6 +309,25 @@ typedef struct cau_tool_def {
 	cau_pose pose; // first pose
 } cau_tool_def;
 
+// ---- blood vessels
+// -------------------------------------------------------------------------------- A tube of blood
+// within a layer of fat, with energy `tissue` (core/vessel/README.md).
+#define CAU_VESSEL_TABLE(X)                                                                        \
+	X(radius_m, 1.5e-3, 1e-4, 0.01, "m", "outer radius of the tube")                               \
+	X(wall_m, 3e-4, 1e-5, 5e-3, "m", "thickness of its wall; less than the radius")                \
+	X(pressure_pa, 12000.0, 0.0, 40000.0, "Pa", "of the blood, at its first point")                \
+	X(end_pressure_pa, 0.0, 0.0, 40000.0, "Pa", "of the blood that comes back, at its last point") \
+	X(supply_m, 0.1, 1e-3, 10.0, "m", "length of such a tube that blood has come through")
+
+// One vessel: the line of its middle, and what it is.
+typedef struct cau_vessel_def {
+	char name[CAU_NAME_BYTES];  // of the vessel
+	char layer[CAU_NAME_BYTES]; // the layer of fat in which it lies
+	CAU_VESSEL_TABLE(CAU_FIELD)
+	int32_t point_count;                       // 2 to CAU_MAX_VESSEL_POINTS
+	double points_m[CAU_MAX_VESSEL_POINTS][3]; // (point_count): at rest, in the world
+} cau_vessel_def;
+
 // ---- the scripted motions that benchmarks and demonstrations share ------------------------------
 // The chosen vertices are moved by `move_m` in `duration_s`.
 typedef struct cau_pull_def {
@@ -349,9 +370,11 @@ typedef struct cau_scene_def {
 	cau_selection pins[CAU_MAX_PINS];     // (pin_count): vertices that do not move
 	int32_t tool_count;                   // at most CAU_MAX_TOOLS
 	cau_tool_def tools[CAU_MAX_TOOLS];    // (tool_count)
-	cau_pull_def pull;                    // for measurements; may be absent
-	cau_cut_def cut;                      // for measurements; may be absent
-} cau_scene_def;                          // about 70 KiB: keep it on the heap
+	int32_t vessel_count;                 // at most CAU_MAX_VESSELS
+	cau_vessel_def vessels[CAU_MAX_VESSELS]; // (vessel_count)
+	cau_pull_def pull;                       // for measurements; may be absent
+	cau_cut_def cut;                         // for measurements; may be absent
+} cau_scene_def;                             // about 80 KiB: keep it on the heap
 
 #undef CAU_FIELD
 

@@ -56,6 +56,9 @@
 	X(TEAR, "tear")                                                                                \
 	X(INVERTED, "inverted")       /* tetrahedra of a layer that stay inside out */                 \
 	X(ENERGY_GAIN, "energy_gain") /* steps added energy without a source */                        \
+	X(BLEEDING, "bleeding")       /* blood begins to leave a vessel */                             \
+	X(BLEEDING_STOPPED, "bleeding_stopped")                                                        \
+	X(SEALED, "sealed") /* a seal of a vessel withstands its pressure */                           \
 	X(ENERGY_ON, "energy_on")                                                                      \
 	X(ENERGY_OFF, "energy_off")                                                                    \
 	X(WATCHDOG, "watchdog")                                                                        \

@@ -112,6 +112,23 @@ class Decoder(unittest.TestCase):
                 self.assertTrue(np.array_equal(tool.raw_torque_nm, -0.0625 * (seen.tick + of)))
                 self.assertAlmostEqual(tool.force_filter_s, 0.02 * (seen.tick % 3), places=7)
 
+    def test_vessels_are_as_sent(self):  # as tests/protocol/wire/tissue.c sends them
+        stream, found = Stream(DESCRIPTION), 0
+        for number in range(FRAMES):
+            stream.take(self.read(f"frame-{number:02d}.bin"))
+            seen = stream.wait(timeout_s=0)
+            self.assertEqual(list(seen.vessels), [] if seen.tick < 8 else ["artery-1"])
+            for vessel in seen.vessels.values():
+                found += 1
+                count = 3 + seen.tick % 2
+                self.assertEqual((vessel.parted, vessel.bleeds), (seen.tick % 2 == 1, seen.tick % 32 >= 16))
+                self.assertAlmostEqual(vessel.radius_m, 0.0015, places=8)
+                self.assertAlmostEqual(vessel.burst_pa, 100 * seen.tick, places=3)
+                self.assertAlmostEqual(vessel.shed_m3 * 1e8, seen.tick, places=4)
+                self.assertTrue(np.allclose(vessel.points[:, 0], 0.001 * np.arange(count)))
+                self.assertTrue(np.allclose(vessel.open, [0.5, -1, 0.5, 0.5][:count]))
+        self.assertGreater(found, 0)
+
     def test_spoilt_frames_raise_and_nothing_else(self):
         whole = {name: self.read(name) for name in ("frame-00.bin", "topology-00.bin")}
         random = np.random.default_rng(7)

@@ -95,6 +95,26 @@ function numbers(data, count, width, components, coding) {
 const BALANCE = { 1: 0x80, 2: 0x8080, 4: 0x80808080 };
 const signed = (value, width) => ((value ^ BALANCE[width]) >>> 0) - BALANCE[width];
 
+// The records of a section of vessels.
+function vesselRecords(payload) {
+	const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+	const found = [];
+	let at = 4;
+	for (let i = 0; i < view.getUint32(0, true); i++) {
+		const length = payload[at], points = view.getUint16(at + 2, true);
+		const floats = (from, count) => Array.from({ length: count }, (_, k) => view.getFloat32(from + 4 * k, true));
+		const [radiusM, bleedingM3s, shedM3, burstPa] = floats(at + 4, 4);
+		const first = at + 20 + 4 * Math.ceil(length / 4);
+		found.push({
+			name: new TextDecoder().decode(payload.subarray(at + 20, at + 20 + length)), flags: payload[at + 1],
+			radiusM, bleedingM3s, shedM3, burstPa, points: Array.from({ length: points }, (_, k) => floats(first + 16 * k, 4)) });
+		at = first + 16 * points;
+	}
+	if (at !== payload.length)
+		throw new Error(`vessels end at byte ${at} of ${payload.length}`);
+	return found;
+}
+
 // Writes a section's elements into `held`; returns how many there were.
 function elements(payload, held) {
 	const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
@@ -226,6 +246,8 @@ export class Decoder {
 			const floats = (at, count) => Array.from({ length: count }, (_, i) => view.getFloat32(at + 4 * i, true));
 			this.tools.forEach((tool, i) => Object.assign(tool, {
 				raw: { force: floats(28 * i, 3), torque: floats(28 * i + 12, 3), filterS: view.getFloat32(28 * i + 24, true) } }));
+		} else if (type === 10) {
+			this.vessels = vesselRecords(payload);
 		} else if (type === 8) {
 			const view = new DataView(payload.buffer, payload.byteOffset);
 			this.realtimeFactor = view.getFloat32(0, true);

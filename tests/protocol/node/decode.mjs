@@ -199,6 +199,22 @@ function readStatistics(payload) {
   return { realtimeFactor: view.getFloat32(0, true), iterations: view.getUint32(48, true), contacts: view.getUint32(76, true) };
 }
 
+function readVessels(payload) {
+  const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+  const vessels = [];
+  let at = 4;
+  for (let left = view.getUint32(0, true); left > 0; left--) {
+    const length = payload[at];
+    const points = view.getUint16(at + 2, true);
+    const first = at + 20 + 4 * Math.ceil(length / 4);
+    const floats = (from, count) => Array.from({ length: count }, (_, i) => view.getFloat32(from + 4 * i, true));
+    vessels.push({ name: new TextDecoder().decode(payload.subarray(at + 20, at + 20 + length)), flags: payload[at + 1], scalars: floats(at + 4, 4), points: floats(first, 4 * points) });
+    at = first + 16 * points;
+  }
+  if (at !== payload.length) fail('vessels of another length');
+  return vessels;
+}
+
 /** Holds one stream, as a subscriber does. */
 export class StreamDecoder {
   constructor({ session, profile, vertexCount, faceCount }) {
@@ -257,6 +273,8 @@ export class StreamDecoder {
       if (payload.length !== 8 * this.tools.length) fail('not as much power as tools');
       const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
       this.tools.forEach((tool, i) => Object.assign(tool, { power: [view.getFloat32(8 * i, true)], load: [view.getFloat32(8 * i + 4, true)] }));
+    } else if (type === 10) {
+      this.vessels = readVessels(payload);
     } else if (type === 8) {
       this.statistics = readStatistics(payload);
     }

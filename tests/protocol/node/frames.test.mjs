@@ -23,6 +23,14 @@ function compareTools(tools, expected) {
   });
 }
 
+function compareVessels(vessels, expected) {
+  assert.equal(vessels.length, expected.length);
+  vessels.forEach((vessel, i) => {
+    const { name, flags, scalars, points } = expected[i];
+    assert.deepEqual(vessel, { name, flags, scalars: scalars.map(Math.fround), points: points.map(Math.fround) });
+  });
+}
+
 function compareState(decoder, state) {
   assert.equal(decoder.epoch.toString(16).padStart(16, '0'), state.epoch);
   assert.equal(Number(decoder.sequence), state.sequence);
@@ -33,6 +41,7 @@ function compareState(decoder, state) {
   assert.equal(decoder.statistics.iterations, state.iterations);
   assert.equal(decoder.statistics.contacts, state.contacts);
   compareTools(decoder.tools, state.tools);
+  compareVessels(decoder.vessels ?? [], state.vessels);
 }
 
 test('every stream decodes to what the C decoder holds', () => {

@@ -97,6 +97,22 @@ static void write_tool(FILE *out, const cau_stream_tool *tool)
 	fputc('}', out);
 }
 
+static void write_vessel(FILE *out, const cau_vessel_state *vessel)
+{
+	const double scalars[] = {vessel->radius_m, vessel->bleeding_m3_s, vessel->shed_m3,
+	                          vessel->burst_pa};
+	double points[4 * CAU_VESSEL_SHOWN_POINTS];
+	for (int32_t i = 0; i < vessel->point_count; i++) {
+		for (int c = 0; c < 3; c++)
+			points[4 * i + c] = (double)vessel->point[i].position_m[c];
+		points[4 * i + 3] = (double)vessel->point[i].open;
+	}
+	fprintf(out, "{\"name\":\"%s\",\"flags\":%u", vessel->name, vessel->flags);
+	write_floats(out, "scalars", scalars, 4);
+	write_floats(out, "points", points, 4 * (size_t)vessel->point_count);
+	fputc('}', out);
+}
+
 static void write_state(FILE *out, const cau_frame_decoder *decoder)
 {
 	const cau_stream_state *state = cau_frame_decoder_state(decoder);
@@ -117,6 +133,11 @@ static void write_state(FILE *out, const cau_frame_decoder *decoder)
 	for (int32_t i = 0; i < state->tool_count; i++) {
 		fputs(i ? "," : "", out);
 		write_tool(out, &state->tools[i]);
+	}
+	fputs("],\"vessels\":[", out);
+	for (int32_t i = 0; i < state->vessel_count; i++) {
+		fputs(i ? "," : "", out);
+		write_vessel(out, &state->vessels[i]);
 	}
 	fputs("]}", out);
 }

@@ -86,6 +86,17 @@ static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *
 	assert_true((float)a->tip_temperature_c == (float)b->tip_temperature_c);
 }
 
+static void assert_vessels_equal(const cau_vessel_state *a, const cau_vessel_state *b)
+{
+	assert_string_equal(a->name, b->name);
+	assert_int_equal(a->flags, b->flags);
+	assert_true((float)a->radius_m == (float)b->radius_m);
+	assert_true((float)a->bleeding_m3_s == (float)b->bleeding_m3_s);
+	assert_true((float)a->shed_m3 == (float)b->shed_m3 && (float)a->burst_pa == (float)b->burst_pa);
+	assert_int_equal(a->point_count, b->point_count);
+	assert_memory_equal(a->point, b->point, (size_t)a->point_count * sizeof *a->point);
+}
+
 // Half a step, and a little for the last bits of single precision.
 static void assert_scalars_rounded(const cau_frame_decoder *decoder, const tissue *shown, int32_t v)
 {
@@ -120,6 +131,9 @@ void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown)
 	for (int32_t i = 0; i < sample.tool_count; i++)
 		assert_tools_equal(&state->tools[i], &sample.tools[i]);
 	assert_memory_equal(&state->statistics, &shown->statistics, sizeof state->statistics);
+	assert_int_equal(state->vessel_count, sample.vessel_count);
+	for (int32_t i = 0; i < sample.vessel_count; i++)
+		assert_vessels_equal(&state->vessels[i], sample.vessels[i]);
 	free(position);
 }
 
@@ -136,4 +150,7 @@ void chain_assert_same(const cau_frame_decoder *a, const cau_frame_decoder *b)
 	assert_int_equal(x->tool_count, y->tool_count);
 	for (int32_t i = 0; i < x->tool_count; i++)
 		assert_tools_equal(&x->tools[i], &y->tools[i]);
+	assert_int_equal(x->vessel_count, y->vessel_count);
+	for (int32_t i = 0; i < x->vessel_count; i++)
+		assert_vessels_equal(&x->vessels[i], &y->vessels[i]);
 }

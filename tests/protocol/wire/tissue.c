@@ -105,6 +105,20 @@ static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_
 	}
 }
 
+static void move_vessel(cau_vessel_state *vessel, int32_t tick)
+{
+	*vessel = (cau_vessel_state){.name = "artery-1",
+	                             .flags = (uint32_t)tick % (CAU_VESSEL_FLAGS + 1),
+	                             .radius_m = 0.0015,
+	                             .bleeding_m3_s = 1e-9 * tick,
+	                             .shed_m3 = 1e-8 * tick,
+	                             .burst_pa = 100.0 * tick,
+	                             .point_count = 3 + tick % 2};
+	for (int32_t i = 0; i < vessel->point_count; i++)
+		vessel->point[i] = (cau_vessel_point){{0.001f * (float)i, 0.0001f * (float)tick, -0.002f},
+		                                      i == 1 ? -1.0f : 0.5f};
+}
+
 void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 {
 	double time_s = tick / 60.0;
@@ -123,6 +137,8 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	for (int32_t face = first; face < first + tick && face < first + row_faces; face++)
 		moved->mask[face / WORD_FACES] |= 1u << face % WORD_FACES;
 	move_tool(&moved->tools[0], "hook", CAU_TOOL_HOOK, tick);
+	move_vessel(&moved->vessel, tick);
+	moved->vessels[0] = &moved->vessel;
 	move_tool(&moved->tools[1], "left-grasper", CAU_TOOL_GRASPER, tick);
 	moved->statistics = (cau_stream_statistics){.realtime_factor = 1.0f,
 	                                            .step_cost_s = 0.002f,
@@ -160,6 +176,8 @@ cau_stream_sample tissue_sample(const tissue *of)
 		.tool_count = of->tick < 8 ? 1 : 2,
 		.tools = of->tools,
 		.statistics = &of->statistics,
+		.vessel_count = of->tick < 8 ? 0 : 1,
+		.vessels = of->vessels,
 	};
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		sample.scalar[scalar] = of->scalar[scalar];

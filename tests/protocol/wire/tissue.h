@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A make-believe tissue for tests of streams: a grid in smooth motion with a little noise, a cut
-// that runs across it, exposure that rises along the cut, one or two tools. The same in every run.
+// that runs across it, exposure that rises along the cut, one or two tools, later a vessel. The
+// same in every run.
 #pragma once
 
 #include "cautery/stream.h"
@@ -14,6 +15,8 @@ typedef struct tissue {
 	CAU_SCALAR_MEMBERS(float);
 	cau_stream_tool tools[2];
 	cau_stream_statistics statistics;
+	cau_vessel_state vessel;
+	const cau_vessel_state *vessels[1]; // it
 } tissue;
 
 // Heap arrays; NULL members after tissue_finish.

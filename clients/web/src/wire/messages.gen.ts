@@ -291,7 +291,7 @@ export interface ObservedRegion {
 /** what session.advance is to answer with, besides tick and time */
 export interface Observe {
   /** positions, mask, tools, and scalars by their names; `statistics` is in frames alone */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
   /** of positions and scalars: these alone, in this order; all by default (0 to 16777215) */
   vertices?: number[];
   /** where removed volume and damage are reported */
@@ -315,7 +315,7 @@ export interface SessionAdvance {
 /** a scalar channel */
 export interface ObservedScalar {
   /** which */
-  channel: 'positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature';
+  channel: 'positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood';
   /** of the vertices, in the channel's unit (-1e+300 to 1e+300) */
   values: number[];
 }
@@ -567,7 +567,7 @@ export interface TimelineEvent {
   /** simulated (0 to 1000000000000 s) */
   time_s: number;
   /** what */
-  kind: 'created' | 'cut' | 'tear' | 'inverted' | 'energy_gain' | 'energy_on' | 'energy_off' | 'watchdog' | 'driver' | 'tool_added' | 'tool_removed' | 'refused' | 'fault' | 'rewind' | 'reset' | 'snapshot' | 'restore';
+  kind: 'created' | 'cut' | 'tear' | 'inverted' | 'energy_gain' | 'bleeding' | 'bleeding_stopped' | 'sealed' | 'energy_on' | 'energy_off' | 'watchdog' | 'driver' | 'tool_added' | 'tool_removed' | 'refused' | 'fault' | 'rewind' | 'reset' | 'snapshot' | 'restore';
   /** with which tool */
   tool?: string;
   /** by whom */
@@ -603,7 +603,7 @@ export interface SessionFrameAt {
   /** on the present line, from oldest_tick to the present (0 to 9007199254740991) */
   tick: number;
   /** by default those that the table of channels marks */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
   /** quantisation; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
   /** no section of the frame is in meshoptimizer's codec; false by default */
@@ -633,7 +633,7 @@ export interface PastFrame {
   /** in the frame's header; that of no stream */
   epoch: string;
   /** in the frame */
-  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
   /** of positions and scalars (0 to 16777216) */
   vertex_count: number;
   /** of the mask (0 to 16777216) */
@@ -837,7 +837,7 @@ export interface SessionJoin {
   /** frames a wall second at most; 60 by default (0.1 to 1000 1/s) */
   rate_hz?: number;
   /** by default those that the table of channels marks */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
   /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
   /** no section of the frames is in meshoptimizer's codec; false by default */
@@ -857,7 +857,7 @@ export interface StreamDescription {
   /** granted (0.1 to 1000 1/s) */
   rate_hz: number;
   /** granted */
-  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
   /** of positions and scalars (0 to 16777216) */
   vertex_count: number;
   /** of mask and topology (0 to 16777216) */
@@ -1216,6 +1216,32 @@ export interface Tool {
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
   rotation?: [number, number, number, number];
+}
+
+/** a point of the middle line of a vessel */
+export interface VesselPoint {
+  /** a place of the line, at rest (-100 to 100 m) */
+  at_m: [number, number, number];
+}
+
+/** a blood vessel in a layer of fat */
+export interface Vessel {
+  /** name of the vessel */
+  name: string;
+  /** layer of fat in which it lies */
+  layer: string;
+  /** outer radius of the tube (0.0001 to 0.01 m) */
+  radius_m?: number;
+  /** thickness of its wall; less than the radius (1e-05 to 0.005 m) */
+  wall_m?: number;
+  /** of the blood, at its first point (0 to 40000 Pa) */
+  pressure_pa?: number;
+  /** of the blood that comes back, at its last point (0 to 40000 Pa) */
+  end_pressure_pa?: number;
+  /** length of such a tube that blood has come through (0.001 to 10 m) */
+  supply_m?: number;
+  /** its middle line */
+  points?: VesselPoint[];
 }
 
 /** a scripted pull, for measurements */
@@ -1611,6 +1637,8 @@ export interface Scene {
   pins?: Selection[];
   /** tools that are there from the start */
   tools?: Tool[];
+  /** blood vessels */
+  vessels?: Vessel[];
   /** a scripted pull */
   pull?: Pull;
   /** a scripted cut */
@@ -2331,6 +2359,8 @@ export const SECTION = {
   tools: 7,
   statistics: 8,
   temperature: 9,
+  vessels: 10,
+  blood: 11,
   tool_names: 6,
   faces: 16,
   face_layers: 17,
@@ -2353,6 +2383,8 @@ export const SCALARS = {
   stress: { section: 5, byDefault: false, least: 0, step: 0, most: 65535, unit: 'Pa' },
   /** what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c */
   temperature: { section: 9, byDefault: false, least: -20, step: 0.25, most: 65535, unit: 'degC' },
+  /** depth of blood on the surface */
+  blood: { section: 11, byDefault: false, least: 0, step: 2e-05, most: 255, unit: 'm' },
 } as const;
 export type ScalarName = keyof typeof SCALARS;
 

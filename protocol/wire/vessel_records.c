@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section of the channel `vessels`: README.md has the layout.
+#include "wire/vessel_records.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "cautery/name.h"
+#include "wire/bytes.h"
+
+// Each vessel without its name and its points.
+enum { VESSEL_BYTES = 20, POINT_BYTES = 16 };
+_Static_assert(4 + CAU_MAX_VESSELS * (VESSEL_BYTES + CAU_NAME_BYTES + 3 +
+                                      CAU_VESSEL_SHOWN_POINTS * POINT_BYTES) <=
+                   VESSELS_BYTES_MAX,
+               "the section of all vessels");
+
+const char *cau_vessel_state_check(const cau_vessel_state *vessel)
+{
+	if (!cau_name_is_valid(vessel->name))
+		return "its name is none";
+	if (vessel->point_count < 0 || vessel->point_count > CAU_VESSEL_SHOWN_POINTS)
+		return "it has too many points";
+	const double scalars[] = {vessel->radius_m, vessel->bleeding_m3_s, vessel->shed_m3,
+	                          vessel->burst_pa};
+	for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
+		if (!isfinite((float)scalars[i]) || scalars[i] < 0)
+			return "one of its numbers is not finite, or below 0";
+	for (int32_t i = 0; i < vessel->point_count; i++) {
+		const cau_vessel_point *point = &vessel->point[i];
+		if (!isfinite(point->position_m[0]) || !isfinite(point->position_m[1]) ||
+		    !isfinite(point->position_m[2]) || !isfinite(point->open))
+			return "one of its points is not finite";
+	}
+	return vessel->flags & ~(uint32_t)CAU_VESSEL_FLAGS ? "a flag that is none" : NULL;
+}
+
+static uint8_t *write_vessel(uint8_t *at, const cau_vessel_state *vessel)
+{
+	const double scalars[] = {vessel->radius_m, vessel->bleeding_m3_s, vessel->shed_m3,
+	                          vessel->burst_pa};
+	size_t length = strlen(vessel->name), padded = round_up_4(length);
+	CAU_RULE(!cau_vessel_state_check(vessel), "vessel \"%s\" cannot be sent", vessel->name);
+	at[0] = (uint8_t)length;
+	at[1] = (uint8_t)vessel->flags;
+	store_u16(at + 2, (uint16_t)vessel->point_count);
+	at += 4;
+	for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++, at += 4)
+		store_f32(at, (float)scalars[i]);
+	memset(at, 0, padded);
+	memcpy(at, vessel->name, length);
+	at += padded;
+	for (int32_t i = 0; i < vessel->point_count; i++, at += POINT_BYTES) {
+		for (int axis = 0; axis < 3; axis++)
+			store_f32(at + (ptrdiff_t)4 * axis, vessel->point[i].position_m[axis]);
+		store_f32(at + 12, vessel->point[i].open);
+	}
+	return at;
+}
+
+size_t cau_vessels_write(uint8_t *out, const cau_vessel_state *vessels, int32_t count)
+{
+	uint8_t *at = out + 4;
+	CAU_RULE(count >= 0 && count <= CAU_MAX_VESSELS, "%d vessels", count);
+	store_u32(out, (uint32_t)count);
+	for (int32_t i = 0; i < count; i++)
+		at = write_vessel(at, &vessels[i]);
+	return (size_t)(at - out);
+}
+
+// Returns what follows the vessel; NULL if it is damaged.
+static const uint8_t *read_vessel(const uint8_t *at, const uint8_t *end, cau_vessel_state *vessel)
+{
+	if (end - at < VESSEL_BYTES)
+		return NULL;
+	size_t length = at[0], padded = round_up_4(length), points = load_u16(at + 2);
+	if (length >= CAU_NAME_BYTES || points > CAU_VESSEL_SHOWN_POINTS ||
+	    (size_t)(end - at) < VESSEL_BYTES + padded + points * POINT_BYTES)
+		return NULL;
+	*vessel = (cau_vessel_state){.flags = at[1],
+	                             .radius_m = (double)load_f32(at + 4),
+	                             .bleeding_m3_s = (double)load_f32(at + 8),
+	                             .shed_m3 = (double)load_f32(at + 12),
+	                             .burst_pa = (double)load_f32(at + 16),
+	                             .point_count = (int32_t)points};
+	memcpy(vessel->name, at + VESSEL_BYTES, length);
+	at += VESSEL_BYTES + padded;
+	for (size_t i = 0; i < points; i++, at += POINT_BYTES) {
+		for (int axis = 0; axis < 3; axis++)
+			vessel->point[i].position_m[axis] = load_f32(at + (ptrdiff_t)4 * axis);
+		vessel->point[i].open = load_f32(at + 12);
+	}
+	return cau_vessel_state_check(vessel) ? NULL : at;
+}
+
+const char *cau_vessels_read(const uint8_t *payload, size_t bytes, cau_vessel_state *vessels,
+                             int32_t *count)
+{
+	const uint8_t *at = payload + 4, *end = payload + bytes;
+	uint32_t announced = bytes >= 4 ? load_u32(payload) : UINT32_MAX;
+	if (announced > CAU_MAX_VESSELS)
+		return "too many vessels, or a damaged list of them";
+	for (uint32_t i = 0; i < announced && at; i++)
+		at = read_vessel(at, end, &vessels[i]);
+	*count = at ? (int32_t)announced : 0;
+	return at == end ? NULL : "a vessel is damaged, or the list has the wrong length";
+}

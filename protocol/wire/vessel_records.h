@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section of the channel `vessels`.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/channels.h"
+
+enum { VESSELS_BYTES_MAX = 9 << 10 };
+
+// What a decoder would refuse in this vessel, or NULL.
+const char *cau_vessel_state_check(const cau_vessel_state *vessel);
+
+// Writes the payload and returns its length, VESSELS_BYTES_MAX at most.
+size_t cau_vessels_write(uint8_t *out, const cau_vessel_state *vessels, int32_t count);
+// Reads a payload; returns NULL or what is wrong.
+const char *cau_vessels_read(const uint8_t *payload, size_t bytes, cau_vessel_state *vessels,
+                             int32_t *count);

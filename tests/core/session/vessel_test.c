@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Blood vessels in a session (core/vessel): what is cut bleeds, what is pressed shut or sealed does
+// not, and all of it is state.
+#include "core/session/stage.h"
+
+#include "session/session_internal.h"
+
+static const double sealed_m = -0.005, deep_m = -0.007, above_m = 0.04;
+// Under sanitizers on half as many cells along each axis, and without what needs fine ones.
+enum { CLOSING = 40, SEALING = 180, CUTTING = CAU_TEST_SANITIZED ? 60 : 120 };
+
+static cau_session *open_pedicle(int32_t threads)
+{
+	cau_scene_def *scene = stage_scene_light("pedicle");
+	cau_session *session = stage_open(scene, threads);
+	free(scene);
+	return session;
+}
+
+static const cau_vessel_state *artery(const cau_session *session)
+{
+	cau_frame frame = stage_frame(session);
+	assert_int_equal(frame.vessel_count, 1);
+	assert_string_equal(frame.vessels[0]->name, "artery");
+	return frame.vessels[0];
+}
+
+static void put(cau_session *session, const char *tool, double x, double y, double z)
+{
+	cau_pose pose = stage_tool(session, tool)->asked_pose;
+	pose.position_m[0] = x;
+	pose.position_m[1] = y;
+	pose.position_m[2] = z;
+	stage_turn(session, tool, &pose);
+}
+
+static void close_forceps(cau_session *session)
+{
+	put(session, "forceps", sealed_m, 0, deep_m);
+	stage_step(session, CLOSING);
+	stage_grasp(session, "forceps");
+	stage_step(session, CLOSING);
+}
+
+static void withdraw_forceps(cau_session *session)
+{
+	stage_energize(session, "forceps", 0);
+	stage_release(session, "forceps");
+	stage_step(session, CLOSING);
+	put(session, "forceps", sealed_m, 0, above_m);
+	stage_step(session, CLOSING);
+}
+
+static void seal(cau_session *session)
+{
+	close_forceps(session);
+	stage_energize(session, "forceps", 1);
+	stage_step(session, SEALING);
+	withdraw_forceps(session);
+}
+
+// The needle is drawn across the strip, with its power on.
+static void divide(cau_session *session, double x)
+{
+	put(session, "needle", x, -0.008, above_m);
+	stage_step(session, CLOSING);
+	put(session, "needle", x, -0.008, deep_m);
+	stage_step(session, CLOSING);
+	stage_energize(session, "needle", 1);
+	for (int k = 0; k < CUTTING; k++) {
+		put(session, "needle", x, -0.006 + 0.012 * k / CUTTING, deep_m);
+		stage_step(session, 1);
+	}
+	stage_energize(session, "needle", 0);
+	stage_step(session, 1);
+}
+
+static double blood_m3(const cau_session *session)
+{
+	double sum = 0;
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		sum += session->vessels->blood.volume_m3[v];
+	return sum;
+}
+
+static void what_is_whole_does_not_bleed(void **state)
+{
+	(void)state;
+	cau_session *session = open_pedicle(1);
+	stage_step(session, 10);
+	assert_int_equal(artery(session)->flags, 0);
+	assert_true(artery(session)->bleeding_m3_s == 0 && artery(session)->burst_pa == 0);
+	assert_true(artery(session)->point_count > 10);
+	// The shown line goes from end to end of the strip.
+	const cau_vessel_state *vessel = artery(session);
+	assert_true(fabs((double)vessel->point[0].position_m[0] + 0.02) < 1e-6);
+	assert_true(fabs((double)vessel->point[vessel->point_count - 1].position_m[0] - 0.02) < 1e-6);
+	cau_session_destroy(session);
+}
+
+// Both stumps bleed: the one with 12 kPa more than the one with 4 kPa. Blood lies on the tissue,
+// and no more of it than was shed.
+static void what_is_cut_bleeds_from_both_stumps(void **state)
+{
+	(void)state;
+	cau_session *session = open_pedicle(1);
+	divide(session, sealed_m);
+	const cau_vessel_state *vessel = artery(session);
+	const cau_vessel_def *def = &session->scene->vessels[0];
+	assert_int_equal(vessel->flags & (CAU_VESSEL_CUT | CAU_VESSEL_BLEEDS | CAU_VESSEL_SEALED),
+	                 CAU_VESSEL_CUT | CAU_VESSEL_BLEEDS);
+	double most = cau_vessel_outflow(def, 12000, 1) + cau_vessel_outflow(def, 4000, 1);
+	assert_true(vessel->bleeding_m3_s > 0.7 * most && vessel->bleeding_m3_s <= most);
+	assert_true(vessel->shed_m3 > 0);
+	assert_true(blood_m3(session) > 0 && blood_m3(session) <= vessel->shed_m3 * (1 + 1e-9));
+	bool parted = false;
+	for (int32_t i = 0; i < vessel->point_count; i++)
+		parted |= vessel->point[i].open < 0;
+	assert_true(parted);
+	cau_session_watch(session, CAU_CHANNEL_BLOOD);
+	float deepest = 0;
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		deepest = fmaxf(deepest, stage_frame(session).blood[v]);
+	assert_true(deepest > 5e-5F);
+	cau_session_destroy(session);
+}
+
+// Jaws stop the flow while they press. Without heat it comes back.
+static void pressure_stops_bleeding_and_heals_nothing(void **state)
+{
+	(void)state;
+	cau_session *session = open_pedicle(1);
+	divide(session, 0.004);
+	double free_m3_s = artery(session)->bleeding_m3_s;
+	close_forceps(session); // before the cut, seen from the first end
+	const cau_vessel_state *vessel = artery(session);
+	assert_true(vessel->flags & CAU_VESSEL_SHUT);
+	// What still bleeds is the other stump, with its 4 kPa.
+	double other = cau_vessel_outflow(&session->scene->vessels[0], 4000, 1);
+	assert_true(vessel->bleeding_m3_s <= other && vessel->bleeding_m3_s < 0.5 * free_m3_s);
+	withdraw_forceps(session);
+	assert_true(artery(session)->bleeding_m3_s > 0.9 * free_m3_s);
+	assert_int_equal(artery(session)->flags & CAU_VESSEL_SEALED, 0);
+	cau_session_destroy(session);
+}
+
+static void what_is_sealed_is_divided_without_blood(void **state)
+{
+	(void)state;
+	cau_session *session = open_pedicle(1);
+	seal(session);
+	const cau_vessel_state *vessel = artery(session);
+	assert_int_equal(vessel->flags & (CAU_VESSEL_SEALED | CAU_VESSEL_CUT), CAU_VESSEL_SEALED);
+	assert_true(vessel->burst_pa > 12000);
+	if (!CAU_TEST_SANITIZED) {
+		divide(session, sealed_m);
+		vessel = artery(session);
+		assert_int_equal(vessel->flags & (CAU_VESSEL_SEALED | CAU_VESSEL_CUT | CAU_VESSEL_BLEEDS),
+		                 CAU_VESSEL_SEALED | CAU_VESSEL_CUT);
+		assert_true(vessel->shed_m3 == 0 && blood_m3(session) == 0);
+	}
+	cau_session_destroy(session);
+}
+
+// Heat without compression denatures the wall and joins nothing.
+static void heat_alone_seals_nothing(void **state)
+{
+	(void)state;
+	cau_session *session = open_pedicle(1);
+	cau_bioheat *bioheat = &session->cells->bioheat;
+	int32_t tetrahedra = session->tissue.tetrahedron_count;
+	for (int32_t t = 0; t < tetrahedra && bioheat->cells.count < 20000; t++)
+		cau_tissue_cells_fill(session->cells, cau_tissue_cells_element(
+												  &session->tissue, CAU_PRIMITIVE_TETRAHEDRON, t));
+	for (int32_t i = 0; i < bioheat->cells.count; i++)
+		bioheat->temperature[i] = 95;
+	bioheat->cold = false;
+	stage_step(session, 60);
+	assert_true(session->vessels->open[session->vessels->station_count / 2] > 0.9);
+	assert_true(artery(session)->burst_pa == 0);
+	cau_session_destroy(session);
+}
+
+static void threads_and_a_restore_change_no_bit(void **state)
+{
+	(void)state;
+	cau_session *session = open_pedicle(1), *threaded = open_pedicle(2);
+	divide(session, sealed_m);
+	divide(threaded, sealed_m);
+	assert_true(cau_session_hash(session) == cau_session_hash(threaded));
+	stage_bytes bytes = stage_snapshot(session);
+	cau_session *restored = open_pedicle(1);
+	bool exact = false;
+	assert_int_equal(cau_session_restore(restored, bytes.bytes, bytes.count, &exact, NULL), CAU_OK);
+	assert_true(exact);
+	assert_true(cau_session_hash(restored) == cau_session_hash(session));
+	const cau_vessel_state *before = artery(session), *after = artery(restored);
+	assert_true(after->shed_m3 == before->shed_m3);
+	assert_int_equal(after->flags & CAU_VESSEL_CUT, CAU_VESSEL_CUT);
+	stage_step(session, 30);
+	stage_step(restored, 30);
+	assert_true(cau_session_hash(restored) == cau_session_hash(session));
+	assert_true(artery(restored)->shed_m3 == artery(session)->shed_m3);
+	free(bytes.bytes);
+	cau_session_destroy(session);
+	cau_session_destroy(threaded);
+	cau_session_destroy(restored);
+}
+
+static void refuse_with(void (*spoil)(cau_vessel_def *vessel), cau_status status, const char *word)
+{
+	cau_scene_def *scene = stage_scene_named("pedicle");
+	cau_error error = {0};
+	spoil(&scene->vessels[0]);
+	stage_refuse(scene, status, &error);
+	if (!strstr(error.reason, word) && !strstr(error.path, word))
+		fail_msg("\"%s\" (%s) lacks \"%s\"", error.reason, error.path, word);
+	free(scene);
+}
+
+static void leave_the_layer(cau_vessel_def *vessel)
+{
+	vessel->points_m[1][2] = 0.01;
+}
+static void have_no_lumen(cau_vessel_def *vessel)
+{
+	vessel->wall_m = vessel->radius_m;
+}
+static void be_of_another_layer(cau_vessel_def *vessel)
+{
+	strcpy(vessel->layer, "fascia");
+}
+static void have_one_point(cau_vessel_def *vessel)
+{
+	vessel->point_count = 1;
+}
+static void have_no_number(cau_vessel_def *vessel)
+{
+	vessel->points_m[0][1] = NAN;
+}
+
+static void wrong_vessels_are_refused(void **state)
+{
+	(void)state;
+	refuse_with(leave_the_layer, CAU_BAD_VALUE, "leaves");
+	refuse_with(have_no_lumen, CAU_BAD_VALUE, "lumen");
+	refuse_with(be_of_another_layer, CAU_NOT_FOUND, "fascia");
+	refuse_with(have_one_point, CAU_BAD_VALUE, "points");
+	refuse_with(have_no_number, CAU_BAD_VALUE, "points_m");
+	cau_scene_def *scene = stage_scene_named("pedicle");
+	cau_error error = {0};
+	scene->energy = CAU_ENERGY_PAPER;
+	stage_refuse(scene, CAU_BAD_VALUE, &error);
+	assert_non_null(strstr(error.reason, "energy"));
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_is_whole_does_not_bleed),
+		cmocka_unit_test(what_is_cut_bleeds_from_both_stumps),
+		cmocka_unit_test(pressure_stops_bleeding_and_heals_nothing),
+		cmocka_unit_test(what_is_sealed_is_divided_without_blood),
+		cmocka_unit_test(heat_alone_seals_nothing),
+		cmocka_unit_test(threads_and_a_restore_change_no_bit),
+		cmocka_unit_test(wrong_vessels_are_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
