@@ -12,6 +12,7 @@ typedef struct observation {
 	cau_wire_advanced result;
 	cau_wire_observed_scalar scalars[CAU_SCALAR_COUNT];
 	cau_wire_observed_tool tools[CAU_MAX_TOOLS];
+	cau_wire_observed_vessel vessels[CAU_MAX_VESSELS];
 	cau_wire_region_damage regions[CAU_ADVANCE_REGIONS];
 } observation;
 
@@ -133,6 +134,25 @@ static void observe_tools(cau_hosted *h, observation *o)
 		observe_tool(h, &o->frame.tools[i], &o->tools[i]);
 }
 
+static void observe_vessels(observation *o)
+{
+	o->result.has_vessels = o->wanted->channels & CAU_CHANNEL_VESSELS;
+	o->result.vessels = (cau_wire_list){o->vessels, o->frame.vessel_count, CAU_MAX_VESSELS};
+	for (int32_t i = 0; o->result.has_vessels && i < o->frame.vessel_count; i++) {
+		const cau_vessel_state *from = o->frame.vessels[i];
+		o->vessels[i] =
+			(cau_wire_observed_vessel){.parted = (from->flags & CAU_VESSEL_CUT) != 0,
+		                               .pierced = (from->flags & CAU_VESSEL_PIERCED) != 0,
+		                               .shut = (from->flags & CAU_VESSEL_SHUT) != 0,
+		                               .sealed = (from->flags & CAU_VESSEL_SEALED) != 0,
+		                               .bleeds = (from->flags & CAU_VESSEL_BLEEDS) != 0,
+		                               .bleeding_m3_s = from->bleeding_m3_s,
+		                               .shed_m3 = from->shed_m3,
+		                               .burst_pa = from->burst_pa};
+		memcpy(o->vessels[i].vessel, from->name, sizeof o->vessels[i].vessel);
+	}
+}
+
 static cau_wire_observed_damage wire_damage(const cau_damage *from)
 {
 	return (cau_wire_observed_damage){.removed_count = from->removed_count,
@@ -178,6 +198,7 @@ static bool observe(cau_hosted *h, observation *o)
 	cau_session_watch(h->core, cau_streams_watched(&h->streams) | o->wanted->channels);
 	cau_session_frame(h->core, &o->frame);
 	observe_tools(h, o);
+	observe_vessels(o);
 	observe_regions(h, o);
 	observe_energy(h, o);
 	return observe_positions(o) && observe_scalars(o) && observe_mask(o, h->info.face_count);

@@ -567,7 +567,7 @@ class ObservedRegion(TypedDict):
 class Observe(TypedDict):
     """what session.advance is to answer with, besides tick and time"""
 
-    # positions, mask, tools, and scalars by their names; `statistics` is in frames alone
+    # positions, mask, tools, vessels, and scalars by their names; `statistics` is in frames alone
     channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
 
     # of positions and scalars: these alone, in this order; all by default (0 to 16777215)
@@ -661,6 +661,37 @@ class ObservedTool(TypedDict):
     sequence: int
 
 
+class ObservedVessel(TypedDict):
+    """a blood vessel as it is"""
+
+    # its name
+    vessel: str
+
+    # whether it is parted somewhere
+    parted: bool
+
+    # whether its wall has a hole somewhere
+    pierced: bool
+
+    # whether it is pressed so flat somewhere that nothing flows
+    shut: bool
+
+    # whether a seal withstands the pressure of its blood
+    sealed: bool
+
+    # whether blood leaves it
+    bleeds: bool
+
+    # blood that left it in the last tick, by time (0 to 1 m^3/s)
+    bleeding_m3_s: float
+
+    # blood that has left it since the session began (0 to 1000000 m^3)
+    shed_m3: float
+
+    # predicted pressure at which its best seal opens; 0: no seal (0 to 1000000000000 Pa)
+    burst_pa: float
+
+
 class ObservedDamage(TypedDict):
     """what heat and force have done, in volumes of the tissue at rest; links have none"""
 
@@ -744,6 +775,9 @@ class Advanced(TypedDict):
 
     # as they were added
     tools: NotRequired[Sequence[ObservedTool]]
+
+    # in the scene's order
+    vessels: NotRequired[Sequence[ObservedVessel]]
 
     # in the order of the request
     regions: NotRequired[Sequence[RegionDamage]]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Mapping, Sequence
 
 import numpy as np
@@ -11,15 +11,15 @@ import numpy.typing as npt
 
 from .client import Client
 from .errors import Error
-from .messages import AdvanceCommand, Observe, ObservedEnergy, ObservedTool, RegionDamage
+from .messages import AdvanceCommand, Observe, ObservedEnergy, ObservedTool, ObservedVessel, RegionDamage
 
 
 @dataclass(frozen=True)
 class Advanced:
     """What `Session.advance` has observed; None and empty where it was not asked for.
 
-    `positions` (vertices x 3, metres), `removed` (faces; True: not drawn), `scalars` by channel, `tools` and `regions`
-    by name. `energy`: where that of the instruments went, J. `stored`: whether the ticks are on the disk.
+    `positions` (vertices x 3, metres), `removed` (faces; True: not drawn), `scalars` by channel, `tools`, `vessels`
+    and `regions` by name. `energy`: where that of the instruments went, J. `stored`: whether the ticks are on the disk.
     """
 
     tick: int
@@ -31,6 +31,7 @@ class Advanced:
     tools: Mapping[str, ObservedTool]
     regions: Mapping[str, RegionDamage]
     energy: ObservedEnergy | None = None
+    vessels: Mapping[str, ObservedVessel] = field(default_factory=dict)
 
 
 def _bits(words: Sequence[int], count: int) -> npt.NDArray[np.bool_]:
@@ -65,4 +66,5 @@ class Session:
             scalars={one["channel"]: np.asarray(one["values"], float) for one in result.get("scalars", ())},
             tools={one["tool"]: one for one in result.get("tools", ())},
             regions={one["name"]: one for one in result.get("regions", ())},
-            energy=result.get("energy"))
+            energy=result.get("energy"),
+            vessels={one["vessel"]: one for one in result.get("vessels", ())})

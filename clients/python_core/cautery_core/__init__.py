@@ -12,7 +12,7 @@ loads is. A program that must not be under the GPL talks to a daemon with the pa
 """
 
 from .errors import CommandRefused, CoreError
-from .session import Layer, Session, Tool
+from .session import Layer, Session, Tool, Vessel
 
-__all__ = ["CommandRefused", "CoreError", "Layer", "Session", "Tool"]
+__all__ = ["CommandRefused", "CoreError", "Layer", "Session", "Tool", "Vessel"]
 __version__ = "0.1.0.dev0"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ctypes import (CFUNCTYPE, POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64,
                     c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)
 
-NAME_BYTES, TEXT_BYTES, MAX_LAYERS, MAX_VESSELS = 49, 256, 12, 8
+NAME_BYTES, TEXT_BYTES, MAX_LAYERS, MAX_VESSELS, VESSEL_POINTS = 49, 256, 12, 8, 64
 STATUSES = ("ok", "bad_value", "bad_syntax", "bad_mesh", "bad_state", "not_found", "already_exists", "limit",
             "unsupported", "no_memory", "io", "numerical", "faulted", "corrupt")
 SHAPES = ("sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper")
@@ -104,6 +104,20 @@ class Statistics(Structure):
                 ("energy_scale_j", c_double), ("error", c_double), ("resting", c_bool)]
 
 
+class VesselPoint(Structure):
+    """cau_vessel_point"""
+
+    _fields_ = [("position_m", c_float * 3), ("open", c_float)]
+
+
+class VesselState(Structure):
+    """cau_vessel_state"""
+
+    _fields_ = [("name", c_char * NAME_BYTES), ("flags", c_uint32), ("radius_m", c_double), ("bleeding_m3_s", c_double),
+                ("shed_m3", c_double), ("burst_pa", c_double), ("point_count", c_int32),
+                ("point", VesselPoint * VESSEL_POINTS)]
+
+
 class Frame(Structure):
     """cau_frame"""
 
@@ -111,14 +125,15 @@ class Frame(Structure):
                 ("moved_count", c_int32), ("moved", c_void_p), ("face_mask", c_void_p),
                 ("mask_changed_count", c_int32), ("mask_changed", c_void_p), ("vertex_visible", c_void_p),
                 ("scalar", c_void_p * len(SCALARS)), ("tool_count", c_int32), ("tools", POINTER(ToolState)),
-                ("vessel_count", c_int32), ("vessels", c_void_p * MAX_VESSELS), ("refusal_count", c_int32), ("refusals", POINTER(Error)), ("statistics", Statistics)]
+                ("vessel_count", c_int32), ("vessels", POINTER(VesselState) * MAX_VESSELS), ("refusal_count", c_int32), ("refusals", POINTER(Error)), ("statistics", Statistics)]
 
 
 # The struct of each class in the headers.
 C_NAMES: dict[type[Structure], str] = {
     Error: "cau_error", BuildBorder: "cau_build_border", SessionDef: "cau_session_def",
     SessionLayer: "cau_session_layer", SessionInfo: "cau_session_info", Pose: "cau_pose", ToolDef: "cau_tool_def",
-    ToolState: "cau_tool_state", Statistics: "cau_statistics", Frame: "cau_frame"}
+    ToolState: "cau_tool_state", Statistics: "cau_statistics", VesselPoint: "cau_vessel_point",
+    VesselState: "cau_vessel_state", Frame: "cau_frame"}
 
 # The numbers behind the pointers that the package reads.
 FLOATS, DOUBLES, INTS, WORDS, BYTES = c_float, c_double, c_int32, c_uint32, c_uint8

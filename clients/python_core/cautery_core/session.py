@@ -57,6 +57,24 @@ class Tool:
     sizes: Mapping[str, float]  # the members of a scene's tool, temperature_c among them
 
 
+@dataclass(frozen=True)
+class Vessel:
+    """A blood vessel after a step."""
+
+    name: str
+    parted: bool
+    pierced: bool  # its wall has a hole
+    shut: bool  # pressed so flat that nothing flows
+    sealed: bool  # a seal withstands the pressure of the blood
+    bleeds: bool
+    radius_m: float
+    bleeding_m3_s: float
+    shed_m3: float  # blood that has left it
+    burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
+    points: Floats  # (P, 3), m: its middle line
+    open: Floats  # (P,): share of the lumen's area that is open; below 0: parted there
+
+
 def _text(bytes_: bytes) -> str:
     return bytes_.decode("utf-8", "replace")
 
@@ -103,6 +121,14 @@ def _tool(state: layout.ToolState) -> Tool:
         raw_force_n=np.array(state.raw_force_n), raw_torque_nm=np.array(state.raw_torque_nm),
         tip_temperature_c=state.tip_temperature_c, energy_j=state.energy_j, slips=state.slips,
         sizes=_sizes(state.definition))
+
+
+def _vessel(state: layout.VesselState) -> Vessel:
+    points = state.point[:state.point_count]
+    return Vessel(_text(state.name), *(bool(state.flags >> bit & 1) for bit in range(5)), state.radius_m,
+                  state.bleeding_m3_s, state.shed_m3, state.burst_pa,
+                  np.array([list(one.position_m) for one in points], float).reshape(-1, 3),
+                  np.array([one.open for one in points], float))
 
 
 class Session:
@@ -295,9 +321,9 @@ class Session:
             return _array(layout.BYTES, self._frame().vertex_visible, self.vertex_count).astype(bool)
 
     def scalar(self, name: str) -> npt.NDArray[np.float32]:
-        """(V,) of "exposure", "charring", "stress" (Pa) or "temperature" (degC).
+        """(V,) of "exposure", "charring", "stress" (Pa), "temperature" (degC) or "blood" (m).
 
-        From the first call on, steps compute stress or temperature too.
+        From the first call on, steps compute stress, temperature or blood too.
         """
         if name not in layout.SCALARS:
             raise ValueError(f"{name!r} is none of {', '.join(layout.SCALARS)}")
@@ -315,6 +341,14 @@ class Session:
             frame = self._frame()
             states = [_tool(frame.tools[i]) for i in range(frame.tool_count)]
         return {tool.name: tool for tool in states}
+
+    @property
+    def vessels(self) -> dict[str, Vessel]:
+        """The blood vessels by name, in the scene's order."""
+        with self._lock:
+            frame = self._frame()
+            states = [_vessel(frame.vessels[i].contents) for i in range(frame.vessel_count)]
+        return {vessel.name: vessel for vessel in states}
 
     @property
     def statistics(self) -> dict[str, float]:

@@ -122,6 +122,26 @@ class Physics(unittest.TestCase):
             self.assertTrue(np.array_equal(hook.force_n, hook.raw_force_n))
             self.assertTrue(np.array_equal(hook.torque_nm, hook.raw_torque_nm))
 
+    def test_a_cut_vessel_bleeds_and_a_restore_makes_it_whole(self):
+        with Session(os.path.join(SCENES, "pedicle.json")) as session:
+            whole = session.snapshot()
+            artery = session.vessels["artery"]
+            self.assertEqual((artery.parted, artery.bleeds, artery.shed_m3), (False, False, 0))
+            self.assertTrue(np.allclose(artery.points[[0, -1], 0], [-0.02, 0.02], atol=1e-6))
+            session.move_tool("needle", [0, -0.006, -0.007])
+            session.step(30)
+            session.energize("needle")
+            for tick in range(60):
+                session.move_tool("needle", [0, -0.006 + 0.0002 * tick, -0.007])
+                session.step()
+            artery = session.vessels["artery"]
+            self.assertEqual((artery.parted, artery.bleeds, artery.sealed), (True, True, False))
+            self.assertGreater(artery.shed_m3, 0)
+            self.assertLess(artery.open.min(), 0)
+            self.assertGreater(session.scalar("blood").max(), 0)
+            session.restore(whole)
+            self.assertEqual((session.vessels["artery"].parted, session.vessels["artery"].shed_m3), (False, 0))
+
     def test_a_restore_brings_back_the_bits(self):
         with Session(small()) as session:
             session.move_tool("hook", [0, 0, -0.002])

@@ -156,7 +156,8 @@ static void print_table(FILE *out)
 	cau_default_selection(&selection, CAU_SELECT_RIM);
 	cau_default_tool_def(&tool, CAU_TOOL_HOOK);
 	print_title(out, "The scene",
-	            "Beside these, the arrays `meshes`, `layers`, `pins` and `tools`, and the objects "
+	            "Beside these, the arrays `meshes`, `layers`, `pins`, `tools` and `vessels`, and "
+	            "the objects "
 	            "`pull` and `cut`.");
 	print_rows(out, &cau_scene_record, &scene);
 	print_title(out, "A mesh", "Elements of `meshes`.");
@@ -169,6 +170,16 @@ static void print_table(FILE *out)
 	print_rows(out, &cau_tool_name_record, &tool);
 	print_rows(out, &cau_tool_record, &tool);
 	print_rows(out, &cau_pose_record, &tool.pose);
+	cau_vessel_def vessel;
+	cau_default_vessel_def(&vessel);
+	print_title(
+		out, "A vessel",
+		"Elements of `vessels`: blood vessels in a layer of fat, with energy `tissue` "
+		"([core/vessel](../../core/vessel/README.md)). `points`, an array of 2 to 32, holds the "
+		"places of its middle line.");
+	print_rows(out, &cau_vessel_record, &vessel);
+	print_title(out, "A point of a vessel", "Elements of a vessel's `points`.");
+	print_rows(out, &cau_vessel_point_record, vessel.points_m[0]);
 	print_title(out, "The pull", "`pull`, with its `selection`: a motion for measurements.");
 	print_rows(out, &cau_pull_record, &scene.pull);
 	print_title(out, "The cut", "`cut`: the tool dwells where it begins, then is drawn.");

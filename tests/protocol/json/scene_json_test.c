@@ -80,7 +80,7 @@ static void every_scene_file_comes_back(void **state)
 		count++;
 	}
 	closedir(folder);
-	assert_int_equal(count, 13);
+	assert_int_equal(count, 14);
 }
 
 static const char everything[] =

@@ -290,7 +290,7 @@ export interface ObservedRegion {
 
 /** what session.advance is to answer with, besides tick and time */
 export interface Observe {
-  /** positions, mask, tools, and scalars by their names; `statistics` is in frames alone */
+  /** positions, mask, tools, vessels, and scalars by their names; `statistics` is in frames alone */
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
   /** of positions and scalars: these alone, in this order; all by default (0 to 16777215) */
   vertices?: number[];
@@ -358,6 +358,28 @@ export interface ObservedTool {
   sequence: number;
 }
 
+/** a blood vessel as it is */
+export interface ObservedVessel {
+  /** its name */
+  vessel: string;
+  /** whether it is parted somewhere */
+  parted: boolean;
+  /** whether its wall has a hole somewhere */
+  pierced: boolean;
+  /** whether it is pressed so flat somewhere that nothing flows */
+  shut: boolean;
+  /** whether a seal withstands the pressure of its blood */
+  sealed: boolean;
+  /** whether blood leaves it */
+  bleeds: boolean;
+  /** blood that left it in the last tick, by time (0 to 1 m^3/s) */
+  bleeding_m3_s: number;
+  /** blood that has left it since the session began (0 to 1000000 m^3) */
+  shed_m3: number;
+  /** predicted pressure at which its best seal opens; 0: no seal (0 to 1000000000000 Pa) */
+  burst_pa: number;
+}
+
 /** what heat and force have done, in volumes of the tissue at rest; links have none */
 export interface ObservedDamage {
   /** tetrahedra and triangles that are not there any more (0 to 9007199254740991) */
@@ -418,6 +440,8 @@ export interface Advanced {
   scalars?: ObservedScalar[];
   /** as they were added */
   tools?: ObservedTool[];
+  /** in the scene's order */
+  vessels?: ObservedVessel[];
   /** in the order of the request */
   regions?: RegionDamage[];
   /** of the whole session */
