@@ -3,7 +3,7 @@
 // automated: a fake answers it, as the page says that only a person can.
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 /** In the page, before its scripts: a WebHID with one 3D mouse that tests hold. */
 function holdSpaceMouse(): void {
@@ -26,7 +26,7 @@ function holdSpaceMouse(): void {
 }
 
 describe('devices beside mouse and keys', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
 
   const report = (id: number, values: number[]): Promise<void> =>

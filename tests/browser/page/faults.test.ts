@@ -2,7 +2,7 @@
 // Faults that the page once had: messages under the veil, numbers that are cut off, units among the words, a tool that is
 // taken from its driver without a question.
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 /** In the page: inputs of numbers that are narrower than what they show, of those that are seen. */
 function clippedNumbers(): string[] {
@@ -12,7 +12,7 @@ function clippedNumbers(): string[] {
 }
 
 describe('the page', () => {
-  const stage = new Stage(['--demo', 'layers']);
+  const stage = new Stage(['--demo', 'layers'], COARSE);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
@@ -47,7 +47,7 @@ describe('the page', () => {
   });
 
   it('asks an admin before a tool is taken from its driver', async () => {
-    const driver = await ViewerPage.openFirst(stage.browser, `${stage.daemon.url}?session=d1-layers`);
+    const driver = await ViewerPage.openFirst(stage.browser, `${stage.daemon.url}?session=d1-layers`, COARSE);
     await driver.live('d1-layers');
     await driver.page.getByRole('button', { name: 'Take the tool' }).click();
     await driver.until(() => window.cautery.driving, null, 'the tool is taken');

@@ -4,7 +4,7 @@ import type { CDPSession } from 'playwright-core';
 
 import { A, holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
 const NEAR_M = 0.004;
@@ -20,7 +20,7 @@ interface Finger {
 }
 
 describe('hands', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
   let fingers: CDPSession;
 
@@ -92,7 +92,7 @@ describe('hands', () => {
 });
 
 describe('hands that need a page in front', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
 
   beforeAll(async () => {

@@ -5,7 +5,7 @@ import type { CDPSession } from 'playwright-core';
 
 import { holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
 import { BrowserStage, daemonForTest } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const FACES = 6000; // of deploy/scenes/fascia.json
 const CUT_FACES = 8;
@@ -112,7 +112,7 @@ describe('each input alone takes a free tool, moves it and cuts', () => {
 
   it.each(INPUTS)('%s', async (name, play) => {
     const daemon = await daemonForTest(['--demo', 'fascia']);
-    const viewer = await ViewerPage.openFirst(stage.browser, daemon.url, name.includes('finger') ? TABLET : {});
+    const viewer = await ViewerPage.openFirst(stage.browser, daemon.url, name.includes('finger') ? { ...TABLET, ...COARSE } : COARSE);
     await viewer.live('d1-fascia');
     expect((await viewer.state()).driving).toBe(false);
     const begun = Date.now();

@@ -2,7 +2,7 @@
 // Energy without a hand on it: plainly shown, ended by whoever wants to, and by the daemon when its time is up.
 import { Door } from './door';
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const FACES = 6000; // of deploy/scenes/fascia.json
 const CUT_FACES = 8;
@@ -14,7 +14,7 @@ describe('latched energy', () => {
 
   beforeAll(async () => {
     door = new Door(stage.daemon.url);
-    viewer = await ViewerPage.openFirst(stage.browser, await door.start());
+    viewer = await ViewerPage.openFirst(stage.browser, await door.start(), COARSE);
     await viewer.live('d1-fascia');
   });
   afterAll(() => door.end());

@@ -3,6 +3,7 @@
 import { fileURLToPath } from 'node:url';
 
 import { Stage } from './stage';
+import { COARSE } from './viewer_page';
 
 const MANUAL = fileURLToPath(new URL('../../../clients/web/dist-manual', import.meta.url));
 const BEYOND = /^(https?|mailto):/;
@@ -32,7 +33,7 @@ async function follow(first: string): Promise<Map<string, string>> {
 }
 
 describe('the manual', () => {
-  const stage = new Stage(['--manual', MANUAL]);
+  const stage = new Stage(['--manual', MANUAL], COARSE);
   const complaints: string[] = [];
   const open = async (path: string) => {
     const page = await stage.browser.newPage({ reducedMotion: 'reduce' });

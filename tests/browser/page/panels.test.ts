@@ -4,13 +4,13 @@
 import type { Locator } from 'playwright-core';
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const LIFTED_M = 0.003;
 const LIST_READ_AGAIN_MS = 5500; // REFRESH_MS of panels/sessions.ts, and a little
 
 describe('panels', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
   let forces: Locator;
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Looking back: the timeline shows the tissue as it was, in one page alone, while the session goes on.
 import { Stage } from './stage';
-import type { ViewerPage } from './viewer_page';
+import { COARSE, type ViewerPage } from './viewer_page';
 
 const FACES = 6000; // of deploy/scenes/fascia.json
 const HOT_C = 900;
 
 describe('looking back', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
   let other: ViewerPage;
   let left = 0;

@@ -2,7 +2,7 @@
 // What the tools did over the session is plotted, with one cursor in all plots that is the timeline's too.
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const HOT_C = 150;
 const BODY_C = 37;
@@ -31,7 +31,7 @@ declare global {
 }
 
 describe('plots over the session', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
 
   const told = async (): Promise<{ seconds: number; celsius: number; joules: number }> => {

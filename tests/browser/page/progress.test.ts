@@ -3,7 +3,7 @@
 // ends there is tissue. A door holds the daemon's answers up for as long as the test looks.
 import { HoldingDoor } from './door';
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 describe('while something is under way', () => {
   const stage = new Stage(['--demo', 'fascia']);
@@ -12,7 +12,7 @@ describe('while something is under way', () => {
 
   beforeAll(async () => {
     door = new HoldingDoor(stage.daemon.url);
-    viewer = await ViewerPage.open(stage.browser, await door.start());
+    viewer = await ViewerPage.open(stage.browser, await door.start(), COARSE);
     await viewer.live('d1-fascia');
   });
   afterEach(() => door.letGo());

@@ -2,13 +2,13 @@
 // What does not happen is said at once, where the eye is: at the tool.
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const DEADLINE_S = 1;
 const BUSY_MS = 2000;
 
 describe('energy that a busy machine cuts', () => {
-  const stage = new Stage(['--demo', 'fascia', '--browser-deadline-s', String(DEADLINE_S)]);
+  const stage = new Stage(['--demo', 'fascia', '--browser-deadline-s', String(DEADLINE_S)], COARSE);
   let viewer: ViewerPage;
 
   beforeAll(async () => {

@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const folder = mkdtempSync(join(tmpdir(), 'cautery-secure-'));
 const [certificate, key] = [join(folder, 'cert.pem'), join(folder, 'key.pem')];
@@ -14,12 +14,12 @@ execFileSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramg
   '-keyout', key, '-out', certificate, '-subj', '/CN=viewer', '-addext', 'subjectAltName=IP:127.0.0.1'], { stdio: 'ignore' });
 
 describe('a daemon with TLS', () => {
-  const stage = new Stage(['--demo', 'fascia', '--tls-certificate', certificate, '--tls-key', key]);
+  const stage = new Stage(['--demo', 'fascia', '--tls-certificate', certificate, '--tls-key', key], COARSE);
   afterAll(() => rmSync(folder, { recursive: true, force: true }));
 
   it('serves a page that is live, and talks to it by wss alone', async () => {
     const url = stage.daemon.url.replace('http:', 'https:');
-    const viewer = await ViewerPage.open(stage.browser, url, { ignoreHTTPSErrors: true }); // of no authority that it knows
+    const viewer = await ViewerPage.open(stage.browser, url, { ignoreHTTPSErrors: true, ...COARSE }); // of no authority that it knows
     await viewer.live('d1-fascia');
     expect([...viewer.schemes].sort()).toEqual(['https:', 'wss:']);
     expect(await viewer.page.evaluate(() => isSecureContext)).toBe(true);

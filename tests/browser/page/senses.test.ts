@@ -2,7 +2,7 @@
 // Smoke and sound are there while tissue burns and end afterwards. Each has a box that turns it off. With reduced motion
 // there is no smoke. The alarm comes where a page loses its daemon with energy on.
 import { Stage } from './stage';
-import { MOVING, ViewerPage } from './viewer_page';
+import { COARSE, MOVING, ViewerPage } from './viewer_page';
 
 const CUT_HZ = 660;
 const PLACE: [number, number, number] = [0.01, 0.01, 0];
@@ -49,7 +49,7 @@ const leadOn = async (viewer: ViewerPage, [x, y, z]: [number, number, number]): 
 };
 
 describe('smoke and sound', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
 
   it('are there while tissue burns, and end', async () => {
     const viewer = await stage.openFirst(MOVING);
@@ -73,7 +73,7 @@ describe('smoke and sound', () => {
 });
 
 describe('smoke and sound of a page that loses its daemon', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
 
   it('are without smoke for who wants less motion, and alarm when the daemon is lost with energy on', async () => {
     const viewer = await stage.openFirst();

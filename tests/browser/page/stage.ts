@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the tests of a `describe` play on: a daemon and a browser, there before the first of them and gone
 // after the last, passed or failed.
-import type { Browser, BrowserContextOptions } from 'playwright-core';
+import type { Browser } from 'playwright-core';
 
 import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { launch, ViewerPage, type PageOptions } from './viewer_page';
 
 /** A browser for the tests of the `describe` in which it is made. */
 export class BrowserStage {
@@ -18,11 +18,11 @@ export class BrowserStage {
   }
 }
 
-/** A daemon besides, and pages of it. Whatever the `describe` does before all of its tests comes after both have started. */
+/** A daemon besides, and pages of it, all with the options `common`. Whatever the `describe` does before all of its tests comes after both have started. */
 export class Stage extends BrowserStage {
   readonly daemon: Daemon;
 
-  constructor(settings: readonly string[]) {
+  constructor(settings: readonly string[], private readonly common: PageOptions = {}) {
     super();
     this.daemon = new Daemon(settings);
     beforeAll(() => this.daemon.start());
@@ -30,13 +30,13 @@ export class Stage extends BrowserStage {
   }
 
   /** A page for researchers. */
-  open(options: BrowserContextOptions = {}): Promise<ViewerPage> {
-    return ViewerPage.open(this.browser, this.daemon.url, options);
+  open(options: PageOptions = {}): Promise<ViewerPage> {
+    return ViewerPage.open(this.browser, this.daemon.url, { ...this.common, ...options });
   }
 
   /** A page as it comes up the first time. */
-  openFirst(options: BrowserContextOptions = {}): Promise<ViewerPage> {
-    return ViewerPage.openFirst(this.browser, this.daemon.url, options);
+  openFirst(options: PageOptions = {}): Promise<ViewerPage> {
+    return ViewerPage.openFirst(this.browser, this.daemon.url, { ...this.common, ...options });
   }
 }
 

@@ -3,21 +3,21 @@
 // goes out of sight loses its energy; a killed daemon comes back and so do the pages.
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const HOT_C = 900;
 const HOTTER_C = 950;
 const NEAR_PX = 120; // of words that are read without looking elsewhere
 
 describe('two pages on one session', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let driver: ViewerPage;
   let watcher: ViewerPage;
 
   beforeAll(async () => {
     driver = await stage.open();
     await driver.live('d1-fascia');
-    watcher = await ViewerPage.open(stage.browser, `${stage.daemon.url}?session=d1-fascia`);
+    watcher = await ViewerPage.open(stage.browser, `${stage.daemon.url}?session=d1-fascia`, COARSE);
     await watcher.live('d1-fascia');
   });
 

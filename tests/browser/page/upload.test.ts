@@ -3,7 +3,7 @@
 
 import { Door } from './door';
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { COARSE, ViewerPage } from './viewer_page';
 
 const CELLS = 24;
 const HOT_C = 900;
@@ -41,7 +41,7 @@ function ballObj(radius: number, middle: number): string {
 }
 
 describe('a mesh of one’s own', () => {
-  const stage = new Stage([]);
+  const stage = new Stage([], COARSE);
   let viewer: ViewerPage;
 
   /** `unit`: millimetres in one unit, '' to let the daemon guess. */
@@ -111,7 +111,7 @@ describe('a mesh of one’s own', () => {
 });
 
 describe('a body of one’s own', () => {
-  const stage = new Stage([]);
+  const stage = new Stage([], COARSE);
   let viewer: ViewerPage;
   let door: Door;
   const errors: string[] = [];
@@ -134,7 +134,7 @@ describe('a body of one’s own', () => {
       if (/"error":/.test(text)) errors.push(text);
       return text;
     };
-    viewer = await ViewerPage.open(stage.browser, await door.start(), {}, 'operate');
+    viewer = await ViewerPage.open(stage.browser, await door.start(), COARSE, 'operate');
     await viewer.until(() => window.cautery.link === 'online', null, 'online');
   });
 

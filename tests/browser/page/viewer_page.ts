@@ -24,6 +24,12 @@ const PATIENCE_MS = 120_000; // two cores may be busy with other tests
 const STILL = { viewport: { width: 1100, height: 720 }, colorScheme: 'dark', reducedMotion: 'reduce' } as const;
 /** Of pages that move as most people's do. */
 export const MOVING = { reducedMotion: 'no-preference' } as const;
+/** Of pages whose picture no test looks at: software draws it in a sixteenth of the pixels. */
+export const COARSE = { coarse: true } as const;
+
+export interface PageOptions extends BrowserContextOptions {
+  coarse?: boolean;
+}
 
 export function launch(): Promise<Browser> {
   return chromium.launch({ executablePath: '/usr/bin/chromium-headless-shell', headless: true, args: FLAGS });
@@ -38,12 +44,13 @@ export class ViewerPage {
   private constructor(readonly page: Page) {}
 
   /** As it comes up the first time, for trainees; tests of the panels open it for researchers. */
-  static openFirst(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<ViewerPage> {
+  static openFirst(browser: Browser, url: string, options: PageOptions = {}): Promise<ViewerPage> {
     return ViewerPage.open(browser, url, options, 'operate');
   }
 
-  static async open(browser: Browser, url: string, options: BrowserContextOptions = {}, mode = 'research'): Promise<ViewerPage> {
-    const context = await browser.newContext({ ...STILL, ...options });
+  static async open(browser: Browser, url: string, options: PageOptions = {}, mode = 'research'): Promise<ViewerPage> {
+    const { coarse, ...others } = options;
+    const context = await browser.newContext({ ...STILL, ...others });
     const page = await context.newPage();
     const viewer = new ViewerPage(page);
     page.on('console', (message) => {
@@ -58,6 +65,7 @@ export class ViewerPage {
     page.on('request', (request) => note(request.url()));
     page.on('websocket', (socket) => note(socket.url()));
     await page.addInitScript((kept) => localStorage.setItem('mode', kept), mode);
+    if (coarse) await page.addInitScript(() => Object.defineProperty(window, 'devicePixelRatio', { value: 0.25 })); // the layout stays
     await page.goto(url);
     return viewer;
   }
