@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes one ctest suite out of several build trees, so that one ctest run reports on all of them.
 
-Usage: collect_tests.py SUITE NAME TREE LABELS WITHOUT TIMEOUT_FACTOR [BUILD COMMAND...]
+Usage: collect_tests.py [--without-names FILE] SUITE NAME TREE LABELS WITHOUT TIMEOUT_FACTOR [BUILD COMMAND...]
 
 Appends the tests of the configured build tree TREE whose labels match the regular expression LABELS
 (all with an empty one) and not WITHOUT (none with an empty one) to SUITE/CTestTestfile.cmake, each
 named NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR. With
 a command, building the tree is a test of its own, NAME.build, which the others wait for. In place of
-the word "programs" the command gets the targets that these tests run.
+the word "programs" the command gets the targets that these tests run. FILE names tests to leave out
+besides: the first word of each line that is no comment.
 
 How the tests share the machine. The suite is run with `--parallel 12`, six slots for each of two
 cores. First comes what measures times (RUN_SERIAL in its tree): one at a time, with eleven slots. What
@@ -46,6 +47,12 @@ def list_tests(tree, labels, without):
     command += ["--label-exclude", without] if without else []
     answer = subprocess.run(command, cwd=tree, check=True, stdout=subprocess.PIPE)
     return json.loads(answer.stdout)["tests"]
+
+
+def named_in(path):
+    """The tests that a file like tests/later.txt names."""
+    with open(path, encoding="utf-8") as file:
+        return {line.split()[0] for line in file if line.strip() and not line.startswith("#")}
 
 
 def is_tree(folder):
@@ -159,8 +166,17 @@ def known_timing(suite, further):
         return file.read().split()
 
 
-def main(suite, suite_name, tree, labels, without, timeout_factor, *build):
+def without_named(tests, path, tree):
+    left_out, known = named_in(path), {test["name"] for test in list_tests(tree, "", "")}
+    if left_out - known:
+        sys.exit(f"{path} names tests that {tree} does not have: {', '.join(sorted(left_out - known))}")
+    return [test for test in tests if test["name"] not in left_out]
+
+
+def main(suite, suite_name, tree, labels, without, timeout_factor, *build, without_names=None):
     tests, commands = list_tests(tree, labels, without), written_commands(tree)
+    if without_names:
+        tests = without_named(tests, without_names, tree)
     if not tests:
         sys.exit(f"{suite_name}: {tree} has no test with a label that matches '{labels}'")
     os.makedirs(suite, exist_ok=True)
@@ -173,4 +189,8 @@ def main(suite, suite_name, tree, labels, without, timeout_factor, *build):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    arguments = sys.argv[1:]
+    if arguments[0] == "--without-names":
+        main(*arguments[2:], without_names=arguments[1])
+    else:
+        main(*arguments)

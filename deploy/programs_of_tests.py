@@ -15,8 +15,9 @@ import sys
 
 # Where CMake puts programs, libraries to preload included: a target is named as its file.
 PROGRAM = r"/(?:bin|tests|fuzz|protocol/generate)/(?:lib)?([\w-]+)(?:\.so)?(?=[\";\s]|$)"
-# Tests that look at, or install, what the whole project was compiled to.
-EVERYTHING = re.compile(r"/(?:objects\.txt|cmake_install\.cmake)")
+# Tests that look at, or install, what all folders but tests/ were compiled to, need this target.
+ROOMS_TARGET = "cautery_rooms"
+ROOMS = re.compile(r"/(?:objects\.txt|cmake_install\.cmake)")
 
 
 def names(tree, regex):
@@ -42,7 +43,9 @@ def programs(tree, wanted):
     program = re.compile(f"(?:{'|'.join(paths)}){PROGRAM}")
     for name, line in definitions(tree):
         if name in wanted:
-            found.update(["all"] if EVERYTHING.search(line) else program.findall(line))
+            found.update(program.findall(line))
+            if ROOMS.search(line):
+                found.add(ROOMS_TARGET)
     return sorted(found)
 
 

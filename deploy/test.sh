@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what is missing, builds, and runs the tests. Ends with ctest's closing lines; the exit
-# code is 0 only if everything was built and every test passed. See --help.
+# Installs what is missing, builds, and runs the tests. Ends with ctest's closing lines, and without a level also says
+# how to run the other tests. The exit code is 0 only if everything was built and every test passed. See --help.
 set -euo pipefail
 exec </dev/null
 
 usage() {
 	cat <<'END'
-Usage: deploy/test.sh [--fast | --full | --long | --campaign] [--no-install]
+Usage: deploy/test.sh [--release | --full | --long | --campaign] [--no-install]
        deploy/test.sh --only REGEX [--preset NAME] [--no-install]
        deploy/test.sh --fleet [--no-install]
 
-  (nothing)     the Release suite, browser tests included; address and undefined-behaviour
-                sanitizers over the unit and e2e tests; 10 s of fuzzing for each parser
-  --fast        the Release suite alone
-  --full        adds the thread sanitizer over the unit, determinism and e2e tests, clang-tidy,
-                tests labelled full, clang's warnings on every source
+  (nothing)     the first run: a Release build and its unit, reference, determinism and e2e tests, without the
+                slow ones (tests/later.txt), and one test of the viewer in a browser
+  --release     the whole Release suite, browser tests included
+  --full        what CI runs: adds address and undefined-behaviour sanitizers over the unit and e2e tests,
+                the thread sanitizer over the unit, determinism and e2e tests, 10 s of fuzzing for each
+                parser, clang-tidy with clang's warnings on every source, and tests labelled full
   --long        as --full, with tests labelled long, clang's analyzer on tests, and 600 s of fuzzing
   --only REGEX  the tests whose names match, in one tree: builds what these run and nothing else
   --preset NAME with --only: the tree of this preset instead of release's (asan-ubsan, tsan, dev)
@@ -27,9 +28,9 @@ Usage: deploy/test.sh [--fast | --full | --long | --campaign] [--no-install]
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
-On two cores, with nothing built before, --full takes about an hour; the default and --fast less,
-of which the browser's tests take seven. Tests of one tree run while the next is built. One source
-changed: --only, in seconds.
+On two cores, with the packages installed and nothing built before, the first run takes about five
+minutes and --full about an hour. Tests of one tree run while the next is built. One source changed:
+--only, in seconds.
 
 Build trees: build, build-asan, build-fuzz, build-tsan. Logs of the stages: build/log.
 Environment: CAUTERY_MESHES, a folder with further test meshes (default: ../shared/meshes beside
@@ -37,7 +38,7 @@ the source folder, if there is one); CAUTERY_JOBS, parallel compilers (default: 
 END
 }
 
-level=default
+level=first
 install=yes
 only=
 fleet=
@@ -45,7 +46,7 @@ campaign=
 only_preset=release
 while [ $# -gt 0 ]; do
 	case $1 in
-	--fast | --full | --long) level=${1#--} ;;
+	--release | --full | --long) level=${1#--} ;;
 	--fleet) fleet=yes ;;
 	--campaign) campaign=yes ;;
 	--no-install) install=no ;;
@@ -114,6 +115,8 @@ configure() {
 
 # collect NAME PRESET LABELS WITHOUT TIMEOUT_FACTOR [TARGET]: adds a tree's tests to the suite; with a target,
 # a first test builds it, and the others wait for it. TARGET "programs": the programs that these tests run.
+# The array `leaving` has further options of collect_tests.py.
+leaving=()
 collect() {
 	local name=$1 preset=$2 tree build=()
 	tree=$(tree_of "$preset")
@@ -121,7 +124,7 @@ collect() {
 		build=("$source_folder/deploy/build_tree.sh" "$logs/build-$name.log"
 			cmake --build "$source_folder/$tree" --parallel "$jobs" --target "$6")
 	fi
-	python3 -B deploy/collect_tests.py "$suite" "$name" "$tree" "${@:3:3}" "${build[@]}"
+	python3 -B deploy/collect_tests.py "${leaving[@]}" "$suite" "$name" "$tree" "${@:3:3}" "${build[@]}"
 }
 
 # follow CTEST_ARGUMENTS...: runs tests, and says what is running where ctest is silent.
@@ -173,14 +176,30 @@ test_fleet() {
 		exec python3 -B tests/deploy/fleet_network_test.py "$source_folder"
 }
 
-# configure_all LEVEL: every tree that the level looks at.
+# first_run: builds what the tests run that find most in the least time, and runs them.
+first_run() {
+	heading "configure (logs in build/log)"
+	configure release
+	rm -rf "$suite"
+	leaving=(--without-names tests/later.txt)
+	collect release release '' 'full|long|browser|bench' 1 programs
+	local status=0
+	follow --test-dir "$suite" --parallel 12 || status=$?
+	cat <<'END'
+
+These were the tests that find most in the least time. Further levels (deploy/test.sh --help):
+  deploy/test.sh --release   all tests of this build, those in browsers too
+  deploy/test.sh --full      all that CI runs: sanitizers, fuzzing and clang-tidy besides
+END
+	exit $status
+}
+
+# configure_all: every tree that the level needs.
 configure_all() {
 	configure release -DCAUTERY_LONG=$long
-	if [ "$level" != fast ]; then
+	if [ "$level" != release ]; then
 		configure asan-ubsan
 		configure fuzz -DCAUTERY_FUZZ_SECONDS=$fuzz_seconds -DCAUTERY_TIDY=$tidy -DCAUTERY_LONG=$long
-	fi
-	if [ "$level" = full ] || [ "$level" = long ]; then
 		configure tsan
 	fi
 }
@@ -188,12 +207,10 @@ configure_all() {
 # collect_all: the suite, after the release tree is built and the others are configured.
 collect_all() {
 	rm -rf "$suite"
-	collect release release '' "$without" 1
-	if [ "$level" != fast ]; then
+	collect release release '' "smoke${without:+|$without}" 1
+	if [ "$level" != release ]; then
 		collect asan asan-ubsan 'unit|e2e' "$sanitizers_without" 4 programs
 		collect clang fuzz 'fuzz|tidy' '' 1 fuzz_targets
-	fi
-	if [ "$level" = full ] || [ "$level" = long ]; then
 		collect tsan tsan 'unit|determinism|e2e' "unthreaded|$sanitizers_without" 10 programs
 	fi
 }
@@ -222,6 +239,10 @@ if [ -n "$fleet" ]; then
 fi
 if [ -n "$campaign" ]; then
 	test_campaign
+fi
+
+if [ "$level" = first ]; then
+	first_run
 fi
 
 heading "configure (logs in build/log)"

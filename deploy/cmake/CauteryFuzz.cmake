@@ -25,7 +25,12 @@ function(cautery_fuzz)
   add_dependencies(fuzz_targets fuzz_${F_NAME})
 
   if(NOT CAUTERY_FUZZ)
-    target_sources(fuzz_${F_NAME} PRIVATE "${PROJECT_SOURCE_DIR}/tests/fuzz/replay.c")
+    if(NOT TARGET cautery_replay) # compiled once for all of them
+      add_library(cautery_replay OBJECT "${PROJECT_SOURCE_DIR}/tests/fuzz/replay.c")
+      target_link_libraries(cautery_replay PRIVATE cautery_compiler)
+      target_include_directories(cautery_replay PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+    endif()
+    target_sources(fuzz_${F_NAME} PRIVATE $<TARGET_OBJECTS:cautery_replay>)
     add_test(NAME replay_${F_NAME} COMMAND fuzz_${F_NAME} ${F_SEEDS})
     if(NOT F_THREADS)
       cautery_without_threads(fuzz_${F_NAME})

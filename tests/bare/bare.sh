@@ -3,7 +3,7 @@
 # Runs deploy/test.sh in a fresh clone on a bare Debian 12, made by debootstrap in a chroot: shows
 # that deploy/packages.txt is complete and that nothing of this machine is needed.
 #
-# Usage: bare.sh FOLDER [OPTION OF deploy/test.sh...]     (default option: --fast)
+# Usage: bare.sh FOLDER [OPTION OF deploy/test.sh...]     (default option: --release)
 # Needs root, debootstrap and a Debian mirror (CAUTERY_MIRROR, default http://deb.debian.org/debian).
 # FOLDER is kept, and used again by the next run. Exit code 77: cannot be done here.
 set -euo pipefail
@@ -11,7 +11,7 @@ set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 folder=${1:?usage: bare.sh FOLDER [OPTION OF deploy/test.sh...]}
 shift
-[ $# -gt 0 ] || set -- --fast
+[ $# -gt 0 ] || set -- --release
 mirror=${CAUTERY_MIRROR:-http://deb.debian.org/debian}
 
 skip() {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox; or `pictures`, which
+# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|manual|browser|smoke|firefox; or `pictures`, which
 # makes clients/web/pictures anew from those of the browser tests that take them; or `wound`, which makes
 # clients/web/pictures/wound anew.
 # Exit code 77: skipped, with the reason. ctest sets the environment (tests/browser/CMakeLists.txt).
@@ -34,12 +34,15 @@ unit)
 	"$CAUTERY_WRITE_FRAMES" "$CAUTERY_FRAMES"
 	exec npm run --silent unit
 	;;
-browser | pictures | wound)
+browser | smoke | pictures | wound)
 	[ -x /usr/bin/chromium-headless-shell ] || skip "no /usr/bin/chromium-headless-shell"
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
 	mkdir -p "$CAUTERY_SCREENSHOTS"
 	if [ "$1" = browser ]; then
 		exec nice npm run --silent browser -- --exclude '**/holds_firefox.test.ts'
+	fi
+	if [ "$1" = smoke ]; then
+		exec nice npm run --silent browser -- cut.test.ts
 	fi
 	npm run --silent build
 	if [ "$1" = wound ]; then
@@ -56,7 +59,7 @@ firefox)
 	exec npm run --silent browser -- holds_firefox
 	;;
 *)
-	echo "usage: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox|pictures|wound" >&2
+	echo "usage: run_viewer_tests.sh types|lint|unit|build|manual|browser|smoke|firefox|pictures|wound" >&2
 	exit 2
 	;;
 esac

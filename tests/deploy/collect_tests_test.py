@@ -37,8 +37,9 @@ def make_tree(cmake, folder, says):
     return os.path.join(folder, "build")
 
 
-def collect(deploy, suite, *arguments):
-    subprocess.run([sys.executable, "-B", os.path.join(deploy, "collect_tests.py"), suite, *arguments], check=True)
+def collect(deploy, suite, *arguments, options=()):
+    script = os.path.join(deploy, "collect_tests.py")
+    subprocess.run([sys.executable, "-B", script, *options, suite, *arguments], check=True)
     said = subprocess.run(["ctest", "--show-only=json-v1"], cwd=suite, check=True, stdout=subprocess.PIPE).stdout
     return {test["name"]: {"command": test.get("command"), **{entry["name"]: entry["value"]
                            for entry in test["properties"]}} for test in json.loads(said)["tests"]}
@@ -78,6 +79,22 @@ def labels_limits_and_slots(deploy, cmake, folder):
     assert later["tsan.timed"]["DEPENDS"] == ["tsan.build"], later["tsan.timed"]
 
 
+def named_tests_are_left_out(deploy, cmake, folder):
+    """Those of a file. A name that no test has is an error: its test was renamed, and would run again."""
+    tree = make_tree(cmake, os.path.join(folder, "named"), "true")
+    names = os.path.join(folder, "later.txt")
+    with open(names, "w", encoding="utf-8") as file:
+        file.write("# seconds\nquick 20\n\n")
+    tests = collect(deploy, os.path.join(folder, "named-suite"), "release", tree, "unit", "", "1", options=["--without-names", names])
+    assert set(tests) == {"release.timed", "release.hours"}, set(tests)
+    with open(names, "a", encoding="utf-8") as file:
+        file.write("quik 20\n")
+    script = [sys.executable, "-B", os.path.join(deploy, "collect_tests.py"), "--without-names", names]
+    done = subprocess.run([*script, os.path.join(folder, "typo-suite"), "release", tree, "unit", "", "1"],
+                          stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 1 and "does not have: quik" in done.stderr, done
+
+
 def builds_what_the_tests_run(deploy, cmake, folder):
     """Of the programs in the tree, those of the tests that were chosen."""
     tree = make_tree(cmake, os.path.join(folder, "programs"), "${CMAKE_BINARY_DIR}/tests/test_chosen")
@@ -90,7 +107,7 @@ def builds_what_the_tests_run(deploy, cmake, folder):
 
 def main(deploy, cmake):
     with tempfile.TemporaryDirectory() as folder:
-        for check in (commands_are_the_trees_own, labels_limits_and_slots, builds_what_the_tests_run):
+        for check in (commands_are_the_trees_own, labels_limits_and_slots, named_tests_are_left_out, builds_what_the_tests_run):
             check(deploy, cmake, folder)
             print("ok", check.__name__)
 
