@@ -13,7 +13,6 @@ import { McapIndexedReader } from '@mcap/core';
 import Ajv from 'ajv';
 
 import { Stage } from './stage';
-import { COARSE } from './viewer_page';
 
 const HOT_C = 900;
 const STEP_NS = 100_000_000n;
@@ -80,7 +79,7 @@ function checkScenes(messages: Recorded['messages'], whole: number, left: number
 }
 
 describe('a recording as MCAP', () => {
-  const stage = new Stage(['--demo', 'fascia'], COARSE);
+  const stage = new Stage(['--demo', 'fascia']);
   const folder = mkdtempSync(join(tmpdir(), 'cautery-mcap-'));
   const written = join(folder, 'written.mcap');
   const saved = join(folder, 'saved.mcap');
