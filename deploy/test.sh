@@ -28,8 +28,8 @@ Usage: deploy/test.sh [--release | --full | --long | --campaign] [--no-install]
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
-On two cores, with the packages installed and nothing built before, the first run takes about five
-minutes and --full about an hour. Tests of one tree run while the next is built. One source changed:
+On two cores, with the packages installed and nothing built before, the first run takes some minutes
+and --full about an hour. Tests of one tree run while the next is built. One source changed:
 --only, in seconds.
 
 Build trees: build, build-asan, build-fuzz, build-tsan. Logs of the stages: build/log.
