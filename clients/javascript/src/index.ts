@@ -8,6 +8,7 @@ export { decoderReady } from '../../web/src/wire/elements';
 export { Downloads, upload, type ReceivedFile } from '../../web/src/wire/files';
 export { readHeader, WireError, type FrameHeader } from '../../web/src/wire/header';
 export type { Statistics, ToolState } from '../../web/src/wire/records';
+export type { VesselState } from '../../web/src/wire/vessels';
 export { Subscription, type SubscriptionEvents } from '../../web/src/wire/subscription';
 export { decodeTopology, type Topology } from '../../web/src/wire/topology';
 export * from '../../web/src/wire/messages.gen';

@@ -14,6 +14,7 @@ function doubtOf({ kind, count, detail }: Pushes['event']['event']): string | nu
   return null;
 }
 
+/** What is always joined. The worker adds those of vessels where the scene has any. */
 const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
 /** Channels that cost the daemon work of their own: joined only while they are shown. */
 export type ExtraChannel = 'stress' | 'temperature';
@@ -45,7 +46,7 @@ export class Control {
     model.session = session;
     if (session === null) model.setJoined(null);
     const extra: ExtraChannel[] = this.inspecting ? ['stress', 'temperature'] : this.colour ? [this.colour] : [];
-    this.link.watch(session, [...CHANNELS, ...extra], this.colour ?? 'stress');
+    this.link.watch(session, [...CHANNELS, ...extra], this.colour ?? 'blood');
     model.emit('sessions', model.sessions);
   }
 

@@ -19,6 +19,9 @@ export interface Batch {
   faces: Int32Array;
 }
 
+/** What the fourth byte of `burn` has: a scalar that is shown as colour, or else the blood on the surface. */
+export type ShownScalar = 'stress' | 'temperature' | 'blood';
+
 export interface TissueSource {
   vertexCount: number;
   faceCount: number;
@@ -26,15 +29,15 @@ export interface TissueSource {
   stepM: number;
   layers: readonly LayerDescription[];
   topology: Topology;
-  /** what the stream brings beside exposure and charring */
-  scalar: 'stress' | 'temperature';
+  /** what is drawn beside exposure and charring */
+  scalar: ShownScalar;
   /** of sheets, by layer, m */
   thicknessM: Readonly<Record<string, number>>;
   /** material coordinates, m (vertices x 3) */
   material: Float32Array;
 }
 
-/** Bytes of each vertex in `burn`: heat exposure, charring, cut rim, the stream's scalar over its range. */
+/** Bytes of each vertex in `burn`: heat exposure, charring, cut rim, and the shown scalar: over its range, or blood in its steps. */
 export const BURN_BYTES = 4;
 const RIM = 2;
 export const SCALAR = 3;
@@ -223,7 +226,8 @@ export class Tissue {
       burn[BURN_BYTES * v + 1] = Math.min(charring[v], 255);
     }
     if (this.source.scalar === 'temperature') this.updateTemperature(state.temperature);
-    else this.updateStress(state.stress);
+    else if (this.source.scalar === 'stress') this.updateStress(state.stress);
+    else state.blood.forEach((depth, v) => (burn[BURN_BYTES * v + SCALAR] = Math.min(depth, SCALARS.blood.most)));
   }
 
   private updateStress(stress: Int32Array): void {

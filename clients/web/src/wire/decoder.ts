@@ -4,6 +4,7 @@ import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
 import { SCALARS, SECTION, type ScalarName } from './messages.gen';
 import { readAsked, readForces, readJaws, readPower, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
+import { readVessels, type VesselState } from './vessels';
 
 export interface StreamShape {
   session_number: number;
@@ -30,6 +31,8 @@ export interface StreamState extends ScalarArrays {
   /** words of 32 faces; a set bit: not drawn */
   mask: Int32Array;
   tools: ToolState[];
+  /** in the scene's order; none where the stream does not have the channel */
+  vessels: VesselState[];
   statistics: Statistics | null;
 }
 
@@ -66,6 +69,7 @@ export class FrameDecoder {
       quantised: new Int32Array(3 * shape.vertex_count),
       mask: new Int32Array(Math.ceil(shape.face_count / 32)),
       tools: [],
+      vessels: [],
       statistics: null,
     };
   }
@@ -135,6 +139,7 @@ export class FrameDecoder {
     state.mask.fill(0);
     for (const name of SCALAR_NAMES) state[name].fill(0);
     state.tools = [];
+    state.vessels = [];
     state.statistics = null;
     this.names = [];
   }
@@ -158,6 +163,8 @@ export class FrameDecoder {
     if (power) this.state.tools = readPower(power, this.state.tools);
     const forces = sections.get(SECTION.tool_force);
     if (forces) this.state.tools = readForces(forces, this.state.tools);
+    const vessels = sections.get(SECTION.vessels);
+    if (vessels) this.state.vessels = readVessels(vessels);
     const statistics = sections.get(SECTION.statistics);
     if (statistics) this.state.statistics = readStatistics(statistics);
   }

@@ -3,7 +3,7 @@
 // over as soon as the page has given the last one's buffers back. So the page can never fall behind.
 import { materialCoordinates } from '../model/fibres';
 import { surroundingsOf } from '../model/field_shape';
-import { BURN_BYTES, Tissue } from '../model/tissue';
+import { BURN_BYTES, Tissue, type ShownScalar } from '../model/tissue';
 import type { Changes, StreamState } from './decoder';
 import { SCALARS, type SessionDescription, type StreamDescription } from './messages.gen';
 import type { Topology } from './topology';
@@ -35,8 +35,8 @@ export class Feed {
     description: SessionDescription,
     private readonly stream: StreamDescription,
     topology: Topology,
-    /** which of the two is shown as colour */
-    private readonly scalar: 'stress' | 'temperature',
+    /** which of them is drawn */
+    private readonly scalar: ShownScalar,
   ) {
     const { vertex_count: vertexCount, face_count: faceCount, origin_m: originM, step_m: stepM } = stream;
     const { layers } = description;
@@ -47,7 +47,8 @@ export class Feed {
     this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, scalar, material, thicknessM });
     const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
     const surroundings = surroundingsOf(rest, material, topology.faces, layers, description.definition);
-    this.joined = { description, stream, batches, rest, material, surroundings };
+    const blood = scalar === 'blood' && stream.channels.includes('blood');
+    this.joined = { description, stream, batches, rest, material, surroundings, blood };
     this.spare = {
       position: new Float32Array(3 * vertexCount),
       normal: new Float32Array(3 * vertexCount),
@@ -133,7 +134,8 @@ export class Feed {
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
       temperatureRangeC: this.scalar === 'temperature' && this.stream.channels.includes('temperature') ? [...tissue.temperatureRangeC] : null,
       tools: state.tools,
-      past: past && { tick: past.tick, timeS: past.timeS, tools: past.tools },
+      vessels: state.vessels,
+      past: past && { tick: past.tick, timeS: past.timeS, tools: past.tools, vessels: past.vessels },
       samples,
       framesDecoded,
       framesSkipped,

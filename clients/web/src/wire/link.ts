@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's end of the worker: calls with answers, and events.
+import type { ShownScalar } from '../model/tissue';
 import type { LinkState } from './connection';
 import { RpcError } from './connection';
 import type { Notices, Pushes, Requests, UploadResult } from './messages.gen';
@@ -63,8 +64,8 @@ export class Link {
     this.send({ type: 'heartbeat', visible, atUs: Math.round(1000 * (performance.timeOrigin + performance.now())) });
   }
 
-  watch(session: string | null, channels: Channels, colour: 'stress' | 'temperature'): void {
-    this.send({ type: 'watch', session, channels, colour });
+  watch(session: string | null, channels: Channels, scalar: ShownScalar): void {
+    this.send({ type: 'watch', session, channels, scalar });
   }
 
   inspect(vertex: number): Promise<VertexState | null> {

@@ -6,7 +6,11 @@ import { readHeader, WireError } from './header';
 import type { SessionDescription, SessionJoin, StreamDescription } from './messages.gen';
 import { decodeTopology, type Topology } from './topology';
 
+export type Join = Omit<SessionJoin, 'session'>;
+
 export interface SubscriptionEvents {
+  /** What to join a session with, where that depends on what it has. Without it: what was given. */
+  ask?(description: SessionDescription, given: Join): Join;
   /** The session is joined: everything that never changes in it. */
   joined(description: SessionDescription, stream: StreamDescription, topology: Topology): void;
   frame(state: StreamState, changes: Changes, byteCount: number): void;
@@ -32,7 +36,7 @@ export class Subscription {
   constructor(
     private readonly connection: Connection,
     readonly session: string,
-    private join: Omit<SessionJoin, 'session'>,
+    private join: Join,
     private readonly events: SubscriptionEvents,
     private readonly now: () => number = () => performance.now(),
   ) {}
@@ -46,7 +50,8 @@ export class Subscription {
       const { session } = this;
       this.description = await this.connection.request('session.describe', { session });
       if (this.stopped()) return;
-      this.stream = await this.connection.request('session.join', { ...join, session });
+      const asked = this.events.ask?.(this.description, join) ?? join;
+      this.stream = await this.connection.request('session.join', { ...asked, session });
       this.decoder = new FrameDecoder(this.stream);
     } catch (error) {
       if (!this.stopped()) this.events.failed(error);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The worker: owns the socket, decodes every frame, hands the newest state to the page.
 import { momentOf } from '../model/history';
+import type { ShownScalar } from '../model/tissue';
 import { isChunk, readChunk } from './chunk';
 import { Connection, RpcError } from './connection';
 import { decoderReady } from './elements';
 import { Feed } from './feed';
 import { Downloads, upload } from './files';
 import { Subscription } from './subscription';
-import type { FromWorker, Sample, ToWorker } from './worker_messages';
+import type { Channels, FromWorker, Sample, ToWorker } from './worker_messages';
 import { FrameDecoder, type StreamState } from './decoder';
-import type { PastFrame, Pushes, Transfer } from './messages.gen';
+import type { PastFrame, Pushes, SessionDescription, Transfer } from './messages.gen';
 
 /** The few names of a worker's global scope that are used; the DOM's types have no room for both. */
 interface WorkerScope {
@@ -26,7 +27,7 @@ let feed: Feed | null = null;
 let clockOffsetUs = 0; // the daemon's clock minus this one's
 let leastDelayUs = Infinity;
 let nextMeasureUs = 0;
-let coloured: 'stress' | 'temperature' = 'stress';
+let shown: ShownScalar = 'blood';
 const downloads = new Downloads((file) => scope.postMessage({ type: 'file', ...file }, [file.bytes.buffer]));
 
 const nowUs = (): number => Math.round(performance.now() * 1000);
@@ -109,8 +110,12 @@ function pushed<M extends keyof Pushes>(method: M, params: Pushes[M]): void {
   if (change === 'moved' && to !== undefined) tellMoved(summary.session, to, target);
 }
 
-function watch({ session, channels, colour }: ToWorker & { type: 'watch' }): void {
-  coloured = colour;
+/** Servers older than vessels refuse these two channels. So they are asked for only where the scene has vessels. */
+const OF_VESSELS: Channels = ['vessels', 'blood'];
+const hasVessels = ({ definition }: SessionDescription): boolean => (definition.vessels ?? []).length > 0;
+
+function watch({ session, channels, scalar }: ToWorker & { type: 'watch' }): void {
+  shown = scalar;
   if (subscription && subscription.session === session) {
     void subscription.start({ channels });
     return;
@@ -121,8 +126,9 @@ function watch({ session, channels, colour }: ToWorker & { type: 'watch' }): voi
   if (session === null || !connection) return;
   let received = performance.now();
   subscription = new Subscription(connection, session, { channels }, {
+    ask: (description, join) => (hasVessels(description) ? { ...join, channels: [...(join.channels ?? []), ...OF_VESSELS] } : join),
     joined: (description, stream, topology) => {
-      feed = new Feed(description, stream, topology, coloured);
+      feed = new Feed(description, stream, topology, shown);
       connection?.found();
       scope.postMessage({ type: 'joined', joined: feed.joined });
     },

@@ -4,10 +4,11 @@ import type { Surroundings } from '../model/field_shape';
 import type { Moment } from '../model/history';
 import type { LipShape } from '../model/lips';
 import type { SurfaceShape } from '../model/surface';
-import type { Batch } from '../model/tissue';
+import type { Batch, ShownScalar } from '../model/tissue';
 import type { LinkState } from './connection';
 import type { Pushes, Requests, Notices, SessionDescription, SessionJoin, StreamDescription } from './messages.gen';
 import type { Statistics, ToolState } from './records';
+import type { VesselState } from './vessels';
 
 export type Channels = NonNullable<SessionJoin['channels']>;
 
@@ -18,7 +19,7 @@ export type ToWorker =
   | { type: 'notice'; method: keyof Notices; params: object }
   /** `atUs`: when the page gave this sign of life, by its own clock that never goes back */
   | { type: 'heartbeat'; visible: boolean; atUs: number }
-  | { type: 'watch'; session: string | null; channels: Channels; colour: 'stress' | 'temperature' }
+  | { type: 'watch'; session: string | null; channels: Channels; scalar: ShownScalar }
   | { type: 'inspect'; call: number; vertex: number }
   | { type: 'past'; call: number; session: string; tick: number }
   | { type: 'present' }
@@ -69,12 +70,15 @@ export interface Joined {
   rest: Float32Array;
   material: Float32Array;
   surroundings: Surroundings | null;
+  /** the fourth byte of `burn` is the depth of blood */
+  blood: boolean;
 }
 
 export interface PastState {
   tick: number;
   timeS: number;
   tools: ToolState[];
+  vessels: VesselState[];
 }
 
 export interface Frame {
@@ -100,6 +104,7 @@ export interface Frame {
   /** of the colours, degC; null where the stream has no temperature */
   temperatureRangeC: readonly [number, number] | null;
   tools: ToolState[];
+  vessels: VesselState[];
   /** what buffers, faces and colours are of, where that is a past tick; all else is of the newest */
   past: PastState | null;
   samples: Sample[];

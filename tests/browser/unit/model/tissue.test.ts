@@ -28,7 +28,7 @@ function makeTissue(faces: number[][], layers: LayerDescription[], shown: Tissue
   });
   const scalar = (): Int32Array => new Int32Array(POINTS.length);
   const state = {
-    quantised: Int32Array.from(POINTS.flat()), mask: new Int32Array(1), exposure: scalar(), charring: scalar(), stress: scalar(), temperature: scalar(),
+    quantised: Int32Array.from(POINTS.flat()), mask: new Int32Array(1), exposure: scalar(), charring: scalar(), stress: scalar(), temperature: scalar(), blood: scalar(),
   } as unknown as StreamState;
   return { tissue, state };
 }
@@ -107,6 +107,14 @@ describe('tissue', () => {
     expect(tissue.stressScale).toBe(1000);
     expect([...tissue.burn.subarray(0, 2)]).toEqual([255, 0]);
     expect([tissue.burn[7], tissue.burn[11]]).toEqual([127, 255]);
+  });
+
+  it('has blood in its steps, and not the stress that nothing shows', () => {
+    const { tissue, state } = makeTissue(FAT, [layer('fat', 'fat', 0, 7)], 'blood');
+    state.stress.fill(1000);
+    state.blood.set([0, 1, 25, 255, 3]);
+    tissue.update(state, WHOLE);
+    expect(POINTS.map((_, v) => tissue.burn[4 * v + 3])).toEqual([0, 1, 25, 255, 3]);
   });
 
   it('scales temperature from the least seen to the largest, or to boiling water', () => {

@@ -8,6 +8,7 @@ import { FrameDecoder } from '../../../../clients/web/src/wire/decoder';
 import { decoderReady } from '../../../../clients/web/src/wire/elements';
 import { SCALARS, type ScalarName } from '../../../../clients/web/src/wire/messages.gen';
 import { decodeTopology } from '../../../../clients/web/src/wire/topology';
+import type { VesselState } from '../../../../clients/web/src/wire/vessels';
 
 const folder = process.env['CAUTERY_FRAMES'];
 const COLUMNS = 40;
@@ -22,6 +23,21 @@ const SHAPE = {
 
 function read(kind: string, number: number): Uint8Array {
   return new Uint8Array(readFileSync(join(folder ?? '', `${kind}-${String(number).padStart(2, '0')}.bin`)));
+}
+
+/** As tests/protocol/wire/tissue.c moves it: none before tick 8. */
+function expectVessels(vessels: readonly VesselState[], tick: number): void {
+  if (tick < 8) {
+    expect(vessels).toEqual([]);
+    return;
+  }
+  const single = Math.fround;
+  const points = Array.from({ length: 3 + (tick % 2) }, (_, i) => [single(0.001) * i, single(0.0001) * tick, -0.002, i === 1 ? -1 : 0.5]);
+  expect(vessels).toEqual([{
+    name: 'artery-1', parted: (tick & 1) !== 0, pierced: (tick & 2) !== 0, shut: (tick & 4) !== 0, sealed: (tick & 8) !== 0, bleeds: (tick & 16) !== 0,
+    radiusM: single(0.0015), bleedingM3S: single(1e-9 * tick), shedM3: single(1e-8 * tick), burstPa: single(100 * tick),
+    points: Float32Array.from(points.flat()),
+  }]);
 }
 
 function expectState(decoder: FrameDecoder, number: number): void {
@@ -49,6 +65,7 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
     for (let i = 0; i < FRAMES; i++) {
       expect(decoder.decode(read('frame', i)).kind).toBe('applied');
       expectState(decoder, i);
+      expectVessels(decoder.state.vessels, decoder.state.tick);
       for (const { raw } of decoder.state.tools) expect(raw !== null).toBe(i % 5 !== 4); // as tests/protocol/wire/tissue.c sends it
     }
     const last = FRAMES - 1;
@@ -62,6 +79,7 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
     const decoder = new FrameDecoder(SHAPE);
     expect(decoder.decode(read('key', FRAMES - 1))).toMatchObject({ kind: 'applied', key: true });
     expectState(decoder, FRAMES - 1);
+    expectVessels(decoder.state.vessels, FRAMES - 1);
   });
 
   it('reads the topology', () => {

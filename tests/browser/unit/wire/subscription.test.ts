@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Connection } from '../../../../clients/web/src/wire/connection';
 import { decoderReady } from '../../../../clients/web/src/wire/elements';
-import { Subscription } from '../../../../clients/web/src/wire/subscription';
+import { Subscription, type SubscriptionEvents } from '../../../../clients/web/src/wire/subscription';
 import { example } from './examples';
 
 const STREAM = { session: 'd1-a', session_number: 7, profile: 1, vertex_count: 3, face_count: 1 };
@@ -14,7 +14,7 @@ interface Said {
   params: Record<string, unknown>;
 }
 
-async function joined(): Promise<{ subscription: Subscription; said: Said[]; sequences: number[]; clock: { now: number } }> {
+async function joined(ask?: SubscriptionEvents['ask']): Promise<{ subscription: Subscription; said: Said[]; sequences: number[]; clock: { now: number } }> {
   const said: Said[] = [];
   const sequences: number[] = [];
   const clock = { now: 1000 };
@@ -27,6 +27,7 @@ async function joined(): Promise<{ subscription: Subscription; said: Said[]; seq
     notify: (method: string, params: Said['params']) => said.push({ method, params }),
   } as unknown as Connection;
   const subscription = new Subscription(connection, 'd1-a', { channels: ['positions'] }, {
+    ...(ask ? { ask } : {}),
     joined: () => undefined,
     frame: (state) => sequences.push(state.sequence),
     failed: (error) => {
@@ -48,6 +49,12 @@ describe('a subscription', () => {
     expect(sequences).toEqual([1, 2]);
     expect(said.map(({ method }) => method)).toEqual(['session.describe', 'session.join', 'stream.ack']);
     expect(said[2].params).toEqual({ session: 'd1-a', epoch: '0123456789abcdef', sequence: 1 });
+  });
+
+  it('joins with what the session calls for', async () => {
+    const { said } = await joined((description, given) => ({ ...given, channels: description === undefined ? [] : [...(given.channels ?? []), 'vessels'] }));
+    expect(said[1].params).toEqual({ session: 'd1-a', channels: ['positions', 'vessels'] });
+    expect((await joined()).said[1].params).toEqual({ session: 'd1-a', channels: ['positions'] });
   });
 
   it('asks for a key frame after a gap, at most once a second', async () => {
