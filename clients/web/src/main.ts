@@ -38,11 +38,12 @@ import { timeBar } from './panels/time';
 import { askForToken } from './panels/token';
 import { toolsPanel } from './panels/tools';
 import { showVeil } from './panels/veil';
+import { watchVessels } from './panels/vessels';
 import { viewPanel } from './panels/view';
 import { Sounds } from './scene/sound';
 import { Viewport } from './scene/viewport';
 import { Link } from './wire/link';
-import type { Layer, Tool } from './wire/messages.gen';
+import { SCALARS, type Layer, type Tool } from './wire/messages.gen';
 import { errorWords } from './model/sentences';
 
 const model = new Model();
@@ -111,6 +112,7 @@ timeBar(control, address.tick);
 showPast(control);
 showHandles(control, hand, pointer);
 const placeSaid = showSaid(model, viewport, pointer);
+watchVessels(model);
 showNotices(control);
 showReading(control);
 showHelp();
@@ -238,6 +240,8 @@ export interface Inspection {
   drawnAt(layer: string, x: number, y: number): boolean;
   /** degC at the vertex nearest to a point, as its colour tells it; null where temperature is not shown */
   temperatureAt(point: readonly [number, number, number]): number | null;
+  /** depth of blood at the vertex nearest to a point, m; null where the picture has no blood */
+  bloodAt(point: readonly [number, number, number]): number | null;
   /** least and largest x, y, z of the tissue, m */
   extent(): { least: number[]; most: number[] };
   project(point: readonly [number, number, number]): { x: number; y: number };
@@ -278,6 +282,7 @@ const inspection: Inspection = {
     const range = model.frame?.temperatureRangeC;
     return range && viewport.tissue ? range[0] + viewport.tissue.scalarAt(point) * (range[1] - range[0]) : null;
   },
+  bloodAt: (point) => (model.joined?.blood && viewport.tissue ? viewport.tissue.scalarAt(point) * SCALARS.blood.most * SCALARS.blood.step : null),
   extent: () => {
     const { min, max } = new Box3().setFromArray(viewport.tissue?.position.array ?? []);
     return { least: min.toArray(), most: max.toArray() };

@@ -45,6 +45,8 @@ export interface Notice {
 export interface Said extends Notice {
   /** stays until it is taken back under this key; without one it goes by itself */
   key?: string;
+  /** numbers after the words, which may change: a screen reader is not to read each change */
+  figures?: string;
   action?: { words: string; press: () => void };
 }
 
@@ -89,7 +91,7 @@ export class Model {
   }
 
   /** Says something at the tool; under a key it stays until `unsay`. */
-  say(kind: Notice['kind'], words: string, more: Pick<Said, 'key' | 'action'> = {}): void {
+  say(kind: Notice['kind'], words: string, more: Pick<Said, 'key' | 'figures' | 'action'> = {}): void {
     this.emit('said', { kind, words, ...more });
   }
 

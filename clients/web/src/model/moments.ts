@@ -7,6 +7,9 @@ export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   tear: 'tear',
   inverted: 'tissue inside out',
   energy_gain: 'energy gained',
+  bleeding: 'bleeding',
+  bleeding_stopped: 'bleeding stopped',
+  sealed: 'vessel sealed',
   energy_on: 'energy on',
   energy_off: 'energy off',
   watchdog: 'watchdog',
@@ -15,6 +18,8 @@ export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   rewind: 'rewind',
   reset: 'reset',
 };
+/** Events whose detail names what they happened to. */
+const NAMED: readonly TimelineEvent['kind'][] = ['inverted', 'bleeding', 'bleeding_stopped', 'sealed'];
 const GOES_ON: readonly TimelineEvent['kind'][] = ['cut', 'tear'];
 
 export interface Moment {
@@ -34,7 +39,7 @@ export function momentsOf(events: readonly TimelineEvent[], seconds: (tick: numb
   }
   return found.reverse().map(({ first: { kind, tick, tool, detail }, last }) => {
     const when = last.tick === tick ? seconds(tick) : `${seconds(tick).replace(/ s$/, '')} to ${seconds(last.tick)}`;
-    const about = tool || (kind === 'inverted' ? detail : undefined);
+    const about = tool || (NAMED.includes(kind) ? detail : undefined);
     return { tick, words: `${when}: ${EVENT_WORDS[kind] ?? kind}${about ? `, ${about}` : ''}` };
   });
 }

@@ -10,6 +10,7 @@ import { cameraButtons } from './camera';
 import { attempt, byId, element, field, problemPlace } from './dom';
 import { drivingButtons } from './driving';
 import { inviteButton } from './invite';
+import { vesselList } from './vessels';
 
 const POWER_LEAST_C = 60;
 const POWER_MOST_C = 400; // a spark's heat is beyond what tissue shows
@@ -100,6 +101,6 @@ function session(control: Control): HTMLElement {
 
 export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, self: Self, more: readonly HTMLElement[]): void {
   const problem = problemPlace();
-  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), ...more);
+  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), vesselList(control.model), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), ...more);
   control.model.emit('tools', undefined);
 }

@@ -30,11 +30,22 @@ export function showSaid(model: Model, viewport: Viewport, pointer: Pointer): ()
     lines.get(key)?.remove();
     lines.delete(key);
   };
-  const add = ({ kind, words, key, action }: Said): void => {
+  /** Whether the words stood there already, under their key: then only their figures are changed. */
+  const changeFigures = ({ words, key, figures }: Said): boolean => {
+    const line = key === undefined ? undefined : lines.get(key);
+    const place_ = line?.querySelector('.figures');
+    if (!place_ || line?.dataset['words'] !== words) return false;
+    if (place_.textContent !== figures) place_.textContent = figures ?? '';
+    return true;
+  };
+  const add = (said: Said): void => {
+    const { kind, words, key, figures, action } = said;
+    if (changeFigures(said)) return;
     for (const [other, line] of lines) if (line.dataset['words'] === words) remove(other);
     const name = key ?? `transient ${transient++}`;
     remove(name);
-    const line = element('p', { class: `said-line ${kind}`, data: { words } }, words);
+    const line = element('p', { class: `said-line ${kind}`, data: { words } }, figures === undefined ? words : `${words} `);
+    if (figures !== undefined) line.append(element('span', { class: 'figures', aria: { live: 'off' } }, figures));
     if (action) {
       line.append(button(action.words, () => {
         remove(name);

@@ -10,6 +10,7 @@ import { drivingButtons } from './driving';
 import { nameInput } from './names';
 import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
+import { vesselList } from './vessels';
 
 const SHOWN = ['temperature_c', 'hot_radius_m', 'tip_length_m', 'shaft_radius_m', 'jaw_open_rad', 'max_speed_m_s', 'friction'];
 const OF_JAWS = ['jaw_open_rad'];
@@ -127,6 +128,6 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
     const text = `${energy}${power}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
     if (state.value !== text) state.value = text;
   });
-  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, field('Moves', guide), jawField, edit.form, addForm(control));
+  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, vesselList(model), field('Moves', guide), jawField, edit.form, addForm(control));
   return { id: 'tools', title: 'Tools', body };
 }

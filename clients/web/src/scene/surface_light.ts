@@ -186,8 +186,24 @@ vec3 ringed(vec3 colour) {
   return colour;
 }
 
+#ifdef BLOOD_M
+// Blood on the surface: what lies under a film of 0.05 mm is seen through it, and nothing below 0.5 mm.
+void bloody(inout Surface s) {
+  float cover = 1.0 - exp(-BLOOD_M * vBurn.w / 0.00015);
+  vec3 level = normalize(vNormal) * (dot(vNormal, s.normal) < 0.0 ? -1.0 : 1.0);
+  s.normal = normalize(mix(s.normal, level, 0.85 * cover));
+  s.colour = mix(s.colour, vec3(0.17, 0.004, 0.006), cover);
+  s.alpha = mix(s.alpha, 1.0, cover);
+  s.gloss = mix(s.gloss, 90.0, cover);
+  s.wet = mix(s.wet, 0.6, cover);
+}
+#endif
+
 void finish(Surface s, vec3 view) {
   if (dot(vWorld, clip.xyz) > clip.w) discard;
+#ifdef BLOOD_M
+  bloody(s);
+#endif
   bool told = mapChannel >= 0;
   if (told) {
     // As bright under the lamp as in the legend: more would bleach what tells a number.

@@ -28,12 +28,13 @@ export class SurfaceView {
   private index: BufferAttribute | null = null;
   private shown = true;
 
-  constructor(shared: SharedUniforms, kind: SurfaceKind) {
+  constructor(shared: SharedUniforms, kind: SurfaceKind, defines: Record<string, string>) {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: SURFACE_VERTEX,
       fragmentShader: FRAGMENTS[kind],
       uniforms: shared,
+      defines,
       side: DoubleSide,
       transparent: kind === 'fascia',
     });

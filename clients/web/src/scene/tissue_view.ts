@@ -20,6 +20,7 @@ import {
 
 import { colourRow, type ColourMap } from '../model/colour_maps';
 import { BURN_BYTES, SCALAR } from '../model/tissue';
+import { SCALARS } from '../wire/messages.gen';
 import type { Frame, Joined } from '../wire/worker_messages';
 import { makeLobes, makeNoise, makeVessels } from './noise';
 import { VERTEX } from './surface_light';
@@ -76,12 +77,19 @@ export function makeSharedUniforms(): SharedUniforms {
   };
 }
 
-function makeMaterial(kind: SurfaceKind, shared: SharedUniforms): ShaderMaterial {
+/** Programs of sessions without vessels know nothing of blood, so it costs them nothing. BLOOD_M: depth of the fourth
+ * byte's 255, m. */
+function definesOf({ blood }: Joined): Record<string, string> {
+  return blood ? { BLOOD_M: (SCALARS.blood.most * SCALARS.blood.step).toFixed(6) } : {};
+}
+
+function makeMaterial(kind: SurfaceKind, shared: SharedUniforms, defines: Record<string, string>): ShaderMaterial {
   const material = new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX,
     fragmentShader: FRAGMENTS[kind],
     uniforms: shared,
+    defines,
     side: DoubleSide,
     transparent: kind === 'fascia',
   });
@@ -108,6 +116,7 @@ export class TissueView {
     this.normal = new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage);
     this.burn = new BufferAttribute(new Uint8Array(BURN_BYTES * count), BURN_BYTES, true).setUsage(DynamicDrawUsage);
     const material = new BufferAttribute(joined.material, 3);
+    const defines = definesOf(joined);
     this.indices = joined.batches.map(() => null);
     this.meshes = joined.batches.map((batch) => {
       const geometry = new BufferGeometry();
@@ -117,7 +126,7 @@ export class TissueView {
       geometry.setAttribute('material', material);
       geometry.setIndex(new BufferAttribute(new Uint32Array(0), 1));
       const kind = surfaceKind(batch);
-      const mesh = new Mesh(geometry, makeMaterial(kind, shared));
+      const mesh = new Mesh(geometry, makeMaterial(kind, shared, defines));
       mesh.frustumCulled = false;
       mesh.renderOrder = kind === 'fascia' ? 2 : 1;
       this.group.add(mesh);
@@ -126,9 +135,9 @@ export class TissueView {
     const sheet = ({ kind }: Joined['batches'][number]): boolean => kind === 'fascia' || kind === 'membrane';
     this.lips = joined.batches.map((batch) => {
       if (!sheet(batch) && !batch.bared) return null;
-      return { band: new SurfaceView(shared, surfaceKind(batch)), wall: new SurfaceView(shared, 'edge'), fringe: new SurfaceView(shared, 'fringe') };
+      return { band: new SurfaceView(shared, surfaceKind(batch), defines), wall: new SurfaceView(shared, 'edge', defines), fringe: new SurfaceView(shared, 'fringe', defines) };
     });
-    this.edges = joined.batches.map((batch) => (sheet(batch) ? new SurfaceView(shared, 'edge') : null));
+    this.edges = joined.batches.map((batch) => (sheet(batch) ? new SurfaceView(shared, 'edge', defines) : null));
     joined.batches.forEach((_batch, b) => {
       for (const view of this.beside(b)) this.group.add(view.mesh);
     });

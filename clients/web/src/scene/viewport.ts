@@ -21,6 +21,7 @@ import { Shown } from './shown';
 import { Smoke } from './smoke';
 import { makeSharedUniforms, mapTexture, TissueView } from './tissue_view';
 import { ToolViews } from './tool_views';
+import { VesselViews } from './vessel_view';
 import { WayView } from './way_view';
 
 export interface ViewOptions {
@@ -72,6 +73,7 @@ export class Viewport {
   readonly smoke = new Smoke();
   private readonly arrow = new ForceArrow();
   private readonly way = new WayView();
+  private readonly vessels: VesselViews;
   private readonly field: Field;
   private readonly scope = new Scope();
   private dark = true;
@@ -111,7 +113,8 @@ export class Viewport {
     });
     this.field = new Field(this.shared, this.background);
     this.tools = new ToolViews(this.scene, this.shared.light);
-    this.scene.add(this.field.group, this.scope.group, this.smoke.points, this.arrow.arrow, this.way.points);
+    this.vessels = new VesselViews(this.shared);
+    this.scene.add(this.vessels.group, this.field.group, this.scope.group, this.smoke.points, this.arrow.arrow, this.way.points);
     this.setTheme(true);
   }
 
@@ -153,6 +156,7 @@ export class Viewport {
     }
     this.taken = false;
     this.setTools([]);
+    this.vessels.show([]);
     this.field.place(joined);
     if (joined) {
       this.tissue = new TissueView(joined, this.shared);
@@ -185,7 +189,8 @@ export class Viewport {
       this.wantedPose = null;
     }
     this.smoke.watch(frame);
-    if (frame.changed || this.options.forceArrow) this.invalidate();
+    const vesselsChanged = this.vessels.show((frame.past ?? frame).vessels);
+    if (frame.changed || vesselsChanged || this.options.forceArrow) this.invalidate();
     if (!this.tissue) return null;
     if (frame.changed) this.field.follow(frame.buffers.position);
     return this.tissue.take(frame);

@@ -17,6 +17,11 @@ describe('what happened', () => {
     ]);
   });
 
+  it('names the vessel that it happened to', () => {
+    const events = (['bleeding', 'bleeding_stopped', 'sealed'] as const).map((kind, i) => ({ ...event(kind, 60 * i), detail: 'artery' }));
+    expect(momentsOf(events, seconds).map(({ words }) => words)).toEqual(['2.00 s: vessel sealed, artery', '1.00 s: bleeding stopped, artery', '0.00 s: bleeding, artery']);
+  });
+
   it('joins nothing else', () => {
     expect(momentsOf([event('snapshot', 0), event('snapshot', 60)], seconds).map(({ words }) => words)).toEqual(['1.00 s: snapshot', '0.00 s: snapshot']);
   });

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Blood vessels in words and in the units of an operating room: millilitres and millimetres of mercury.
+import type { VesselState } from '../wire/vessels';
+
+const ML_PER_M3 = 1e6;
+const PA_PER_MMHG = 133.322;
+const WHOLE_ML = 10; // from here on tenths say nothing
+
+const rate = (bleedingM3S: number): string => `${(ML_PER_M3 * bleedingM3S).toFixed(1)} ml/s`;
+const lost = (shedM3: number): string => {
+  const ml = ML_PER_M3 * shedM3;
+  return `${ml.toFixed(ml < WHOLE_ML ? 1 : 0)} ml lost`;
+};
+const bursts = (burstPa: number): string => `bursts at ${Math.round(burstPa / PA_PER_MMHG)} mmHg`;
+const sum = (numbers: readonly number[]): number => numbers.reduce((total, number) => total + number, 0);
+
+/** "parted, bleeding", "pressed shut", "open". What is parted mostly has holes beside the gap, too. */
+export function stateWords({ parted, pierced, shut, sealed, bleeds }: VesselState): string {
+  const words = [parted ? 'parted' : pierced ? 'wall has a hole' : '', sealed ? 'sealed' : '', shut ? 'pressed shut' : '', bleeds ? 'bleeding' : ''];
+  return words.filter((word) => word !== '').join(', ') || 'open';
+}
+
+/** "4.9 ml/s, 12 ml lost, bursts at 750 mmHg"; what is zero is left out. */
+export function figuresOf({ bleeds, bleedingM3S, shedM3, burstPa }: VesselState): string {
+  return [bleeds ? rate(bleedingM3S) : '', shedM3 > 0 ? lost(shedM3) : '', burstPa > 0 ? bursts(burstPa) : ''].filter((words) => words !== '').join(', ');
+}
+
+/** What the page has to say: `words`, and `figures` that change. */
+export interface Finding {
+  /** of what stays as long as it is found; null: said once */
+  key: string | null;
+  warns: boolean;
+  words: string;
+  figures: string;
+}
+
+/** All that bleed are one warning, with their sums. */
+function bleeding(vessels: readonly VesselState[]): Finding[] {
+  if (vessels.length === 0) return [];
+  const names = vessels.map(({ name }) => name).join(', ');
+  const figures = `${rate(sum(vessels.map(({ bleedingM3S }) => bleedingM3S)))}, ${lost(sum(vessels.map(({ shedM3 }) => shedM3)))}`;
+  return [{ key: 'bleeding', warns: true, words: `${names} ${vessels.length === 1 ? 'bleeds' : 'bleed'}:`, figures }];
+}
+
+/** Follows the vessels of a session. */
+export class VesselWatch {
+  private before = new Map<string, VesselState>();
+  /** when a seal began to hold, s of the page */
+  private readonly sealedS = new Map<string, number>();
+
+  /** newsS: how long the page says that a vessel is sealed */
+  constructor(private readonly newsS: number) {}
+
+  /** What is to be said at a time of the page. A vessel that bleeds is to be said from the start; that one is sealed, or
+   * bleeds no longer, only where it was otherwise before. */
+  take(vessels: readonly VesselState[], nowS: number): Finding[] {
+    const found = [...bleeding(vessels.filter(({ bleeds }) => bleeds)), ...vessels.flatMap((vessel) => this.news(vessel, nowS))];
+    this.before = new Map(vessels.map((vessel) => [vessel.name, vessel]));
+    return found;
+  }
+
+  clear(): void {
+    this.before.clear();
+    this.sealedS.clear();
+  }
+
+  private news({ name, sealed, bleeds, shedM3, burstPa }: VesselState, nowS: number): Finding[] {
+    const before = this.before.get(name);
+    if (sealed && before && !before.sealed) this.sealedS.set(name, nowS);
+    if (!sealed) this.sealedS.delete(name);
+    const found: Finding[] = [];
+    if (before?.bleeds && !bleeds) found.push({ key: null, warns: false, words: `${name} no longer bleeds:`, figures: lost(shedM3) });
+    const since = nowS - (this.sealedS.get(name) ?? -Infinity);
+    if (since < this.newsS) found.push({ key: `${name} sealed`, warns: false, words: `${name} is sealed:`, figures: bursts(burstPa) });
+    return found;
+  }
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Blood vessels for people: a warning while one bleeds, news of a seal, and a list of all of them.
+import type { Model } from '../model/model';
+import { figuresOf, stateWords, VesselWatch } from '../model/vessel_words';
+import { element } from './dom';
+
+const REFRESH_MS = 250; // numbers that change faster cannot be read
+const NEWS_S = 6;
+
+/** Has work done with the newest frame: at once, or where it was done a moment ago, a moment later. */
+function unhurried(work: () => void): () => void {
+  let next = 0;
+  let waits = false;
+  const run = (): void => {
+    waits = false;
+    next = performance.now() + REFRESH_MS;
+    work();
+  };
+  return () => {
+    if (waits) return;
+    const wait = next - performance.now();
+    waits = wait > 0;
+    if (waits) setTimeout(run, wait);
+    else run();
+  };
+}
+
+/** Says at the tool which vessels bleed, and for some seconds which one is sealed. */
+export function watchVessels(model: Model): void {
+  const watch = new VesselWatch(NEWS_S);
+  const said = new Set<string>();
+  let last = -1;
+  const unsay = (stays: ReadonlySet<string>): void => {
+    for (const key of said) {
+      if (stays.has(key)) continue;
+      said.delete(key);
+      model.unsay(key);
+    }
+  };
+  model.on('frame', ({ vessels, tick }) => {
+    if (tick < last) watch.clear(); // the session went back: what was is no news
+    last = tick;
+    if (vessels.length > 0 || said.size > 0) tell();
+  });
+  const tell = unhurried(() => {
+    const stays = new Set<string>();
+    for (const { key, warns, words, figures } of watch.take(model.frame?.vessels ?? [], performance.now() / 1000)) {
+      if (key !== null) {
+        stays.add(key);
+        said.add(key);
+      }
+      model.say(warns ? 'warning' : 'info', words, { figures, ...(key === null ? {} : { key }) });
+    }
+    unsay(stays);
+  });
+  model.on('joined', (joined) => {
+    if (joined && joined.description.summary.session === model.frame?.session) return;
+    watch.clear();
+    unsay(new Set());
+  });
+}
+
+/** A list of the session's vessels, hidden where it has none. */
+export function vesselList(model: Model): HTMLElement {
+  const list = element('ul', { class: 'vessels' });
+  const section = element('section', { hidden: true, aria: { label: 'Blood vessels' } }, element('h2', {}, 'Blood vessels'), list);
+  const show = unhurried(() => {
+    const vessels = model.frame?.vessels ?? [];
+    section.hidden = vessels.length === 0;
+    while (list.children.length > vessels.length) list.lastElementChild?.remove();
+    vessels.forEach((vessel, i) => {
+      const line = list.children[i] ?? list.appendChild(element('li'));
+      const figures = figuresOf(vessel);
+      const words = `${vessel.name}: ${stateWords(vessel)}${figures === '' ? '' : `; ${figures}`}`;
+      if (line.textContent !== words) line.textContent = words;
+    });
+  });
+  model.on('frame', ({ vessels }) => {
+    if (vessels.length > 0 || !section.hidden) show();
+  });
+  model.on('joined', (joined) => {
+    if (!joined) section.hidden = true;
+  });
+  return section;
+}
