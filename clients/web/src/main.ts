@@ -240,8 +240,8 @@ export interface Inspection {
   drawnAt(layer: string, x: number, y: number): boolean;
   /** degC at the vertex nearest to a point, as its colour tells it; null where temperature is not shown */
   temperatureAt(point: readonly [number, number, number]): number | null;
-  /** depth of blood at the vertex nearest to a point, m; null where the picture has no blood */
-  bloodAt(point: readonly [number, number, number]): number | null;
+  /** place and depth of blood of each vertex, m; null where the picture has no blood */
+  blood(): { at: number[]; depthM: number }[] | null;
   /** least and largest x, y, z of the tissue, m */
   extent(): { least: number[]; most: number[] };
   project(point: readonly [number, number, number]): { x: number; y: number };
@@ -282,7 +282,7 @@ const inspection: Inspection = {
     const range = model.frame?.temperatureRangeC;
     return range && viewport.tissue ? range[0] + viewport.tissue.scalarAt(point) * (range[1] - range[0]) : null;
   },
-  bloodAt: (point) => (model.joined?.blood && viewport.tissue ? viewport.tissue.scalarAt(point) * SCALARS.blood.most * SCALARS.blood.step : null),
+  blood: () => (model.joined?.blood && viewport.tissue ? viewport.tissue.scalars().map(({ at, byte }) => ({ at, depthM: byte * SCALARS.blood.step })) : null),
   extent: () => {
     const { min, max } = new Box3().setFromArray(viewport.tissue?.position.array ?? []);
     return { least: min.toArray(), most: max.toArray() };

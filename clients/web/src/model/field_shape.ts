@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The operative field around tissue, drawn only: walls of fat up to a rim of skin and a cloth with a window, or
 // tissue of the same kind on and on. Rings around the tissue's rectangle, the same points in each.
-import type { LayerDescription, Scene } from '../wire/messages.gen';
+import type { LayerDescription, Scene, Selection } from '../wire/messages.gen';
 
 /** Corners of an upright box, m. */
 export interface Extent {
@@ -136,9 +136,12 @@ function around(box: Extent, grown: number): (ray: Ray) => [number, number] {
   return ({ x, y, nx, ny }) => [mx + hx * x + grown * nx, my + hy * y + grown * ny];
 }
 
-/** Tissue that is held all around, or stands on its ground, lies in a body; what hangs freely does not. */
-function liesInBody({ pins = [], layers = [] }: Scene): boolean {
-  return pins.some(({ kind }) => kind === 'rim') || (pins.some(({ kind }) => kind === 'box') && layers.some(({ kind }) => kind === 'fat'));
+/** Tissue that is held all around, or stands on its ground, lies in a body; what hangs freely does not, nor does a strip
+ * that is held at its ends. */
+function liesInBody({ pins = [] }: Scene, solid: Extent | null): boolean {
+  const holdsMiddle = ({ least_m: least, most_m: most }: Selection): boolean =>
+    solid !== null && least !== undefined && most !== undefined && middle(solid).every((at, c) => at >= least[c] && at <= most[c]);
+  return pins.some((pin) => pin.kind === 'rim' || (pin.kind === 'box' && holdsMiddle(pin)));
 }
 
 /** Walls up to a rim of skin, as in an open operation. */
@@ -259,5 +262,5 @@ export function surroundingsOf(rest: Float32Array, material: Float32Array, faces
   const upper = faces.filter((v) => rest[3 * v + 2] >= (all.least[2] + all.most[2]) / 2);
   const sheath = { kind: top, ...planeOver(rest, material, sheet ? cornersOf(sheet) : upper) };
   const solid = corners.length > 0 ? extentOf(rest, Int32Array.from(corners.flatMap((of) => [...of]))) : null;
-  return { all, solid, edgeZ: edgeHeight(rest, faces, all), inBody: liesInBody(scene), sheath };
+  return { all, solid, edgeZ: edgeHeight(rest, faces, all), inBody: liesInBody(scene, solid), sheath };
 }

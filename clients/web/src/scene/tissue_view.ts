@@ -207,6 +207,12 @@ export class TissueView {
     return this.burn.array[BURN_BYTES * nearest + SCALAR] / 255;
   }
 
+  /** Place and shown scalar, 0 to 255, of each vertex. */
+  scalars(): { at: number[]; byte: number }[] {
+    const { array } = this.position;
+    return Array.from({ length: array.length / 3 }, (_, v) => ({ at: [...array.slice(3 * v, 3 * v + 3)], byte: this.burn.array[BURN_BYTES * v + SCALAR] }));
+  }
+
   dispose(): void {
     this.meshes.forEach((mesh, b) => {
       mesh.geometry.dispose();

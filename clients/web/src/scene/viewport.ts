@@ -69,11 +69,11 @@ export class Viewport {
   private readonly shared = makeSharedUniforms();
   readonly clip = new ClipPlane(this.shared.clip);
   private readonly colourMaps = { cividis: this.shared.colourMap.value, heat: mapTexture('heat') };
-  private readonly tools: ToolViews;
+  private readonly tools = new ToolViews(this.scene, this.shared.light);
   readonly smoke = new Smoke();
   private readonly arrow = new ForceArrow();
   private readonly way = new WayView();
-  private readonly vessels: VesselViews;
+  private readonly vessels = new VesselViews(this.shared);
   private readonly field: Field;
   private readonly scope = new Scope();
   private dark = true;
@@ -112,8 +112,6 @@ export class Viewport {
       this.resize();
     });
     this.field = new Field(this.shared, this.background);
-    this.tools = new ToolViews(this.scene, this.shared.light);
-    this.vessels = new VesselViews(this.shared);
     this.scene.add(this.vessels.group, this.field.group, this.scope.group, this.smoke.points, this.arrow.arrow, this.way.points);
     this.setTheme(true);
   }
@@ -189,8 +187,7 @@ export class Viewport {
       this.wantedPose = null;
     }
     this.smoke.watch(frame);
-    const vesselsChanged = this.vessels.show((frame.past ?? frame).vessels);
-    if (frame.changed || vesselsChanged || this.options.forceArrow) this.invalidate();
+    if (this.vessels.show((frame.past ?? frame).vessels) || frame.changed || this.options.forceArrow) this.invalidate();
     if (!this.tissue) return null;
     if (frame.changed) this.field.follow(frame.buffers.position);
     return this.tissue.take(frame);

@@ -61,6 +61,10 @@ describe('the field around tissue', () => {
     expect(surroundings(['fascia', 'fascia'], name).inBody).toBe(false);
   });
 
+  it('a strip of fat that is held at its ends hangs freely', () => {
+    expect(surroundings(['fascia', 'fat'], 'pedicle').inBody).toBe(false);
+  });
+
   it('is nowhere above the tissue that lies in it, nor inside fat', () => {
     const around = surroundings(['fascia', 'fat'], 'layers');
     expect(heightInside(fleshAround(around), 0.0595, 0.0495)).toBeLessThan(0.002);
