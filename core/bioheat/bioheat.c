@@ -52,6 +52,7 @@ int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t ma
 		return -1;
 	bioheat->temperature[cell] = bioheat->ambient_c;
 	bioheat->water[cell] = 1;
+	bioheat->damage[cell] = bioheat->power_w[cell] = 0;
 	return cell;
 }
 

@@ -84,6 +84,7 @@ int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material
 	memcpy(cells->place + 3 * (size_t)cell, place, 3 * sizeof *place);
 	cells->material[cell] = material;
 	cells->fill[cell] = fill;
+	cells->severed[cell] = 0; // a restore may have left the place to it
 	for (int axis = 0; axis < 3; axis++)
 		cells->pull[cau_cell_axis(cell, axis)] = 1;
 	join(cells, cell);

@@ -165,6 +165,7 @@ static void fill_cell(cau_tissue_cells *cells, int32_t element, const cau_elemen
 	cell = cau_bioheat_add(&cells->bioheat, place, layer_of(cells->tissue, element), share);
 	CAU_ASSERT(cell >= 0, "no room for a cell of element %d", element);
 	cau_vec3 at = cau_element_coordinates(shape, cau_element_cell_middle(shape, place));
+	cells->current.potential[cell] = 0;
 	cells->owner[cell] = element;
 	cells->local[cau_cell_axis(cell, 0)] = (float)at.x;
 	cells->local[cau_cell_axis(cell, 1)] = (float)at.y;

@@ -344,7 +344,15 @@ static run follow(cau_vessels *vessels, int32_t index, int step, double pressure
 	return out;
 }
 
-static void show_points(const cau_vessels *vessels, cau_vessel *vessel, const double *position)
+// Share of the lumen's area through which blood can pass.
+static float passable(const cau_vessels *vessels, const cau_vessel_def *def, int32_t station)
+{
+	double seal = cau_seal_strength(def, vessels->fusion[station]);
+	return seal > 0 && seal >= def->pressure_pa ? 0 : (float)vessels->open[station];
+}
+
+static void show_points(const cau_vessels *vessels, const cau_vessel_def *def, cau_vessel *vessel,
+                        const double *position)
 {
 	cau_vessel_state *state = &vessel->state;
 	int32_t stride = STATIONS_A_RADIUS;
@@ -356,7 +364,7 @@ static void show_points(const cau_vessels *vessels, cau_vessel *vessel, const do
 		int32_t station = vessel->first + k, next = k + stride;
 		cau_vec3 at = place(vessels->tissue, &vessels->station[station].point[0], position);
 		*point = (cau_vessel_point){{(float)at.x, (float)at.y, (float)at.z},
-		                            (float)vessels->open[station]};
+		                            passable(vessels, def, station)};
 		for (int32_t i = k; i < next && i < vessel->count; i++)
 			if (vessels->parted[vessel->first + i])
 				point->open = -1;
@@ -383,7 +391,7 @@ static void describe(cau_vessels *vessels, int32_t index, const run *from, const
 	vessel->state.flags = (cut ? CAU_VESSEL_CUT : 0u) | (pierced ? CAU_VESSEL_PIERCED : 0u) |
 	                      (from->shut ? CAU_VESSEL_SHUT : 0u) | (sealed ? CAU_VESSEL_SEALED : 0u) |
 	                      (vessel->state.bleeding_m3_s > 0 ? CAU_VESSEL_BLEEDS : 0u);
-	show_points(vessels, vessel, position);
+	show_points(vessels, def, vessel, position);
 }
 
 static void update(cau_vessels *vessels, const cau_vessel_surroundings *around, bool bleed)

@@ -68,6 +68,14 @@
 	X("filtered_torque_y_nm", tool->torque_nm[1])                                                  \
 	X("filtered_torque_z_nm", tool->torque_nm[2])
 
+// suffix of a vessel's column, value of `vessel`
+#define VESSEL_COLUMNS(X)                                                                          \
+	X("parted", (double)((vessel->flags & CAU_VESSEL_CUT) != 0))                                   \
+	X("sealed", (double)((vessel->flags & CAU_VESSEL_SEALED) != 0))                                \
+	X("bleeding_m3_s", vessel->bleeding_m3_s)                                                      \
+	X("shed_m3", vessel->shed_m3)                                                                  \
+	X("burst_pa", vessel->burst_pa)
+
 static int32_t long_inverted(const cau_statistics *statistics)
 {
 	int32_t count = 0;
@@ -107,6 +115,11 @@ void sim_csv_begin(FILE *file, const cau_scene_def *scene)
 		TOOL_COLUMNS(HEAD)
 #undef HEAD
 	}
+	for (int32_t i = 0; i < scene->vessel_count; i++) {
+#define HEAD(suffix, value) fprintf(file, ",%s_" suffix, scene->vessels[i].name);
+		VESSEL_COLUMNS(HEAD)
+#undef HEAD
+	}
 #define HEAD(code, name) fputs(",stage_" name "_s", file);
 	CAU_STAGE_TABLE(HEAD)
 #undef HEAD
@@ -133,6 +146,13 @@ static void write_tool(FILE *file, const cau_tool_state *tool)
 #undef CELL
 }
 
+static void write_vessel(FILE *file, const cau_vessel_state *vessel)
+{
+#define CELL(suffix, value) fprintf(file, ",%.6g", value);
+	VESSEL_COLUMNS(CELL)
+#undef CELL
+}
+
 void sim_csv_tick(FILE *file, const cau_scene_def *scene, const sim_csv_row *row)
 {
 	const cau_frame *frame = row->frame;
@@ -147,6 +167,8 @@ void sim_csv_tick(FILE *file, const cau_scene_def *scene, const sim_csv_row *row
 #undef CELL
 	for (int32_t i = 0; i < scene->tool_count; i++)
 		write_tool(file, find_tool(frame, scene->tools[i].name));
+	for (int32_t i = 0; i < frame->vessel_count; i++)
+		write_vessel(file, frame->vessels[i]);
 	for (int stage = 0; stage < CAU_STAGE_COUNT; stage++)
 		fprintf(file, ",%.6g", s->seconds[stage]);
 	fputc('\n', file);

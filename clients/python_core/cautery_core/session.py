@@ -72,7 +72,7 @@ class Vessel:
     shed_m3: float  # blood that has left it
     burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
     points: Floats  # (P, 3), m: its middle line
-    open: Floats  # (P,): share of the lumen's area that is open; below 0: parted there
+    open: Floats  # (P,): open share of the lumen's area, 0 where a seal holds; below 0: parted there
 
 
 def _text(bytes_: bytes) -> str:

@@ -112,18 +112,18 @@ enum { CAU_VESSEL_SHOWN_POINTS = 64 }; // of one vessel, at most
 
 // Flags of a vessel.
 enum {
-	CAU_VESSEL_CUT = 1 << 0,     // parted somewhere: nothing flows across
-	CAU_VESSEL_PIERCED = 1 << 1, // its wall has a hole somewhere
-	CAU_VESSEL_SHUT = 1 << 2,    // the tissue around it is pressed so flat that nothing flows
-	CAU_VESSEL_SEALED = 1 << 3,  // a seal withstands the pressure of the blood
-	CAU_VESSEL_BLEEDS = 1 << 4,  // blood leaves it
-	CAU_VESSEL_FLAGS = (1 << 5) - 1,
+	CAU_VESSEL_CUT = 1 << 0,         // parted somewhere: nothing flows across
+	CAU_VESSEL_PIERCED = 1 << 1,     // its wall has a hole somewhere
+	CAU_VESSEL_SHUT = 1 << 2,        // the tissue around it is pressed so flat that nothing flows
+	CAU_VESSEL_SEALED = 1 << 3,      // a seal withstands the pressure of the blood
+	CAU_VESSEL_BLEEDS = 1 << 4,      // blood leaves it
+	CAU_VESSEL_FLAGS = (1 << 5) - 1, // all of them
 };
 
 // One point of the middle line of a vessel, in the order of the line.
 typedef struct cau_vessel_point {
 	float position_m[3]; // in the world
-	float open;          // share of the lumen's area that is open, 0 to 1; below 0: parted here
+	float open; // open share of the lumen's area, 0 where a seal holds; below 0: parted here
 } cau_vessel_point;
 
 // A vessel after a step.

@@ -142,6 +142,28 @@ static void ticks_tell_the_ledger(void **state)
 	free(text);
 }
 
+// The scene's own cut divides the artery, which bleeds from then on.
+static void ticks_report_vessels(void **state)
+{
+	(void)state;
+	char arguments[512], output[4096];
+	size_t bytes;
+	snprintf(arguments, sizeof arguments, "--scene pedicle --cut --csv %s",
+	         fixture_path("vessels.csv"));
+	assert_int_equal(run_program(arguments, output, sizeof output), 0);
+	char *text = fixture_read(fixture_path("vessels.csv"), &bytes);
+	double shed = 0, parted = 0;
+	for (const char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
+		double now = cell_of(line, column_of(text, "artery_shed_m3"));
+		assert_true(now >= shed);
+		shed = now;
+		parted = cell_of(line, column_of(text, "artery_parted"));
+		assert_true(parted == 1 || cell_of(line, column_of(text, "artery_sealed")) == 0);
+	}
+	assert_true(parted == 1 && shed > 1e-7);
+	free(text);
+}
+
 // A cold hook presses taut fascia, which pushes it up.
 static void ticks_tell_forces(void **state)
 {
@@ -229,6 +251,7 @@ int main(int argument_count, char **arguments)
 		cmocka_unit_test(files_change_nothing),
 		cmocka_unit_test(ticks_tell_energies_and_times),
 		cmocka_unit_test(ticks_tell_the_ledger),
+		cmocka_unit_test(ticks_report_vessels),
 		cmocka_unit_test(ticks_tell_forces),
 		cmocka_unit_test(ticks_are_the_same_but_for_their_times),
 		cmocka_unit_test(the_cut_parts_tissue),
