@@ -165,9 +165,10 @@ describe('a session with a blood vessel', () => {
     await viewer.page.goto(`${stage.daemon.url}?session=${SEALING}`);
     await viewer.live(SEALING);
     await viewer.page.getByRole('tab', { name: 'Tools' }).click();
-    await seal(sealer);
-    sealer.close();
+    const sealing = seal(sealer); // the news goes by itself after some seconds
     await viewer.until(() => /artery is sealed: bursts at [1-9]\d* mmHg/.test(document.querySelector('#said')?.textContent ?? ''), null, 'news of the seal');
+    await sealing;
+    sealer.close();
     await viewer.until(() => /^artery: sealed, pressed shut; bursts at [1-9]\d+ mmHg$/.test(document.querySelector('#panel-tools .vessels')?.textContent ?? ''), null, 'the list');
     await viewer.drawn();
     await viewer.screenshot('vessels-sealed');

@@ -52,6 +52,7 @@ export function watchVessels(model: Model): void {
       model.say(warns ? 'warning' : 'info', words, { figures, ...(key === null ? {} : { key }) });
     }
     unsay(stays);
+    if (said.size > 0) setTimeout(tell, REFRESH_MS); // news ends in a paused session too, which sends no frames
   });
   model.on('joined', (joined) => {
     if (joined && joined.description.summary.session === model.frame?.session) return;
