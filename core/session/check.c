@@ -383,8 +383,14 @@ static cau_status check_vessel(const cau_scene_def *scene, int32_t index, cau_er
 	if (!status && !(object->point_count >= 2 && object->point_count <= CAU_MAX_VESSEL_POINTS))
 		status = cau_fail(error, CAU_BAD_VALUE, path, "%d points; 2 to %d are allowed",
 		                  object->point_count, CAU_MAX_VESSEL_POINTS);
-	for (int32_t i = 0; i < object->point_count && !status; i++)
-		status = finite_vector(object->points_m[i], 3, CAU_PLACE_MOST_M, path, "points_m", error);
+	bool has_length = false;
+	for (int32_t i = 0; i < object->point_count && !status; i++) {
+		status = finite_vector(object->points_m[i], 3, CAU_PLACE_MOST_M, path, "points", error);
+		for (int c = 0; c < 3; c++)
+			has_length |= object->points_m[i][c] != object->points_m[0][c];
+	}
+	if (!status && !has_length)
+		status = cau_fail(error, CAU_BAD_VALUE, path, "all its points lie in one place");
 	int32_t layer = find_layer(scene, object->layer);
 	if (!status && (layer < 0 || scene->layers[layer].kind != CAU_LAYER_FAT))
 		status = missing(path, "layer", "layer of fat", object->layer, error);

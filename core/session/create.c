@@ -195,6 +195,7 @@ static uint64_t hash_vessels(uint64_t hash, const cau_scene_def *scene)
 		const double sizes[] = {vessel->radius_m, vessel->wall_m, vessel->pressure_pa,
 		                        vessel->end_pressure_pa, vessel->supply_m};
 		hash = cau_hash_bytes(hash, sizes, sizeof sizes);
+		hash = cau_hash_bytes(hash, vessel->layer, strlen(vessel->layer));
 		hash = cau_hash_bytes(hash, vessel->points_m,
 		                      (size_t)vessel->point_count * sizeof vessel->points_m[0]);
 	}

@@ -280,8 +280,8 @@ cau_status cau_session_make_cells(cau_session *session, cau_error *error);
 cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def);
 void cau_session_operate(cau_session *session);
 bool cau_session_has_cooled(const cau_session *session);
-// bleed.c: makes the scene's vessels; finds what is open from the state alone; a tick of seals,
-// bleeding and blood; whether blood flows.
+// bleed.c: makes the scene's vessels; finds their present state, as after a restore; advances
+// seals, bleeding and blood by a tick; whether blood leaves a vessel or flows on the tissue.
 cau_status cau_session_make_vessels(cau_session *session, cau_error *error);
 void cau_session_look_at_vessels(cau_session *session);
 void cau_session_bleed(cau_session *session);

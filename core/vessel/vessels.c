@@ -30,7 +30,8 @@ static const double pi = 3.14159265358979323846;
 
 // ---- where a vessel is
 
-static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec3 at,
+// Barycentric coordinates of a place, and the least of them. It stops once one is at most `best`.
+static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec3 at, double best,
                           double weight[4])
 {
 	const int32_t *vertex = tissue->tetrahedron + 4 * (size_t)tetrahedron;
@@ -38,7 +39,7 @@ static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec
 	cau_vec3 way = cau_sub(at, cau_vec3_of(tissue->rest + 3 * (size_t)vertex[0]));
 	weight[0] = 1;
 	double least = 1;
-	for (int i = 0; i < 3; i++) {
+	for (int i = 0; i < 3 && least > best; i++) {
 		weight[i + 1] = cau_dot(cau_vec3_of(inverse + 3 * (size_t)i), way);
 		weight[0] -= weight[i + 1];
 		least = fmin(least, weight[i + 1]);
@@ -46,8 +47,8 @@ static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec
 	return fmin(least, weight[0]);
 }
 
-// The tetrahedron of the layer that holds the place, or that it is least outside of. Returns its
-// least weight.
+// Finds the tetrahedron of the layer that contains the place, or else the one in which its least
+// coordinate is greatest. Returns that coordinate.
 static double embed(const cau_tissue *tissue, const cau_tissue_layer *layer, cau_vec3 at,
                     cau_tube_point *point)
 {
@@ -55,7 +56,7 @@ static double embed(const cau_tissue *tissue, const cau_tissue_layer *layer, cau
 	*point = (cau_tube_point){.tetrahedron = -1, .rest = at};
 	int32_t last = layer->first_tetrahedron + layer->tetrahedron_count;
 	for (int32_t t = layer->first_tetrahedron; t < last && best < outside; t++) {
-		double weight[4], least = barycentric(tissue, t, at, weight);
+		double weight[4], least = barycentric(tissue, t, at, best, weight);
 		if (least <= best)
 			continue;
 		best = least;
@@ -296,20 +297,21 @@ double cau_vessel_outflow(const cau_vessel_def *def, double pressure_pa, double 
 	return (sqrt(tube * tube + 4 * orifice * pressure_pa) - tube) / (2 * orifice);
 }
 
-// What the blood that comes in at one end finds.
+// The flow of blood from one end of a vessel.
 typedef struct run {
-	double flow_m3_s;
-	double best_seal_pa; // of what it passes before it leaves the vessel, or until the other end
-	bool sealed, shut;
+	double flow_m3_s;    // that leaves the vessel
+	double best_seal_pa; // strength of the best seal between this end and the cut, or the other end
+	bool sealed, shut;   // a seal, or compression, stops the flow
 } run;
 
+// Adds a flow that leaves the vessel at a station. With `shed`, its blood lies on the tissue.
 static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, int32_t station,
-                  double flow_m3_s, run *out)
+                  double flow_m3_s, bool shed, run *out)
 {
-	if (flow_m3_s <= 0)
+	out->flow_m3_s += flow_m3_s;
+	if (!shed || flow_m3_s <= 0)
 		return;
 	cau_vec3 at = place(vessels->tissue, &vessels->station[station].point[0], around->position);
-	out->flow_m3_s += flow_m3_s;
 	cau_blood_add(&vessels->blood, around->vertex_visible, around->position, at,
 	              flow_m3_s * around->step_s);
 }
@@ -317,7 +319,7 @@ static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, i
 // Follows the blood from one end: `step` is 1 or -1. Blood leaves where the vessel is parted, and
 // through holes of the wall. A seal that holds, or a shut lumen, ends its way.
 static run follow(cau_vessels *vessels, int32_t index, int step, double pressure_pa,
-                  const cau_vessel_surroundings *around, bool bleed)
+                  const cau_vessel_surroundings *around, bool shed)
 {
 	const cau_vessel_def *def = &vessels->def[index];
 	const cau_vessel *vessel = &vessels->vessel[index];
@@ -326,9 +328,8 @@ static run follow(cau_vessels *vessels, int32_t index, int step, double pressure
 	int32_t k = step > 0 ? vessel->first : vessel->first + vessel->count - 1;
 	for (int32_t left = vessel->count; left > 0; left--, k += step) {
 		if (vessels->parted[k]) {
-			if (bleed)
-				leave(vessels, around, left == vessel->count ? k : k - step,
-				      cau_vessel_outflow(def, pressure_pa, open), &out);
+			leave(vessels, around, left == vessel->count ? k : k - step,
+			      cau_vessel_outflow(def, pressure_pa, open), shed, &out);
 			break;
 		}
 		double seal = cau_seal_strength(def, vessels->fusion[k]);
@@ -337,8 +338,7 @@ static run follow(cau_vessels *vessels, int32_t index, int step, double pressure
 		out.shut |= vessels->open[k] <= 0;
 		open = out.sealed ? 0 : fmin(open, vessels->open[k]);
 		double hole = fmin(open, vessels->holes[k] / (double)(CAU_STATION_POINTS - 1));
-		if (bleed)
-			leave(vessels, around, k, cau_vessel_outflow(def, pressure_pa, hole), &out);
+		leave(vessels, around, k, cau_vessel_outflow(def, pressure_pa, hole), shed, &out);
 		open -= hole;
 	}
 	return out;
@@ -394,14 +394,14 @@ static void describe(cau_vessels *vessels, int32_t index, const run *from, const
 	show_points(vessels, def, vessel, position);
 }
 
-static void update(cau_vessels *vessels, const cau_vessel_surroundings *around, bool bleed)
+static void update(cau_vessels *vessels, const cau_vessel_surroundings *around, bool shed)
 {
 	for (int32_t i = 0; i < vessels->vessel_count; i++) {
 		const cau_vessel_def *def = &vessels->def[i];
-		run from = follow(vessels, i, 1, def->pressure_pa, around, bleed);
-		run back = follow(vessels, i, -1, def->end_pressure_pa, around, bleed);
+		run from = follow(vessels, i, 1, def->pressure_pa, around, shed);
+		run back = follow(vessels, i, -1, def->end_pressure_pa, around, shed);
 		describe(vessels, i, &from, &back, around->position);
-		if (bleed)
+		if (shed)
 			vessels->vessel[i].state.shed_m3 +=
 				vessels->vessel[i].state.bleeding_m3_s * around->step_s;
 	}

@@ -47,10 +47,10 @@ typedef struct cau_vessels {
 	cau_blood blood;
 } cau_vessels;
 
-// What the vessels are compared with in a step. `alive`: tetrahedra that exist.
+// The tissue around the vessels in a step.
 typedef struct cau_vessel_surroundings {
 	const cau_tissue_cells *cells;
-	const uint8_t *alive;          // (tetrahedron_count)
+	const uint8_t *alive;          // (tetrahedron_count), 1: it exists
 	const uint8_t *vertex_visible; // (vertex_count)
 	const double *position;        // m, (vertex_count x 3)
 	const double *gravity_m_s2;
@@ -62,8 +62,9 @@ typedef struct cau_vessel_surroundings {
 cau_status cau_vessels_create(cau_vessels *vessels, const cau_tissue *tissue,
                               const cau_scene_def *scene, cau_arena *arena, cau_error *error);
 
-// Finds from the state alone what is open, parted and sealed, and the points that are shown. The
-// second also advances seals, bleeding and blood by a step.
+// cau_vessels_look finds from the tissue and the seals which sections are open, parted or sealed,
+// how much blood leaves, and the points that clients see. It changes no state. cau_vessels_step
+// does the same, and advances seals, shed blood and the blood on the surface by a step.
 void cau_vessels_look(cau_vessels *vessels, const cau_vessel_surroundings *around);
 void cau_vessels_step(cau_vessels *vessels, const cau_vessel_surroundings *around);
 

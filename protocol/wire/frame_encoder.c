@@ -397,7 +397,7 @@ static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 	if (sample->statistics)
 		encoder->statistics = *sample->statistics;
 	encoder->vessel_count = sample->vessel_count;
-	for (int32_t i = 0; i < sample->vessel_count; i++)
+	for (int32_t i = 0; wants(encoder, CAU_CHANNEL_INDEX_VESSELS) && i < sample->vessel_count; i++)
 		encoder->vessels[i] = *sample->vessels[i];
 }
 

@@ -9,11 +9,11 @@
 
 enum { VESSELS_BYTES_MAX = 9 << 10 };
 
-// What a decoder would refuse in this vessel, or NULL.
+// Returns why a decoder would refuse this vessel, or NULL.
 const char *cau_vessel_state_check(const cau_vessel_state *vessel);
 
 // Writes the payload and returns its length, VESSELS_BYTES_MAX at most.
 size_t cau_vessels_write(uint8_t *out, const cau_vessel_state *vessels, int32_t count);
-// Reads a payload; returns NULL or what is wrong.
+// Reads a payload. Returns NULL, or why it is refused.
 const char *cau_vessels_read(const uint8_t *payload, size_t bytes, cau_vessel_state *vessels,
                              int32_t *count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A blood vessel through the daemon: its scene is checked, a cut makes it bleed, in frames, answers and events, and a
-// rewind takes the cut back.
+// reset makes it whole.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
@@ -32,7 +32,7 @@ after(() => daemon.end());
 const eventsOf = async (client, session) =>
 	(await client.call('session.timeline', { session })).events.filter(({ kind }) => kind.startsWith('bleeding') || kind === 'sealed');
 
-// Draws the energized needle across the strip, in lock-step; what is observed after each tick.
+// Draws the energized needle across the strip, in lock-step. `seen` gets the observation of each tick.
 async function divide(client, session, seen) {
 	const advance = async (method, more, ticks) => {
 		const commands = [{ method, tool: 'needle', ...more }];
@@ -49,7 +49,7 @@ async function divide(client, session, seen) {
 	return advance('tool.energize', { energized: false }, 1);
 }
 
-test('what is cut bleeds: frames, answers and events say the same, and a rewind ends it', async () => {
+test('a cut vessel bleeds: frames, answers and events say the same, and a reset makes it whole', async () => {
 	const client = await daemon.connect();
 	const { summary: { session } } = await client.call('session.create', { name: 'cut', definition: strip, paused: true });
 	const stream = await client.join(session, { rate_hz: 1000, channels: ['positions', 'vessels', 'blood'] });

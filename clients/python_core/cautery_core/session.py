@@ -14,6 +14,8 @@ from typing import Any, Mapping
 import numpy as np
 import numpy.typing as npt
 
+from cautery.stream import Vessel
+
 from . import layout
 from .errors import CommandRefused, CoreError
 from .library import core
@@ -55,24 +57,6 @@ class Tool:
     energy_j: float  # taken up by tissue
     slips: int  # times that it fell too far behind its commanded pose
     sizes: Mapping[str, float]  # the members of a scene's tool, temperature_c among them
-
-
-@dataclass(frozen=True)
-class Vessel:
-    """A blood vessel after a step."""
-
-    name: str
-    parted: bool
-    pierced: bool  # its wall has a hole
-    shut: bool  # pressed so flat that nothing flows
-    sealed: bool  # a seal withstands the pressure of the blood
-    bleeds: bool
-    radius_m: float
-    bleeding_m3_s: float
-    shed_m3: float  # blood that has left it
-    burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
-    points: Floats  # (P, 3), m: its middle line
-    open: Floats  # (P,): open share of the lumen's area, 0 where a seal holds; below 0: parted there
 
 
 def _text(bytes_: bytes) -> str:

@@ -319,7 +319,7 @@ typedef struct cau_tool_def {
 	X(end_pressure_pa, 0.0, 0.0, 40000.0, "Pa", "of the blood that comes back, at its last point") \
 	X(supply_m, 0.1, 1e-3, 10.0, "m", "length of such a tube that blood has come through")
 
-// One vessel: the line of its middle, and what it is.
+// One vessel: its middle line, and its sizes and pressures.
 typedef struct cau_vessel_def {
 	char name[CAU_NAME_BYTES];  // of the vessel
 	char layer[CAU_NAME_BYTES]; // the layer of fat in which it lies

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle divides the strip of `pedicle`: the page says that the artery bleeds and how much, lists it, and the picture
-// has blood where the daemon has it. Of a vessel that forceps seal the page says which pressure the seal bears. The session takes its steps one by one, whatever the machine's load.
+// A needle divides the strip of `pedicle`. The page says how much the artery bleeds, and the picture has blood where the
+// daemon has it. Forceps seal the artery in another session, and the page says its burst pressure. Steps are taken one
+// by one, so that the load of the machine has no effect.
 import AxeBuilder from '@axe-core/playwright';
 
 import { PROTOCOL } from './door';

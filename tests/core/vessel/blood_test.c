@@ -76,7 +76,7 @@ static void it_spreads_evenly_and_comes_to_rest(void **state)
 	double deepest = 0;
 	for (int32_t v = 0; v < level.blood.vertex_count; v++)
 		deepest = fmax(deepest, cau_blood_depth(&level.blood, v));
-	// The film that clings is 0.05 mm, and what is deeper is not far above it at rest.
+	// A film of 0.05 mm clings. At rest no place is much deeper.
 	assert_true(deepest < 3e-4);
 	drop(&level);
 }
@@ -95,7 +95,7 @@ static void it_runs_down(void **state)
 	drop(&tilted);
 }
 
-// It leaves no vertex that nobody sees, and enters none.
+// Blood neither leaves nor enters a vertex that is not drawn.
 static void it_stays_on_what_is_drawn(void **state)
 {
 	(void)state;
