@@ -76,6 +76,16 @@ double cau_session_coagulated(const cau_session *session)
 	return volume_m3;
 }
 
+double cau_session_vaporised(const cau_session *session)
+{
+	double volume_m3 = 0;
+	const cau_bioheat *bioheat = session->cells ? &session->cells->bioheat : NULL;
+	for (int32_t i = 0; bioheat && i < bioheat->cells.count; i++)
+		if (bioheat->cells.severed[i] && bioheat->water[i] <= burst_share)
+			volume_m3 += cau_cells_volume(&bioheat->cells, i);
+	return volume_m3;
+}
+
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger)
 {
 	*ledger = session->cells ? session->cells->bioheat.ledger : (cau_energy_ledger){0};

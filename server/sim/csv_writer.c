@@ -47,7 +47,8 @@
 	X("perfused_j", ".9g", ledger->perfused_j)                                                     \
 	X("ambient_j", ".9g", ledger->ambient_j)                                                       \
 	X("shed_j", ".9g", ledger->shed_j)                                                             \
-	X("coagulated_m3", ".9g", row->coagulated_m3)
+	X("coagulated_m3", ".9g", row->coagulated_m3)                                                  \
+	X("vaporised_m3", ".9g", row->vaporised_m3)
 
 // suffix of a tool's column, value of `tool`
 #define TOOL_COLUMNS(X)                                                                            \

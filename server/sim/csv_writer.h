@@ -17,6 +17,7 @@ typedef struct sim_csv_row {
 	cau_balance balance;
 	cau_energy_ledger ledger;
 	double coagulated_m3; // cau_session_coagulated
+	double vaporised_m3;  // cau_session_vaporised
 } sim_csv_row;
 
 // Stage times are the machine's, and 0 unless the session has a clock. Cells of a tool that is gone

@@ -377,6 +377,10 @@ void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledg
 // Volume of the tissue that is there and dead by heat (damage of 1 or more), m^3 at rest. 0 with
 // energy `paper`. Divided by the area of a cut, it is the mean width of what coagulated beside it.
 double cau_session_coagulated(const cau_session *session);
+// Volume of the tissue that is gone and had lost half of its water, or more, m^3 at rest. Sparks
+// removed it, or it went with its element. 0 with energy `paper`. Divided by the severed area, it
+// is the mean width of the kerf.
+double cau_session_vaporised(const cau_session *session);
 
 // Total mechanical quantities, for tests and plots.
 typedef struct cau_balance {

@@ -82,7 +82,7 @@ function latchButton(control: Control, hand: ToolHand): HTMLButtonElement {
     const { latched, alive } = hand.energy;
     const on = latched && alive;
     if (latch.getAttribute('aria-pressed') !== String(on)) latch.setAttribute('aria-pressed', String(on));
-    sign.hidden = !on;
+    if (sign.hidden === on) sign.hidden = !on;
     if (!on) return;
     const words = `Energy stays on for ${Math.ceil(hand.energy.latchedForS)} s. Keep on, L or Escape ends it.`;
     if (sign.textContent !== words) sign.textContent = words;

@@ -21,7 +21,8 @@ export function showRuler(ruler: Ruler, viewport: Viewport): () => void {
   let shown = '';
   return () => {
     const { from, to, length } = ruler;
-    place.hidden = from === null || to === null || length === null;
+    const hidden = from === null || to === null || length === null;
+    if (place.hidden !== hidden) place.hidden = hidden;
     if (!from || !to || length === null) return;
     const box = viewport.canvas.getBoundingClientRect();
     const ends = [from, to].map((end) => viewport.project(end.toArray())).flatMap(({ x, y }) => [x - box.left, y - box.top]);

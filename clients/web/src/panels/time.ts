@@ -3,11 +3,14 @@
 import type { Control } from '../model/control';
 import { EVENT_WORDS, momentsOf } from '../model/moments';
 import type { TimelineEvent } from '../wire/messages.gen';
+import type { Frame } from '../wire/worker_messages';
 import { ask } from './ask';
 import { attempt, button, byId, element, problemPlace } from './dom';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 const REFRESH_MS = 2000;
+/** A running session's time is written this often: each change has the browser lay the page out anew. */
+const WRITE_MS = 100;
 
 const research = (): boolean => document.body.dataset['mode'] === 'research';
 
@@ -117,11 +120,17 @@ export function timeBar(control: Control, shared: number | null): void {
     if (tick >= timeline.oldest_tick && tick < frame.tick) model.hold(tick);
   };
   let paused: boolean | null = null;
-  model.on('frame', (frame) => {
-    showShared();
+  let writtenMs = 0;
+  const writeTime = (frame: Frame): void => {
+    if (!frame.paused && frame.paused === paused && performance.now() - writtenMs < WRITE_MS) return;
+    writtenMs = performance.now();
     const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
     const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · faulted' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
     if (now.value !== text) now.value = text;
+  };
+  model.on('frame', (frame) => {
+    showShared();
+    writeTime(frame);
     if (frame.paused !== paused) {
       paused = frame.paused;
       pause.textContent = paused ? 'Resume' : 'Pause';
