@@ -9,8 +9,9 @@
 #include "bioheat/living_tissue.h"
 #include "cautery/assert.h"
 
-// The middle of an element's cell is less than a cell outside of it. Stretch may double that.
-enum { BOUND_CELLS = 2 };
+// A cell outside of its element is farther from it than at rest by this factor at most. Tools miss
+// cells that stretch carries farther away.
+static const double stretch_most = 2;
 
 static const double surface_w_m2k = 20; // still gas, with radiation
 
@@ -121,8 +122,9 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	cells->local = cau_arena_array(arena, 3 * most, sizeof(float));
 	cells->member = cau_arena_array(arena, most, sizeof(int32_t));
 	cells->stamp = cau_arena_array(arena, most, sizeof(int32_t));
-	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->owner || !cells->local ||
-	    !cells->member || !cells->stamp)
+	cells->beyond_m = cau_arena_array(arena, elements, sizeof(float));
+	if (!cells->beyond_m || !cells->half_m || !cells->filled || !cells->is_filled ||
+	    !cells->owner || !cells->local || !cells->member || !cells->stamp)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
 	cells->bioheat.surface_w_m2k = surface_w_m2k;
 	measure_halves(cells);
@@ -153,6 +155,40 @@ static void fill_further(cau_bioheat *bioheat, int32_t cell, float share)
 		bioheat->ambient_c + (bioheat->temperature[cell] - bioheat->ambient_c) * before / *fill;
 }
 
+static cau_vec3 rest_middle(const cau_element_shape *shape)
+{
+	cau_vec3 middle = {0};
+	for (int i = 0; i < shape->corners.count; i++)
+		middle =
+			cau_add(middle, cau_scale(1.0 / shape->corners.count, cau_element_corner(shape, i)));
+	return middle;
+}
+
+static void give(cau_tissue_cells *cells, int32_t cell, int32_t element,
+                 const cau_element_shape *shape)
+{
+	const int32_t *place = cells->bioheat.cells.place + cau_cell_axis(cell, 0);
+	cau_vec3 rest = cau_element_cell_middle(shape, place);
+	cau_vec3 at = cau_element_coordinates(shape, rest);
+	cau_vec3 middle = rest_middle(shape);
+	double nearest_m = INFINITY;
+	for (int i = 0; i < shape->corners.count; i++)
+		nearest_m = fmin(nearest_m, cau_length(cau_sub(cau_element_corner(shape, i), middle)));
+	double beyond_m = cau_length(cau_sub(rest, middle)) - nearest_m;
+	cells->owner[cell] = element;
+	cells->local[cau_cell_axis(cell, 0)] = (float)at.x;
+	cells->local[cau_cell_axis(cell, 1)] = (float)at.y;
+	cells->local[cau_cell_axis(cell, 2)] = (float)at.z;
+	cells->beyond_m[element] = fmaxf(cells->beyond_m[element], (float)beyond_m);
+}
+
+void cau_tissue_cells_give(cau_tissue_cells *cells, int32_t cell, int32_t element)
+{
+	CAU_ASSERT_INDEX(cell, cells->bioheat.cells.count);
+	cau_element_shape shape = shape_of(cells, element);
+	give(cells, cell, element, &shape);
+}
+
 static void fill_cell(cau_tissue_cells *cells, int32_t element, const cau_element_shape *shape,
                       const int32_t place[3], float share)
 {
@@ -164,12 +200,8 @@ static void fill_cell(cau_tissue_cells *cells, int32_t element, const cau_elemen
 	}
 	cell = cau_bioheat_add(&cells->bioheat, place, layer_of(cells->tissue, element), share);
 	CAU_ASSERT(cell >= 0, "no room for a cell of element %d", element);
-	cau_vec3 at = cau_element_coordinates(shape, cau_element_cell_middle(shape, place));
 	cells->current.potential[cell] = 0;
-	cells->owner[cell] = element;
-	cells->local[cau_cell_axis(cell, 0)] = (float)at.x;
-	cells->local[cau_cell_axis(cell, 1)] = (float)at.y;
-	cells->local[cau_cell_axis(cell, 2)] = (float)at.z;
+	give(cells, cell, element, shape);
 }
 
 bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element)
@@ -224,7 +256,7 @@ void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, cons
 		cau_vec3 corner = cau_vec3_of(position + 3 * (size_t)corners.vertex[i]);
 		*radius_m = fmax(*radius_m, cau_length(cau_sub(corner, *middle)));
 	}
-	*radius_m += BOUND_CELLS * cells->bioheat.cells.side_m + half_of(cells, element);
+	*radius_m += stretch_most * (double)cells->beyond_m[element];
 }
 
 // F takes an edge at rest to the edge in the world, so row `axis` of F^-1 is the sum of the rest
@@ -308,12 +340,8 @@ static int32_t corner_cell(const cau_tissue_cells *cells, const cau_element_shap
 {
 	static const double inwards = 0.4;
 	const cau_cells *grid = &cells->bioheat.cells;
-	cau_vec3 middle = {0};
-	for (int i = 0; i < shape->corners.count; i++)
-		middle =
-			cau_add(middle, cau_scale(1.0 / shape->corners.count, cau_element_corner(shape, i)));
 	cau_vec3 at = cau_add(cau_scale(1 - inwards, cau_element_corner(shape, corner)),
-	                      cau_scale(inwards, middle));
+	                      cau_scale(inwards, rest_middle(shape)));
 	int32_t cell = cell_at(grid, at);
 	return cell >= 0 && !grid->severed[cell] ? cell : -1;
 }
@@ -354,16 +382,82 @@ int32_t cau_tissue_cells_between(const cau_tissue_cells *cells, int32_t a, int32
 	return cell_at(&cells->bioheat.cells, cau_scale(0.5, sum));
 }
 
-void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element)
+// ---- elements that are gone
+
+static bool lives(const cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIMITIVE_KINDS],
+                  int32_t element)
 {
-	if (!cells->is_filled[element])
+	int32_t index;
+	int primitive = cau_tissue_cells_primitive(cells->tissue, element, &index);
+	return alive[primitive][index];
+}
+
+// Stamps the cells of elements that are gone. Returns whether there are any.
+static bool stamp_orphans(cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIMITIVE_KINDS],
+                          int32_t stamp)
+{
+	const cau_cells *grid = &cells->bioheat.cells;
+	int32_t last = -1;
+	bool any = false, gone = false;
+	for (int32_t cell = 0; cell < grid->count; cell++) {
+		if (grid->severed[cell])
+			continue;
+		if (cells->owner[cell] != last) {
+			last = cells->owner[cell];
+			gone = !lives(cells, alive, last);
+		}
+		if (gone)
+			cells->stamp[cell] = stamp;
+		any = any || gone;
+	}
+	return any;
+}
+
+// Gives a cell to the element of its first neighbour whose element is there. Returns whether there
+// is one.
+static bool follow_neighbour(cau_tissue_cells *cells, int32_t cell, int32_t orphan)
+{
+	for (int side = 0; side < CAU_CELL_SIDES; side++) {
+		int32_t other = cells->bioheat.cells.neighbour[cau_cell_side(cell, side)];
+		if (other < 0 || cells->stamp[other] >= orphan)
+			continue;
+		cau_tissue_cells_give(cells, cell, cells->owner[other]);
+		return true;
+	}
+	return false;
+}
+
+// Cells beside tissue that is there come first, then their neighbours, and so on.
+static void spread(cau_tissue_cells *cells, int32_t orphan, int32_t given, int32_t found)
+{
+	for (int32_t done = 0; done < found; done++)
+		for (int side = 0; side < CAU_CELL_SIDES; side++) {
+			int32_t cell = cells->member[done];
+			int32_t other = cells->bioheat.cells.neighbour[cau_cell_side(cell, side)];
+			if (other < 0 || cells->stamp[other] != orphan)
+				continue;
+			cau_tissue_cells_give(cells, other, cells->owner[cell]);
+			cells->stamp[other] = given;
+			cells->member[found++] = other;
+		}
+}
+
+void cau_tissue_cells_reassign(cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIMITIVE_KINDS])
+{
+	const cau_cells *grid = &cells->bioheat.cells;
+	int32_t orphan = ++cells->last_stamp, given = ++cells->last_stamp, found = 0;
+	if (!stamp_orphans(cells, alive, orphan))
 		return;
-	cau_element_shape shape = shape_of(cells, element);
-	int32_t count = list_members(cells, &shape);
-	bool link = shape.corners.count == 2; // its ends lie in other elements' cells
-	for (int32_t i = 0; i < count; i++)
-		if (!link || cells->owner[cells->member[i]] == element)
-			cau_bioheat_take_out(&cells->bioheat, cells->member[i]);
+	for (int32_t cell = 0; cell < grid->count; cell++)
+		if (!grid->severed[cell] && cells->stamp[cell] == orphan &&
+		    follow_neighbour(cells, cell, orphan))
+			cells->member[found++] = cell;
+	for (int32_t i = 0; i < found; i++)
+		cells->stamp[cells->member[i]] = given;
+	spread(cells, orphan, given, found);
+	for (int32_t cell = 0; cell < grid->count; cell++)
+		if (!grid->severed[cell] && cells->stamp[cell] == orphan)
+			cau_bioheat_take_out(&cells->bioheat, cell);
 }
 
 // ---- snapshots
@@ -395,6 +489,7 @@ void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from)
 	to->bioheat.cold = from->bioheat.cold;
 	memcpy(to->owner, from->owner, count * sizeof *to->owner);
 	memcpy(to->local, from->local, 3 * count * sizeof *to->local);
+	memcpy(to->beyond_m, from->beyond_m, (size_t)cau_tissue_cells_elements(from) * sizeof(float));
 	to->filled_count = from->filled_count;
 	memcpy(to->filled, from->filled, (size_t)from->filled_count * sizeof *to->filled);
 	memcpy(to->is_filled, from->is_filled, (size_t)cau_tissue_cells_elements(from));
@@ -407,6 +502,7 @@ uint64_t cau_tissue_cells_hash(const cau_tissue_cells *cells, uint64_t hash)
 	hash = cau_hash_word(hash, (uint64_t)bioheat->cells.count);
 	hash = cau_hash_bytes(hash, bioheat->temperature, bytes);
 	hash = cau_hash_bytes(hash, bioheat->water, bytes);
+	hash = cau_hash_bytes(hash, cells->owner, (size_t)bioheat->cells.count * sizeof *cells->owner);
 	return cau_hash_bytes(hash, bioheat->damage, bytes);
 }
 

@@ -19,8 +19,10 @@ typedef struct cau_tissue_cells {
 	uint8_t *is_filled; // (elements)
 	int32_t *owner;     // (capacity): the element that a cell moves with
 	float *local;       // (capacity x 3): its middle in the owner, by cau_tissue_cells_at
-	int32_t *member;    // scratch: (capacity)
-	int32_t *stamp;     // scratch: (capacity)
+	float *beyond_m; // (elements): by how much the cells of an element are farther from its middle
+	                 // than its corners, at rest
+	int32_t *member; // scratch: (capacity)
+	int32_t *stamp;  // scratch: (capacity)
 	int32_t last_stamp;
 } cau_tissue_cells;
 
@@ -69,8 +71,13 @@ bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, cons
 // The cell half way between two vertices at rest, also one that was taken out; -1: none.
 int32_t cau_tissue_cells_between(const cau_tissue_cells *cells, int32_t a, int32_t b);
 
-// Removes the cells that a removed element still has.
-void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element);
+// After elements were removed: their cells move with the element of the nearest cell that they are
+// joined with. Cells that are joined with no element that is there are taken out, with their heat.
+// `alive`: by kind and number in it; 0: the element was removed.
+void cau_tissue_cells_reassign(cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIMITIVE_KINDS]);
+
+// Makes a cell move with the element.
+void cau_tissue_cells_give(cau_tissue_cells *cells, int32_t cell, int32_t element);
 
 // Makes `to` equal to `from`, which is of the same tissue and capacity.
 void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from);

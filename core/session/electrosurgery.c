@@ -435,16 +435,15 @@ static void part(cau_session *session, const int32_t least[3], const int32_t mos
 	}
 }
 
-// The cells of all elements that were removed in this tick, torn ones too.
-static void remove_cells(cau_session *session)
+// What is left of the elements that were removed in this tick, torn ones too, is the lips of a cut:
+// tissue that a mesh of whole elements has lost, and that still conducts heat and current.
+static void keep_lips(cau_session *session)
 {
-	for (int32_t k = 0; k < session->dissection.removed_count; k++) {
-		const cau_removed *removed = &session->dissection.removed[k];
-		if (removed->kind < CAU_PRIMITIVE_KINDS)
-			cau_tissue_cells_remove(
-				session->cells,
-				cau_tissue_cells_element(&session->tissue, (int)removed->kind, removed->element));
-	}
+	for (int32_t k = 0; k < session->dissection.removed_count; k++)
+		if (session->dissection.removed[k].kind < CAU_PRIMITIVE_KINDS) {
+			cau_tissue_cells_reassign(session->cells, session->dissection.alive.element);
+			return;
+		}
 }
 
 // ---- a tick
@@ -489,7 +488,7 @@ void cau_session_operate(cau_session *session)
 	int32_t first = session->dissection.removed_count, least[3] = {0}, most[3] = {0};
 	uint32_t layers = 0;
 	if (is_idle(session)) {
-		remove_cells(session);
+		keep_lips(session);
 		return;
 	}
 	begin(session);
@@ -506,7 +505,7 @@ void cau_session_operate(cau_session *session)
 	heat(session);
 	if (vaporise(session, least, most))
 		part(session, least, most, &layers);
-	remove_cells(session);
+	keep_lips(session);
 	cau_session_take_out(session, first);
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];

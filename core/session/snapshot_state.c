@@ -373,6 +373,18 @@ static void pass_filled(snapshot_archive *archive, cau_tissue_cells *cells)
 	}
 }
 
+// The elements that cells move with. They differ from those that made them where elements are gone.
+static void pass_owners(snapshot_archive *archive, cau_tissue_cells *cells)
+{
+	int32_t most = cau_tissue_cells_elements(cells);
+	for (int32_t cell = 0; cell < cells->bioheat.cells.count && !archive->wrong; cell++) {
+		int32_t owner = cells->owner[cell];
+		cau_snapshot_ints(archive, "element of a cell", &owner, 1, 0, (int64_t)most - 1);
+		if (archive->mode == SNAPSHOT_READ && !archive->wrong && owner != cells->owner[cell])
+			cau_tissue_cells_give(cells, cell, owner);
+	}
+}
+
 // Which cells there are follows from the elements in their order. Reading makes them.
 static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 {
@@ -385,6 +397,7 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 	if (archive->wrong)
 		return;
 	cau_snapshot_octets(archive, "severed cell", bioheat->cells.severed, count, 1);
+	pass_owners(archive, cells);
 	cau_snapshot_floats(archive, "fill of a cell", bioheat->cells.fill, count, 1e-6, 1);
 	cau_snapshot_floats(archive, "pull of a cell", bioheat->cells.pull, 3 * count,
 	                    1 / CAU_PULL_MOST, CAU_PULL_MOST);

@@ -12,8 +12,8 @@
 #include "session/snapshot_bytes.h"
 
 enum {
-	// 14: vessels and blood. No release wrote earlier versions, and none is read.
-	CAU_SNAPSHOT_VERSION = 14,
+	// 15: the elements that cells move with. No release wrote earlier versions, and none is read.
+	CAU_SNAPSHOT_VERSION = 15,
 	CAU_SNAPSHOT_HASH_BYTES = 8, // the last
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };

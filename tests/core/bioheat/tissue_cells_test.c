@@ -175,9 +175,44 @@ static void a_slit_separates_an_element(void **state)
 	assert_in_range(rows, 4, 5); // where its middle crosses the longest side
 	assert_true(cau_tissue_cells_separated(&cells, 0));
 	assert_false(cau_tissue_cells_separated(&cells, 1));
-	cau_tissue_cells_remove(&cells, 0);
-	int32_t corner = cau_cells_find(&cells.bioheat.cells, (int32_t[]){0, 0, 0});
-	assert_true(cells.bioheat.cells.severed[corner]);
+	rig_finish(&r);
+}
+
+// The lips of a cut whose element is gone: what hangs on the other triangle moves with it, and what
+// hangs on nothing is taken out with its heat.
+static void what_an_element_leaves_moves_with_its_neighbour(void **state)
+{
+	(void)state;
+	rig r = small_sheet();
+	cau_tissue_cells cells;
+	fill_all(&cells, &r, SIDE_M, 4000);
+	cau_cells *grid = &cells.bioheat.cells;
+	int32_t far = cau_cells_find(grid, (int32_t[]){0, 0, 0});
+	for (int32_t i = 0; i < grid->count; i++) // a slit between the triangle's corner and the rest
+		if (grid->place[3 * i] + grid->place[3 * i + 1] == 3)
+			cau_bioheat_take_out(&cells.bioheat, i);
+	cells.bioheat.temperature[far] = 80;
+	int32_t left = 0, kept = 0;
+	for (int32_t i = 0; i < grid->count; i++)
+		left += !grid->severed[i] && cells.owner[i] == 0;
+	uint8_t triangles[] = {0, 1}, none[1] = {0};
+	cau_tissue_cells_reassign(&cells, (uint8_t *[]){triangles, none, none});
+	assert_true(grid->severed[far]);
+	assert_true(cells.bioheat.ledger.shed_j > 0);
+	for (int32_t i = 0; i < grid->count; i++) {
+		if (grid->severed[i])
+			continue;
+		kept++;
+		assert_int_equal(cells.owner[i], 1);
+		assert_int_equal(grid->place[3 * i] + grid->place[3 * i + 1] > 3, 1);
+		cau_vec3 at = cau_tissue_cells_at(&cells, i, r.tissue.rest), middle;
+		double radius;
+		for (int axis = 0; axis < 3; axis++)
+			assert_near((&at.x)[axis], (grid->place[3 * i + axis] + 0.5) * SIDE_M, 1e-9);
+		cau_tissue_cells_bound(&cells, 1, r.tissue.rest, &middle, &radius);
+		assert_true(cau_length(cau_sub(at, middle)) <= radius);
+	}
+	assert_true(left > 0 && kept > 0);
 	rig_finish(&r);
 }
 
@@ -229,7 +264,8 @@ static void a_link_is_of_cells(void **state)
 	assert_true(take_out_half_way(&cells) > 3);
 	for (int32_t l = 0; l < 3; l++)
 		assert_true(cau_tissue_cells_separated(&cells, link + l));
-	cau_tissue_cells_remove(&cells, link);
+	uint8_t triangles[] = {1, 1}, none[1] = {0}, links[] = {0, 1, 1};
+	cau_tissue_cells_reassign(&cells, (uint8_t *[]){triangles, none, links});
 	for (int32_t t = 0; t < 2; t++)
 		assert_false(cau_tissue_cells_separated(&cells, t));
 	rig_finish(&r);
@@ -282,6 +318,7 @@ int main(void)
 		cmocka_unit_test(conductivity_is_pulled_back),
 		cmocka_unit_test(a_pull_back_has_bounds),
 		cmocka_unit_test(a_slit_separates_an_element),
+		cmocka_unit_test(what_an_element_leaves_moves_with_its_neighbour),
 		cmocka_unit_test(a_link_is_of_cells),
 		cmocka_unit_test(a_link_s_cells_move_with_its_ends),
 		cmocka_unit_test(there_may_be_no_room),
