@@ -300,16 +300,27 @@ double cau_vessel_outflow(const cau_vessel_def *def, double pressure_pa, double 
 // The flow of blood from one end of a vessel.
 typedef struct run {
 	double flow_m3_s;    // that leaves the vessel
+	double open;         // area through which it leaves, over the lumen's
 	double best_seal_pa; // strength of the best seal between this end and the cut, or the other end
 	bool sealed, shut;   // a seal, or compression, stops the flow
 } run;
 
-// Adds a flow that leaves the vessel at a station. With `shed`, its blood lies on the tissue.
+typedef struct vessel_end { // that the blood comes from
+	const cau_vessel_def *def;
+	double pressure_pa;
+	bool shed; // the blood lies on the tissue
+} vessel_end;
+
+// Blood leaves the vessel at a station, through a share of the lumen's area. All openings share the
+// tube that supplies them: each adds the flow by which its area raises that of all before. With
+// `shed`, the blood lies on the tissue.
 static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, int32_t station,
-                  double flow_m3_s, bool shed, run *out)
+                  const vessel_end *end, double share, run *out)
 {
+	out->open += share;
+	double flow_m3_s = cau_vessel_outflow(end->def, end->pressure_pa, out->open) - out->flow_m3_s;
 	out->flow_m3_s += flow_m3_s;
-	if (!shed || flow_m3_s <= 0)
+	if (!end->shed || flow_m3_s <= 0)
 		return;
 	cau_vec3 at = place(vessels->tissue, &vessels->station[station].point[0], around->position);
 	cau_blood_add(&vessels->blood, around->vertex_visible, around->position, at,
@@ -323,13 +334,13 @@ static run follow(cau_vessels *vessels, int32_t index, int step, double pressure
 {
 	const cau_vessel_def *def = &vessels->def[index];
 	const cau_vessel *vessel = &vessels->vessel[index];
+	vessel_end end = {.def = def, .pressure_pa = pressure_pa, .shed = shed};
 	run out = {0};
 	double open = 1;
 	int32_t k = step > 0 ? vessel->first : vessel->first + vessel->count - 1;
 	for (int32_t left = vessel->count; left > 0; left--, k += step) {
 		if (vessels->parted[k]) {
-			leave(vessels, around, left == vessel->count ? k : k - step,
-			      cau_vessel_outflow(def, pressure_pa, open), shed, &out);
+			leave(vessels, around, left == vessel->count ? k : k - step, &end, open, &out);
 			break;
 		}
 		double seal = cau_seal_strength(def, vessels->fusion[k]);
@@ -338,7 +349,7 @@ static run follow(cau_vessels *vessels, int32_t index, int step, double pressure
 		out.shut |= vessels->open[k] <= 0;
 		open = out.sealed ? 0 : fmin(open, vessels->open[k]);
 		double hole = fmin(open, vessels->holes[k] / (double)(CAU_STATION_POINTS - 1));
-		leave(vessels, around, k, cau_vessel_outflow(def, pressure_pa, hole), shed, &out);
+		leave(vessels, around, k, &end, hole, &out);
 		open -= hole;
 	}
 	return out;

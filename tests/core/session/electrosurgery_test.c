@@ -79,6 +79,27 @@ static void thirty_watts_cut_at_the_hand_s_speed(void **state)
 	cau_session_destroy(session);
 }
 
+// The lips of the cut, which lie in elements that are gone, move with elements that are there.
+static void lips_move_with_what_is_left(void **state)
+{
+	(void)state;
+	cau_session *session = cut_with(30, 1);
+	const cau_tissue_cells *cells = session->cells;
+	const cau_tissue *tissue = &session->tissue;
+	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TRIANGLE];
+	int32_t lips = 0;
+	for (int32_t i = 0; i < cells->bioheat.cells.count; i++) {
+		if (cells->bioheat.cells.severed[i])
+			continue;
+		assert_true(cells->owner[i] < tissue->triangle_count && alive[cells->owner[i]]);
+		const float *local = cells->local + cau_cell_axis(i, 0);
+		lips += local[0] < -0.3F || local[1] < -0.3F || local[0] + local[1] > 1.3F;
+	}
+	assert_true(parted(session) > 0 && lips > 0);
+	assert_true(cau_session_vaporised(session) > 0);
+	cau_session_destroy(session);
+}
+
 static void one_watt_holds_the_needle_up(void **state)
 {
 	(void)state;
@@ -359,6 +380,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(thirty_watts_cut_at_the_hand_s_speed),
+		cmocka_unit_test(lips_move_with_what_is_left),
 		cmocka_unit_test(one_watt_holds_the_needle_up),
 		cmocka_unit_test(off_ends_the_power_and_not_the_heat),
 		cmocka_unit_test(threads_and_a_restore_change_no_bit),
