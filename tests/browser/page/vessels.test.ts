@@ -127,6 +127,7 @@ describe('a session with a blood vessel', () => {
     await viewer.full(true);
     await viewer.screenshot('vessels-whole');
     expect(await darkShare(whole)).toBeLessThan(DRY_SHARE);
+    await viewer.full(false);
   });
 
   it('says that the vessel bleeds, how much, and shows the blood', async () => {
@@ -134,7 +135,7 @@ describe('a session with a blood vessel', () => {
     await viewer.until(() => /artery bleeds: [1-9][\d.]* ml\/s, [\d.]+ ml lost/.test(document.querySelector('#said')?.textContent ?? ''), null, 'a warning');
     await viewer.until(() => /^artery: parted, bleeding; [1-9][\d.]* ml\/s, [\d.]+ ml lost/.test(document.querySelector('#panel-tools .vessels')?.textContent ?? ''), null, 'the list');
     await viewer.page.evaluate(() => (document.querySelector<HTMLElement>('#said')!.style.visibility = 'hidden')); // it may lie over the cut
-    await viewer.drawn();
+    await viewer.full(true);
     await viewer.until(() => window.cautery.idle, null, 'the picture of it');
     await viewer.screenshot('vessels-bleeding');
     const all = await blood();
@@ -145,6 +146,7 @@ describe('a session with a blood vessel', () => {
     expect(deep.length).toBeGreaterThan(ENOUGH);
     expect(shares[0]).toBeGreaterThan(DARK_SHARE);
     expect(shares[1]).toBeLessThan(DRY_SHARE);
+    await viewer.full(false);
     await viewer.page.evaluate(() => (document.querySelector<HTMLElement>('#said')!.style.visibility = ''));
   });
 
