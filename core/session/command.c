@@ -155,9 +155,6 @@ static cau_status change_form(cau_session *session, cau_tool *tool, const cau_to
 		return status;
 	cau_heat_grid_finish(&tool->grid);
 	tool->grid = grid;
-	double blade_c = tool->blade.temperature_c;
-	tool->blade = cau_session_blade_of(session, def);
-	tool->blade.temperature_c = blade_c;
 	cau_session_release(tool);
 	return CAU_OK;
 }
@@ -171,6 +168,9 @@ static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau
 		if (status)
 			return status;
 	}
+	double blade_c = tool->blade.temperature_c;
+	tool->blade = cau_session_blade_of(session, def);
+	tool->blade.temperature_c = blade_c;
 	cau_pose pose = now->pose;
 	*now = *def;
 	now->pose = pose;
@@ -201,6 +201,8 @@ static cau_status apply_to_tool(cau_session *session, const cau_command *command
 			tool->jaw_target = command->as.move.jaw;
 		return CAU_OK;
 	case CAU_COMMAND_TOOL_ENERGIZE:
+		if (!tool->state.energized)
+			tool->least_ohm = 0;
 		tool->state.energized = command->as.energized != 0;
 		return CAU_OK;
 	case CAU_COMMAND_TOOL_GRASP:

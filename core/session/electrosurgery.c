@@ -35,8 +35,9 @@ static const double burst_share = 0.5;
 
 // ---- blades
 
-// Heat capacity of the metal at the hot part, J/K, and conductance along the shaft, W/K. A steel
-// wire of 1 mm and 10 mm length has 0.03 J/K. Jaws have more than 100 mm^3 of metal.
+// Heat capacity of the metal at the hot part, J/K, and conductance along the shaft, W/K, of tools
+// whose definition has 0 for them. A steel wire of 1 mm and 10 mm length has 0.03 J/K. Jaws have
+// more than 100 mm^3 of metal.
 static const struct {
 	double heat_capacity_j_k, cooling_w_k;
 } blades[CAU_TOOL_SHAPE_COUNT] = {
@@ -49,9 +50,11 @@ static const struct {
 cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def)
 {
 	CAU_ASSERT_INDEX(def->shape, CAU_TOOL_SHAPE_COUNT);
-	return (cau_blade){.temperature_c = session->scene->ambient_c,
-	                   .heat_capacity_j_k = blades[def->shape].heat_capacity_j_k,
-	                   .cooling_w_k = blades[def->shape].cooling_w_k};
+	double heat_j_k = def->blade_heat_j_k, cooling_w_k = def->blade_cooling_w_k;
+	return (cau_blade){
+		.temperature_c = session->scene->ambient_c,
+		.heat_capacity_j_k = heat_j_k > 0 ? heat_j_k : blades[def->shape].heat_capacity_j_k,
+		.cooling_w_k = cooling_w_k > 0 ? cooling_w_k : blades[def->shape].cooling_w_k};
 }
 
 cau_status cau_session_make_cells(cau_session *session, cau_error *error)
@@ -352,10 +355,17 @@ static void rub(const cau_session *session, cau_tool *tool)
 	tool->state.delivered_w = power;
 }
 
+// Advanced bipolar: as tissue dries, its load rises from its least. Then the generator has ended,
+// until energy goes off and on again.
+static bool has_ended(const cau_tool *tool)
+{
+	return tool->state.definition.load_rise_off > 0 && tool->least_ohm < 0;
+}
+
 // Whether the tool sparks.
 static bool sparks(const cau_tool *tool)
 {
-	return tool->state.energized && tool->state.definition.peak_v >= spark_v &&
+	return tool->state.energized && !has_ended(tool) && tool->state.definition.peak_v >= spark_v &&
 	       tool->state.definition.shape != CAU_TOOL_SHEARS && !is_bipolar(tool);
 }
 
@@ -379,15 +389,28 @@ static void give_power(cau_session *session, cau_tool *tool)
 	tool->state.load_ohm = current->conductance_s > 0 ? 1 / current->conductance_s : 0;
 }
 
+static void follow_load(cau_tool *tool)
+{
+	double ohm = tool->state.load_ohm, rise = tool->state.definition.load_rise_off;
+	if (rise <= 0 || ohm <= 0)
+		return;
+	if (tool->least_ohm <= 0 || ohm < tool->least_ohm)
+		tool->least_ohm = ohm;
+	else if (ohm >= rise * tool->least_ohm)
+		tool->least_ohm = -1;
+}
+
 static void energize(cau_session *session, cau_tool *tool)
 {
 	tool->state.delivered_w = tool->state.load_ohm = 0;
-	if (!tool->state.energized)
+	if (!tool->state.energized || has_ended(tool))
 		return;
-	if (tool->state.definition.shape == CAU_TOOL_SHEARS)
+	if (tool->state.definition.shape == CAU_TOOL_SHEARS) {
 		rub(session, tool);
-	else if (session->cells->current.electrode_count)
+	} else if (session->cells->current.electrode_count) {
 		give_power(session, tool);
+		follow_load(tool);
+	}
 }
 
 // ---- removal

@@ -38,6 +38,8 @@ typedef struct cau_tool {
 	double pace; // share of the anchor's motion that it follows in a tick; below 1 when held back
 	cau_heat_grid grid;
 	cau_blade blade; // with energy `tissue`: electrosurgery.c
+	// Least load since energy came on, ohm; 0: no current yet; below 0: load_rise_off was reached.
+	double least_ohm;
 	int32_t grasp_count;
 	cau_grasp grasp[CAU_MAX_GRASPED];
 	double least_open_rad; // pinch.c: held tissue keeps the jaws open at least so far

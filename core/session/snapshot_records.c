@@ -163,6 +163,7 @@ void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *sessio
 		tool->blade = cau_session_blade_of(session, &tool->state.definition);
 		tool->blade.temperature_c = blade_c;
 	}
+	pass_any(archive, "least load of a tool", &tool->least_ohm, 1);
 	pass_int(archive, "points in jaws", &tool->grasp_count, 0, CAU_MAX_GRASPED);
 	for (int32_t k = 0; k < tool->grasp_count && !archive->wrong; k++)
 		pass_grasp(archive, &session->tissue, &tool->grasp[k]);

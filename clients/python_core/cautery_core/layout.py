@@ -22,7 +22,7 @@ SCALARS = {"exposure": 1 << 2, "charring": 1 << 3, "stress": 1 << 4, "temperatur
 TOOL_SIZES = ("hot_radius_m", "tip_length_m", "shaft_radius_m", "shaft_length_m", "jaw_open_rad", "temperature_c",
               "grid_cells", "grid_step_m", "diffusivity_m2_s", "max_speed_m_s", "max_turn_rad_s", "friction",
               "drag_ns_m", "grasp_stiffness_n_m", "slip_force_n", "force_max_n", "close_force_n", "power_w", "peak_v", "crest_factor",
-              "current_max_a", "force_filter_s")
+              "current_max_a", "force_filter_s", "blade_heat_j_k", "blade_cooling_w_k", "load_rise_off")
 
 
 class Error(Structure):

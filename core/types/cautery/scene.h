@@ -293,7 +293,13 @@ typedef struct cau_selection {
 	X(peak_v, 1150.0, 1.0, 10000.0, "V", "most voltage, peak; from 200 V on it sparks and cuts")   \
 	X(crest_factor, 1.4, 1.4, 20.0, "1", "of the voltage: its peak over its root mean square")     \
 	X(current_max_a, 2.0, 0.01, 10.0, "A", "most current, root mean square")                       \
-	X(force_filter_s, 0.02, 0.0, 1.0, "s", "time constant of its filtered force; 0: no filter")
+	X(force_filter_s, 0.02, 0.0, 1.0, "s", "time constant of its filtered force; 0: no filter")    \
+	X(blade_heat_j_k, 0.0, 0.0, 100.0, "J/K",                                                      \
+	  "heat capacity of the hot part, with energy `tissue`; 0: that of its shape")                 \
+	X(blade_cooling_w_k, 0.0, 0.0, 1.0, "W/K",                                                     \
+	  "heat that the hot part loses along the shaft; 0: that of its shape")                        \
+	X(load_rise_off, 0.0, 0.0, 100.0, "1",                                                         \
+	  "power ends when the load is so many times its least; off and on begins again; 0: never")
 
 // Where a tool is, and how it is turned.
 typedef struct cau_pose {

@@ -376,6 +376,133 @@ static void edges_cannot_part_by_power(void **state)
 	free(scene);
 }
 
+// The blade is that of its shape where the definition says nothing, to the bit.
+static void the_same_blade_by_numbers_changes_no_bit(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = needle_over_sheet(30);
+	cau_session *silent = stage_open(scene, 1);
+	scene->tools[0].blade_heat_j_k = 0.05;
+	scene->tools[0].blade_cooling_w_k = 2e-3;
+	cau_session *said = stage_open(scene, 1);
+	scene->tools[0].blade_heat_j_k = 0.5;
+	cau_session *heavy = stage_open(scene, 1);
+	go(silent, 0, DWELL_TICKS);
+	go(said, 0, DWELL_TICKS);
+	go(heavy, 0, DWELL_TICKS);
+	double tip_c = stage_tool(silent, "hook")->tip_temperature_c;
+	assert_true(tip_c == stage_tool(said, "hook")->tip_temperature_c);
+	assert_true(cau_session_hash(silent) == cau_session_hash(said));
+	// The tissue is much warmer than either blade, so both take about the same heat.
+	double rise = tip_c - 37, heavy_rise = stage_tool(heavy, "hook")->tip_temperature_c - 37;
+	assert_true(rise > 0.1 && heavy_rise > rise / 20 && heavy_rise < rise / 5);
+	cau_session_destroy(silent);
+	cau_session_destroy(said);
+	cau_session_destroy(heavy);
+	free(scene);
+}
+
+// A setting that changes the blade leaves it as warm as it is.
+static void a_new_blade_is_as_warm(void **state)
+{
+	(void)state;
+	cau_session *session = cut_with(30, 1);
+	stage_energize(session, "hook", 0);
+	double before_c = stage_tool(session, "hook")->tip_temperature_c;
+	cau_command lighter = stage_command(CAU_COMMAND_TOOL_CONFIGURE);
+	strcpy(lighter.tool, "hook");
+	lighter.as.definition = stage_tool(session, "hook")->definition;
+	lighter.as.definition.blade_heat_j_k = 0.4;
+	lighter.as.definition.blade_cooling_w_k = 0.04;
+	stage_submit(session, &lighter);
+	stage_step(session, 1);
+	assert_true(fabs(stage_tool(session, "hook")->tip_temperature_c - before_c) < 1);
+	assert_true(session->tool[0].blade.heat_capacity_j_k == 0.4);
+	assert_true(session->tool[0].blade.cooling_w_k == 0.04);
+	cau_session_destroy(session);
+}
+
+static void blades_that_no_step_can_follow_are_refused(void **state)
+{
+	(void)state;
+	static const struct {
+		double heat_j_k, cooling_w_k, rise;
+		const char *path;
+	} rows[] = {{0.005, 0, 0, "tools[0].blade_heat_j_k"},
+	            {0.012, 0.9, 0, "tools[0].blade_cooling_w_k"},
+	            {0, 0, 0.5, "tools[0].load_rise_off"},
+	            {0, 0, 1, "tools[0].load_rise_off"}};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		cau_error error = {0};
+		cau_scene_def *scene = needle_over_sheet(30);
+		scene->tools[0].blade_heat_j_k = rows[i].heat_j_k;
+		scene->tools[0].blade_cooling_w_k = rows[i].cooling_w_k;
+		scene->tools[0].load_rise_off = rows[i].rise;
+		stage_refuse(scene, CAU_BAD_VALUE, &error);
+		assert_string_equal(error.path, rows[i].path);
+		free(scene);
+	}
+}
+
+enum { SEAL_TICKS_MOST = 600 };
+
+static cau_session *sealing(double rise)
+{
+	cau_scene_def *scene = needle_over_sheet(10);
+	scene->tools[0].shape = CAU_TOOL_BIPOLAR;
+	scene->tools[0].grid_step_m = 2e-4;
+	scene->tools[0].peak_v = 190;
+	scene->tools[0].load_rise_off = rise;
+	scene->tools[0].pose = (cau_pose){.position_m = {0, 0, -2e-3}, .rotation = {1, 0, 0, 0}};
+	cau_session *session = stage_open(scene, 1);
+	stage_energize(session, "hook", 1);
+	free(scene);
+	return session;
+}
+
+// Steps until no power is given; returns how many ticks gave some, and the least and last load.
+static int seal(cau_session *session, double *least_ohm, double *last_ohm)
+{
+	int ticks = 0;
+	for (stage_step(session, 1); ticks < SEAL_TICKS_MOST; ticks++, stage_step(session, 1)) {
+		const cau_tool_state *jaws = stage_tool(session, "hook");
+		if (jaws->delivered_w <= 0)
+			return ticks;
+		*last_ohm = jaws->load_ohm;
+		*least_ohm = ticks ? fmin(*least_ohm, *last_ohm) : *last_ohm;
+	}
+	return ticks;
+}
+
+// Advanced bipolar: the power ends when the load has risen, and stays off until energy goes off and
+// on again. What it waits for is state.
+static void power_ends_when_the_load_has_risen(void **state)
+{
+	(void)state;
+	double least = 0, last = 0, other_least = 0, other_last = 0;
+	cau_session *session = sealing(4), *other = sealing(4);
+	stage_step(session, 10);
+	stage_bytes bytes = stage_snapshot(session);
+	assert_int_equal(cau_session_restore(other, bytes.bytes, bytes.count, NULL, NULL), CAU_OK);
+	free(bytes.bytes);
+	int ticks = seal(session, &least, &last);
+	assert_in_range(ticks, 1, SEAL_TICKS_MOST - 1);
+	assert_true(last >= 4 * least && stage_tool(session, "hook")->energized);
+	assert_int_equal(seal(other, &other_least, &other_last), ticks);
+	assert_true(cau_session_hash(session) == cau_session_hash(other));
+	stage_step(session, 30);
+	assert_true(stage_tool(session, "hook")->delivered_w == 0);
+	stage_energize(session, "hook", 1); // it is on already
+	stage_step(session, 1);
+	assert_true(stage_tool(session, "hook")->delivered_w == 0);
+	stage_energize(session, "hook", 0);
+	stage_energize(session, "hook", 1);
+	stage_step(session, 1);
+	assert_true(stage_tool(session, "hook")->delivered_w > 0);
+	cau_session_destroy(session);
+	cau_session_destroy(other);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -390,6 +517,10 @@ int main(void)
 		cmocka_unit_test(a_changed_thickness_is_restored),
 		cmocka_unit_test(bipolar_jaws_heat_what_lies_between),
 		cmocka_unit_test(a_rubbing_blade_heats_tissue),
+		cmocka_unit_test(the_same_blade_by_numbers_changes_no_bit),
+		cmocka_unit_test(a_new_blade_is_as_warm),
+		cmocka_unit_test(blades_that_no_step_can_follow_are_refused),
+		cmocka_unit_test(power_ends_when_the_load_has_risen),
 		cmocka_unit_test(power_parts_links),
 		cmocka_unit_test(edges_cannot_part_by_power),
 	};

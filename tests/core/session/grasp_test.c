@@ -332,6 +332,8 @@ static void a_setting_keeps_what_jaws_hold(void **state)
 		OF(close_force_n, 7.5, false),    OF(power_w, 40, false),
 		OF(peak_v, 190, false),           OF(crest_factor, 2, false),
 		OF(current_max_a, 1, false),      OF(force_filter_s, 0.05, false),
+		OF(blade_heat_j_k, 0.3, false),   OF(blade_cooling_w_k, 0.01, false),
+		OF(load_rise_off, 3, false),
 	};
 #define ONE(...) +1
 	assert_int_equal(sizeof changes / sizeof changes[0], CAU_TOOL_TABLE(ONE)); // each of them
