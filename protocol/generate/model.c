@@ -7,6 +7,7 @@
 
 #include "cautery/defaults.h"
 #include "json/fields.h"
+#include "json/instrument.h"
 
 // ---- building blocks ----------------------------------------------------------------------------
 
@@ -106,7 +107,7 @@ static void add_field(type *to, const cau_field *field, const void *defaults)
 {
 	property *added = add_property(to, field->name, kind_of_field(field), field->meaning);
 	bool whole = field->type == CAU_FIELD_COUNT;
-	added->required = field->required;
+	added->required = field->required && !field->unless;
 	added->least = whole ? 0.0 : field->least;
 	added->most = whole ? 9007199254740991.0 : field->most;
 	added->count = field->type == CAU_FIELD_TEXT ? CAU_TEXT_BYTES - 1 : field->count;
@@ -225,6 +226,7 @@ static void add_scene_parts(model *to)
 	type *tool = add_type(to, "Tool", "a tool of a scene");
 	tool->strict = true;
 	add_record(tool, &cau_tool_name_record, NULL, -1);
+	add_record(tool, &cau_instrument_record, NULL, -1);
 	add_record(tool, &cau_tool_record, &tool_defaults, -1);
 	add_record(tool, &cau_pose_record, NULL, -1);
 	type *point = add_type(to, "VesselPoint", "a point of the middle line of a vessel");
@@ -288,6 +290,8 @@ static void add_command_members(type *to, cau_command *command)
 		bool head = parts[i].record == &cau_command_record;
 		add_record(to, parts[i].record, head ? NULL : parts[i].base, head ? command->kind : -1);
 	}
+	if (command->kind == CAU_COMMAND_TOOL_ADD || command->kind == CAU_COMMAND_TOOL_CONFIGURE)
+		add_record(to, &cau_instrument_record, NULL, -1);
 	drop_property(to, "command");
 	if (cau_command_selection(command))
 		add_object(to, "selection", "Selection", true, "which vertices");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cautery/command_json.h"
 
+#include "cautery/assert.h"
 #include "cautery/defaults.h"
 #include "json/document.h"
 #include "json/fields.h"
+#include "json/instrument.h"
 
 // A new material starts from the defaults of its kind of layer, which must be read before it.
 static void read_material_kind(cau_reader *reader, const cJSON *value, cau_command *command)
@@ -12,6 +14,19 @@ static void read_material_kind(cau_reader *reader, const cJSON *value, cau_comma
 	int kind = command->as.material.kind;
 	if (kind == CAU_LAYER_FASCIA || kind == CAU_LAYER_MEMBRANE)
 		cau_default_sheet_material(&command->as.material.sheet, kind);
+}
+
+// Shape and sizes, those of the instrument that is named where they are absent.
+static void read_tool(cau_reader *reader, const cJSON *value, cau_command *command)
+{
+	cau_tool_choice choice;
+	cau_part parts[CAU_MAX_PARTS];
+	int count = cau_command_parts(command, parts);
+	CAU_ASSERT(count < CAU_MAX_PARTS, "%d parts, and the instrument", count);
+	parts[count++] = (cau_part){&cau_instrument_record, &choice.names, 0};
+	cau_begin_tool(reader, value, &command->as.definition, &choice);
+	cau_read_parts(reader, value, parts, count, NULL, 0);
+	cau_end_tool(reader, &command->as.definition, &choice);
 }
 
 static void read_members(cau_reader *reader, const cJSON *value, cau_command *command)
@@ -37,7 +52,11 @@ void cau_read_command(cau_reader *reader, const cJSON *value, cau_command *comma
 	cau_default_command(command, command->kind);
 	if (command->kind == CAU_COMMAND_SET_MATERIAL)
 		read_material_kind(reader, value, command);
-	if (!reader->status)
+	bool tool =
+		command->kind == CAU_COMMAND_TOOL_ADD || command->kind == CAU_COMMAND_TOOL_CONFIGURE;
+	if (!reader->status && tool)
+		read_tool(reader, value, command);
+	else if (!reader->status)
 		read_members(reader, value, command);
 }
 

@@ -37,6 +37,7 @@ typedef struct cau_field {
 	const cau_choices *choices; // of a CHOICE
 	unsigned kinds;             // bits of the kinds that have it; 0: all
 	bool required;
+	const char *unless; // a member with which it is not required, or NULL
 	const char *unit, *meaning;
 } cau_field;
 

@@ -75,7 +75,8 @@ static void read_value(cau_reader *reader, const cJSON *value, const cau_field *
 void cau_read_field(cau_reader *reader, const cJSON *object, const cau_field *field, void *base)
 {
 	const cJSON *value = cau_value_member(object, field->name);
-	if (reader->status || (!value && !field->required))
+	bool needed = field->required && !(field->unless && cau_value_member(object, field->unless));
+	if (reader->status || (!value && !needed))
 		return;
 	size_t mark = cau_reader_enter(reader, field->name, 0);
 	read_value(reader, value, field, (char *)base + field->offset);

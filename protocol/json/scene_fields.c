@@ -159,7 +159,8 @@ static const cau_field tool_name_fields[] = {
 RECORD(cau_tool_name_record, "a tool", tool_name_fields, NULL)
 
 static const cau_field tool_fields[] = {
-	{CHOICE(shape, tool_shape_choices, "shape"), .required = true}, CAU_TOOL_TABLE(SCALAR)};
+	{CHOICE(shape, tool_shape_choices, "shape"), .required = true, .unless = "instrument"},
+	CAU_TOOL_TABLE(SCALAR)};
 #undef STRUCT
 RECORD(cau_tool_record, "a tool", tool_fields, NULL)
 

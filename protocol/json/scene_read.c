@@ -7,6 +7,7 @@
 #include "cautery/defaults.h"
 #include "json/document.h"
 #include "json/fields.h"
+#include "json/instrument.h"
 
 // Reads the first field of a record that has kinds: defaults and members depend on it.
 static bool read_kind(cau_reader *reader, const cJSON *object, const cau_record *record, void *base)
@@ -85,12 +86,17 @@ void cau_read_selection(cau_reader *reader, const cJSON *value, cau_selection *s
 static void read_tool(cau_reader *reader, const cJSON *object, void *element)
 {
 	cau_tool_def *tool = element;
+	cau_tool_choice choice;
 	cau_default_tool_def(tool, 0);
-	cau_part parts[] = {{&cau_tool_name_record, tool, 0},
+	cau_part parts[] = {{&cau_instrument_record, &choice.names, 0},
+	                    {&cau_tool_name_record, tool, 0},
 	                    {&cau_tool_record, tool, 0},
 	                    {&cau_pose_record, &tool->pose, 0}};
-	if (cau_read_object(reader, object))
-		cau_read_parts(reader, object, parts, 3, NULL, 0);
+	if (!cau_read_object(reader, object))
+		return;
+	cau_begin_tool(reader, object, tool, &choice);
+	cau_read_parts(reader, object, parts, 4, NULL, 0);
+	cau_end_tool(reader, tool, &choice);
 }
 
 static void read_pull(cau_reader *reader, const cJSON *object, cau_pull_def *pull)

@@ -238,6 +238,15 @@ class Installed(unittest.TestCase):
                 found[os.path.relpath(file, f"{staged}/usr/include")] = header.read()
         return found
 
+    def test_profiles_of_instruments_are_installed_as_they_are(self):
+        profiles = os.path.join(SOURCES, "deploy/instruments")
+        names = sorted(name for name in os.listdir(profiles) if name.endswith(".json"))
+        self.assertEqual(sorted(os.listdir(self.path("share/cautery/instruments"))), names)
+        for name in names:
+            with open(os.path.join(profiles, name), "rb") as one, \
+                    open(self.path("share/cautery/instruments", name), "rb") as other:
+                self.assertEqual(one.read(), other.read())
+
     def test_only_public_headers_of_the_core_are_installed(self):
         self.assertEqual(sorted(self.core_headers()), [
             "cautery/embed.h", "cautery/mesh_scene.h", "cautery/session.h", "cautery/solid.h"])

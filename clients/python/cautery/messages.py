@@ -337,6 +337,60 @@ class SceneResult(TypedDict):
     definition: Scene
 
 
+class InstrumentMode(TypedDict):
+    """how the generator of an instrument is set in a mode; the members are those of a tool"""
+
+    # its name
+    mode: str
+
+    # in words
+    description: str
+
+    # power, where no other is named (0 to 400 W)
+    power_w: float
+
+    # least power that the mode has (0 to 400 W)
+    power_least_w: float
+
+    # most power that the mode has (0 to 400 W)
+    power_most_w: float
+
+    # most voltage, peak (1 to 10000 V)
+    peak_v: float
+
+    # of the voltage; its duty is 2 / crest_factor^2 (1.4 to 20)
+    crest_factor: float
+
+    # most current, root mean square (0.01 to 10 A)
+    current_max_a: float
+
+    # power ends when the load is so many times its least; 0: never (0 to 100)
+    load_rise_off: float
+
+
+class Instrument(TypedDict):
+    """a profile of an instrument, which a tool of a scene, tool.add and tool.configure may name"""
+
+    # its name
+    name: str
+
+    # in words
+    description: str
+
+    # shape of the tool
+    shape: str
+
+    # the first is the default
+    modes: Sequence[InstrumentMode]
+
+
+class InstrumentList(TypedDict):
+    """all of them"""
+
+    # by name
+    instruments: Sequence[Instrument]
+
+
 class SessionRef(TypedDict):
     """names a session"""
 
@@ -1775,8 +1829,14 @@ class Tool(TypedDict):
     # name of the tool
     name: str
 
+    # profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+    instrument: NotRequired[str]
+
+    # mode of the instrument; its first by default
+    mode: NotRequired[str]
+
     # shape
-    shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"]
+    shape: NotRequired[Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"]]
 
     # radius of the hot part (0.0002 to 0.05 m)
     hot_radius_m: NotRequired[float]
@@ -1843,6 +1903,15 @@ class Tool(TypedDict):
 
     # time constant of its filtered force; 0: no filter (0 to 1 s)
     force_filter_s: NotRequired[float]
+
+    # heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+    blade_heat_j_k: NotRequired[float]
+
+    # heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+    blade_cooling_w_k: NotRequired[float]
+
+    # power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+    load_rise_off: NotRequired[float]
 
     # first place of the tip (-100 to 100 m)
     position_m: NotRequired[Sequence[float]]
@@ -2483,7 +2552,7 @@ class ToolAdd(TypedDict):
     sequence: NotRequired[int]
 
     # shape
-    shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"]
+    shape: NotRequired[Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"]]
 
     # radius of the hot part (0.0002 to 0.05 m)
     hot_radius_m: NotRequired[float]
@@ -2551,6 +2620,15 @@ class ToolAdd(TypedDict):
     # time constant of its filtered force; 0: no filter (0 to 1 s)
     force_filter_s: NotRequired[float]
 
+    # heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+    blade_heat_j_k: NotRequired[float]
+
+    # heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+    blade_cooling_w_k: NotRequired[float]
+
+    # power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+    load_rise_off: NotRequired[float]
+
     # name of the tool
     name: str
 
@@ -2559,6 +2637,12 @@ class ToolAdd(TypedDict):
 
     # unit quaternion w, x, y, z: tool frame (shaft along +z) to world
     rotation: NotRequired[Sequence[float]]
+
+    # profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+    instrument: NotRequired[str]
+
+    # mode of the instrument; its first by default
+    mode: NotRequired[str]
 
 
 class ToolRemove(TypedDict):
@@ -2581,7 +2665,7 @@ class ToolRemove(TypedDict):
 
 
 class ToolConfigure(TypedDict):
-    """replaces shape and sizes"""
+    """replaces shape and sizes; what is absent is the instrument's, or the default"""
 
     # its id; that of the connection's URL by default
     session: NotRequired[str]
@@ -2599,7 +2683,7 @@ class ToolConfigure(TypedDict):
     tool: str
 
     # shape
-    shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"]
+    shape: NotRequired[Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"]]
 
     # radius of the hot part (0.0002 to 0.05 m)
     hot_radius_m: NotRequired[float]
@@ -2666,6 +2750,21 @@ class ToolConfigure(TypedDict):
 
     # time constant of its filtered force; 0: no filter (0 to 1 s)
     force_filter_s: NotRequired[float]
+
+    # heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+    blade_heat_j_k: NotRequired[float]
+
+    # heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+    blade_cooling_w_k: NotRequired[float]
+
+    # power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+    load_rise_off: NotRequired[float]
+
+    # profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+    instrument: NotRequired[str]
+
+    # mode of the instrument; its first by default
+    mode: NotRequired[str]
 
 
 class ToolMove(TypedDict):
@@ -3209,6 +3308,13 @@ class Calls:
             "scene": scene,
         })
 
+    def instrument_list(
+        self,
+    ) -> InstrumentList:
+        """`instrument.list`: profiles of instruments
+        """
+        return self.call("instrument.list", {})
+
     def session_list(
         self,
     ) -> SessionList:
@@ -3655,7 +3761,7 @@ class Calls:
         client_sequence: int | None = None,
         tick: int | None = None,
         sequence: int | None = None,
-        shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"],
+        shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"] | None = None,
         hot_radius_m: float | None = None,
         tip_length_m: float | None = None,
         shaft_radius_m: float | None = None,
@@ -3678,9 +3784,14 @@ class Calls:
         crest_factor: float | None = None,
         current_max_a: float | None = None,
         force_filter_s: float | None = None,
+        blade_heat_j_k: float | None = None,
+        blade_cooling_w_k: float | None = None,
+        load_rise_off: float | None = None,
         name: str,
         position_m: Sequence[float] | None = None,
         rotation: Sequence[float] | None = None,
+        instrument: str | None = None,
+        mode: str | None = None,
     ) -> CommandResult:
         """`tool.add`: a new tool, driven by the caller
 
@@ -3711,9 +3822,14 @@ class Calls:
         crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
         current_max_a: most current, root mean square (0.01 to 10 A)
         force_filter_s: time constant of its filtered force; 0: no filter (0 to 1 s)
+        blade_heat_j_k: heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+        blade_cooling_w_k: heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+        load_rise_off: power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
         name: name of the tool
         position_m: first place of the tip (-100 to 100 m)
         rotation: unit quaternion w, x, y, z: tool frame (shaft along +z) to world
+        instrument: profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+        mode: mode of the instrument; its first by default
         """
         return self.call("tool.add", {
             "session": session,
@@ -3743,9 +3859,14 @@ class Calls:
             "crest_factor": crest_factor,
             "current_max_a": current_max_a,
             "force_filter_s": force_filter_s,
+            "blade_heat_j_k": blade_heat_j_k,
+            "blade_cooling_w_k": blade_cooling_w_k,
+            "load_rise_off": load_rise_off,
             "name": name,
             "position_m": position_m,
             "rotation": rotation,
+            "instrument": instrument,
+            "mode": mode,
         })
 
     def tool_remove(
@@ -3781,7 +3902,7 @@ class Calls:
         tick: int | None = None,
         sequence: int | None = None,
         tool: str,
-        shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"],
+        shape: Literal["sphere", "capsule", "hook", "spatula", "bipolar", "shears", "grasper"] | None = None,
         hot_radius_m: float | None = None,
         tip_length_m: float | None = None,
         shaft_radius_m: float | None = None,
@@ -3804,8 +3925,13 @@ class Calls:
         crest_factor: float | None = None,
         current_max_a: float | None = None,
         force_filter_s: float | None = None,
+        blade_heat_j_k: float | None = None,
+        blade_cooling_w_k: float | None = None,
+        load_rise_off: float | None = None,
+        instrument: str | None = None,
+        mode: str | None = None,
     ) -> CommandResult:
-        """`tool.configure`: replaces shape and sizes
+        """`tool.configure`: replaces shape and sizes; what is absent is the instrument's, or the default
 
         session: its id; that of the connection's URL by default
         client_sequence: see session_change (1 to 9007199254740991)
@@ -3835,6 +3961,11 @@ class Calls:
         crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
         current_max_a: most current, root mean square (0.01 to 10 A)
         force_filter_s: time constant of its filtered force; 0: no filter (0 to 1 s)
+        blade_heat_j_k: heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+        blade_cooling_w_k: heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+        load_rise_off: power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+        instrument: profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+        mode: mode of the instrument; its first by default
         """
         return self.call("tool.configure", {
             "session": session,
@@ -3865,6 +3996,11 @@ class Calls:
             "crest_factor": crest_factor,
             "current_max_a": current_max_a,
             "force_filter_s": force_filter_s,
+            "blade_heat_j_k": blade_heat_j_k,
+            "blade_cooling_w_k": blade_cooling_w_k,
+            "load_rise_off": load_rise_off,
+            "instrument": instrument,
+            "mode": mode,
         })
 
     def tool_move(

@@ -221,10 +221,16 @@ class Session:
         self.submit("tool.release", tool=tool)
 
     def configure_tool(self, tool: str, **changes: Any) -> None:
-        """Changes members of the tool, such as temperature_c or shape. The others stay as the last step left them."""
+        """Changes members of the tool, such as temperature_c or shape. The others stay as the last step left them.
+
+        With `instrument` (and `mode`) the tool becomes that instrument: the others are the profile's, or the defaults.
+        """
         states = self.tools
         if tool not in states:
             raise CoreError("not_found", "", "tool", f'there is no tool "{tool}"')
+        if "instrument" in changes:
+            self.submit("tool.configure", tool=tool, **changes)
+            return
         self.submit("tool.configure", tool=tool, **{"shape": states[tool].shape, **states[tool].sizes, **changes})
 
     # ---- time

@@ -8,6 +8,7 @@
 //     tool.add         name, shape, and what else a scene's tool may have
 //     tool.remove      tool
 //     tool.configure   tool, shape, sizes as in a scene's tool: replaces all, defaults where absent
+//                      (or those of `instrument` in `mode`)
 //     tool.move        tool, position_m, rotation, jaw (0)
 //     tool.energize    tool, energized (true or false), ticks (of an enable: off after so many)
 //     tool.grasp       tool

@@ -105,6 +105,17 @@ class Physics(unittest.TestCase):
             with self.assertRaises(CoreError):
                 session.configure_tool("nothing", temperature_c=300)
 
+    def test_a_tool_becomes_an_instrument(self):
+        with Session(small()) as session:
+            session.configure_tool("hook", friction=0.7)
+            session.configure_tool("hook", instrument="monopolar-spatula", mode="blend", power_w=20)
+            session.step()
+            hook = session.tools["hook"]
+            self.assertEqual((hook.shape, hook.sizes["power_w"], hook.sizes["crest_factor"]), ("spatula", 20, 2))
+            self.assertEqual((hook.sizes["blade_heat_j_k"], hook.sizes["friction"]), (0.14, 0.2))
+            with self.assertRaisesRegex(CoreError, "none of advanced-bipolar, .*ultrasonic-shears"):
+                session.configure_tool("hook", instrument="spoon")
+
     def test_the_raw_force_is_beside_the_filtered_one(self):
         with Session(small()) as session:
             filtered, tau_s = np.zeros(3), session.tools["hook"].sizes["force_filter_s"]

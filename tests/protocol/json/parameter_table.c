@@ -11,6 +11,7 @@
 
 #include "cautery/defaults.h"
 #include "json/fields.h"
+#include "json/instrument.h"
 
 static const char begin_mark[] = "<!-- parameters: begin (written by parameter_table) -->\n";
 static const char end_mark[] = "<!-- parameters: end -->\n";
@@ -36,7 +37,9 @@ static void print_default(FILE *out, const cau_field *field, const void *base)
 {
 	const void *at = (const char *)base + field->offset;
 	int count = field->count ? field->count : 1;
-	if (field->required)
+	if (field->required && field->unless)
+		fprintf(out, "required without `%s`", field->unless);
+	else if (field->required)
 		fputs("required", out);
 	else if (field->type == CAU_FIELD_NUMBER)
 		print_numbers(out, at, count);
@@ -167,7 +170,9 @@ static void print_table(FILE *out)
 	print_rows(out, &cau_selection_record, &selection);
 	print_title(out, "A tool",
 	            "Elements of `tools`. Its own frame: the tip at the origin, the shaft along +z.");
+	cau_choice_names none = {0};
 	print_rows(out, &cau_tool_name_record, &tool);
+	print_rows(out, &cau_instrument_record, &none);
 	print_rows(out, &cau_tool_record, &tool);
 	print_rows(out, &cau_pose_record, &tool.pose);
 	cau_vessel_def vessel;

@@ -136,13 +136,18 @@ export function toolParts(tool: Tool): ToolPart[] {
       return shears(s);
     case 'grasper':
       return grasper(s);
+    default: // the daemon says the shape of every tool
+      throw new Error(`the tool ${tool.name} has no shape`);
   }
 }
 
+/** A shape of tools. A request may name an instrument instead of one. */
+export type Shape = NonNullable<Tool['shape']>;
+
 export function hasJaws(shape: Tool['shape']): boolean {
-  return SHAPE_TRAITS[shape].jaws;
+  return shape !== undefined && SHAPE_TRAITS[shape].jaws;
 }
 
 export function hasHeat(shape: Tool['shape']): boolean {
-  return SHAPE_TRAITS[shape].hot;
+  return shape !== undefined && SHAPE_TRAITS[shape].hot;
 }

@@ -122,6 +122,46 @@ export interface SceneResult {
   definition: Scene;
 }
 
+/** how the generator of an instrument is set in a mode; the members are those of a tool */
+export interface InstrumentMode {
+  /** its name */
+  mode: string;
+  /** in words */
+  description: string;
+  /** power, where no other is named (0 to 400 W) */
+  power_w: number;
+  /** least power that the mode has (0 to 400 W) */
+  power_least_w: number;
+  /** most power that the mode has (0 to 400 W) */
+  power_most_w: number;
+  /** most voltage, peak (1 to 10000 V) */
+  peak_v: number;
+  /** of the voltage; its duty is 2 / crest_factor^2 (1.4 to 20) */
+  crest_factor: number;
+  /** most current, root mean square (0.01 to 10 A) */
+  current_max_a: number;
+  /** power ends when the load is so many times its least; 0: never (0 to 100) */
+  load_rise_off: number;
+}
+
+/** a profile of an instrument, which a tool of a scene, tool.add and tool.configure may name */
+export interface Instrument {
+  /** its name */
+  name: string;
+  /** in words */
+  description: string;
+  /** shape of the tool */
+  shape: string;
+  /** the first is the default */
+  modes: InstrumentMode[];
+}
+
+/** all of them */
+export interface InstrumentList {
+  /** by name */
+  instruments: Instrument[];
+}
+
 /** names a session */
 export interface SessionRef {
   /** its id; that of the connection's URL by default */
@@ -1190,8 +1230,12 @@ export interface Selection {
 export interface Tool {
   /** name of the tool */
   name: string;
+  /** profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none */
+  instrument?: string;
+  /** mode of the instrument; its first by default */
+  mode?: string;
   /** shape */
-  shape: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
+  shape?: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
   /** radius of the hot part (0.0002 to 0.05 m) */
   hot_radius_m?: number;
   /** length of needle, hook foot, blade or jaws (0.001 to 0.1 m) */
@@ -1236,6 +1280,12 @@ export interface Tool {
   current_max_a?: number;
   /** time constant of its filtered force; 0: no filter (0 to 1 s) */
   force_filter_s?: number;
+  /** heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K) */
+  blade_heat_j_k?: number;
+  /** heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K) */
+  blade_cooling_w_k?: number;
+  /** power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100) */
+  load_rise_off?: number;
   /** first place of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
@@ -1680,7 +1730,7 @@ export interface ToolAdd {
   /** the driver's own count (0 to 9007199254740991) */
   sequence?: number;
   /** shape */
-  shape: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
+  shape?: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
   /** radius of the hot part (0.0002 to 0.05 m) */
   hot_radius_m?: number;
   /** length of needle, hook foot, blade or jaws (0.001 to 0.1 m) */
@@ -1725,12 +1775,22 @@ export interface ToolAdd {
   current_max_a?: number;
   /** time constant of its filtered force; 0: no filter (0 to 1 s) */
   force_filter_s?: number;
+  /** heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K) */
+  blade_heat_j_k?: number;
+  /** heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K) */
+  blade_cooling_w_k?: number;
+  /** power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100) */
+  load_rise_off?: number;
   /** name of the tool */
   name: string;
   /** first place of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
   rotation?: [number, number, number, number];
+  /** profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none */
+  instrument?: string;
+  /** mode of the instrument; its first by default */
+  mode?: string;
 }
 
 /** takes it away */
@@ -1747,7 +1807,7 @@ export interface ToolRemove {
   tool: string;
 }
 
-/** replaces shape and sizes */
+/** replaces shape and sizes; what is absent is the instrument's, or the default */
 export interface ToolConfigure {
   /** its id; that of the connection's URL by default */
   session?: string;
@@ -1760,7 +1820,7 @@ export interface ToolConfigure {
   /** which tool */
   tool: string;
   /** shape */
-  shape: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
+  shape?: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
   /** radius of the hot part (0.0002 to 0.05 m) */
   hot_radius_m?: number;
   /** length of needle, hook foot, blade or jaws (0.001 to 0.1 m) */
@@ -1805,6 +1865,16 @@ export interface ToolConfigure {
   current_max_a?: number;
   /** time constant of its filtered force; 0: no filter (0 to 1 s) */
   force_filter_s?: number;
+  /** heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K) */
+  blade_heat_j_k?: number;
+  /** heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K) */
+  blade_cooling_w_k?: number;
+  /** power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100) */
+  load_rise_off?: number;
+  /** profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none */
+  instrument?: string;
+  /** mode of the instrument; its first by default */
+  mode?: string;
 }
 
 /** moves it, at its speed limit; needs to be its driver */
@@ -2148,6 +2218,8 @@ export interface Requests {
   'scene.list': { params: Nothing; result: SceneList };
   /** one of them whole */
   'scene.get': { params: SceneRef; result: SceneResult };
+  /** profiles of instruments */
+  'instrument.list': { params: Nothing; result: InstrumentList };
   /** sessions of the daemon */
   'session.list': { params: Nothing; result: SessionList };
   /** makes a session */
@@ -2202,7 +2274,7 @@ export interface Requests {
   'tool.add': { params: ToolAdd; result: CommandResult };
   /** takes it away */
   'tool.remove': { params: ToolRemove; result: CommandResult };
-  /** replaces shape and sizes */
+  /** replaces shape and sizes; what is absent is the instrument's, or the default */
   'tool.configure': { params: ToolConfigure; result: CommandResult };
   /** moves it, at its speed limit; needs to be its driver */
   'tool.move': { params: ToolMove; result: CommandResult };
@@ -2506,6 +2578,12 @@ export const PARAMETERS = {
       meaning: "most current, root mean square" },
     { name: 'force_filter_s', unit: 's', least: 0, most: 1, default: 0.02,
       meaning: "time constant of its filtered force; 0: no filter" },
+    { name: 'blade_heat_j_k', unit: 'J/K', least: 0, most: 100, default: 0,
+      meaning: "heat capacity of the hot part, with energy `tissue`; 0: that of its shape" },
+    { name: 'blade_cooling_w_k', unit: 'W/K', least: 0, most: 1, default: 0,
+      meaning: "heat that the hot part loses along the shaft; 0: that of its shape" },
+    { name: 'load_rise_off', unit: '1', least: 0, most: 100, default: 0,
+      meaning: "power ends when the load is so many times its least; off and on begins again; 0: never" },
   ],
   fascia: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,

@@ -5,9 +5,9 @@ import { spawnSync } from 'node:child_process';
 
 import { Matrix4, Mesh, Triangle, Vector3, type BufferGeometry, type Color, type ShaderMaterial } from 'three';
 
-import { hasJaws } from '../../../../clients/web/src/model/tool_parts';
+import { hasJaws, type Shape } from '../../../../clients/web/src/model/tool_parts';
 import { ToolView } from '../../../../clients/web/src/scene/tool_view';
-import { TOOL_SHAPES, type Tool } from '../../../../clients/web/src/wire/messages.gen';
+import { TOOL_SHAPES } from '../../../../clients/web/src/wire/messages.gen';
 
 const NEAR_M = 1e-4;
 const SAMPLES = 250;
@@ -31,7 +31,7 @@ function makeRandom(): () => number {
   return () => (state = (state * 48271) % 2147483647) / 2147483647;
 }
 
-function coreDistances(shape: Tool['shape'], [hot, tip, shaft]: Sizes, jaw: number, part: number, points: readonly Vector3[]): Told[] {
+function coreDistances(shape: Shape, [hot, tip, shaft]: Sizes, jaw: number, part: number, points: readonly Vector3[]): Told[] {
   const program = process.env['CAUTERY_TOOL_DISTANCES'];
   if (program === undefined) throw new Error('CAUTERY_TOOL_DISTANCES names no program');
   const head = [TOOL_SHAPES.indexOf(shape), hot, tip, shaft, jaw, part].join(' ');

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tool's `instrument` and `mode`, inside the object that describes the tool.
+#pragma once
+
+#include "cautery/instrument.h"
+#include "json/record.h"
+
+typedef struct cau_choice_names {
+	char instrument[CAU_NAME_BYTES], mode[CAU_NAME_BYTES];
+} cau_choice_names;
+
+typedef struct cau_tool_choice {
+	cau_choice_names names; // as the object has them
+	bool chosen;
+	cau_instrument_mode mode; // if chosen
+} cau_tool_choice;
+
+extern const cau_record cau_instrument_record; // cau_choice_names
+
+// Before the members of a tool are read: gives it those of the instrument that `object` names.
+void cau_begin_tool(cau_reader *reader, const cJSON *object, cau_tool_def *tool,
+                    cau_tool_choice *choice);
+// After they were read: fails if its power is not one that the mode has.
+void cau_end_tool(cau_reader *reader, const cau_tool_def *tool, const cau_tool_choice *choice);
+
+// The profiles that the build contains, by name.
+typedef struct cau_instrument_file {
+	const char *name; // of the file, without its ending
+	const char *text;
+	size_t bytes;
+} cau_instrument_file;
+
+extern const cau_instrument_file cau_instrument_files[];
+extern const int32_t cau_instrument_file_count;
