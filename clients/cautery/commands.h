@@ -6,7 +6,7 @@
 
 extern const cli_command *const cli_commands[]; // ends with NULL
 
-extern const cli_command cli_ls, cli_scenes;                         // list.c
+extern const cli_command cli_ls, cli_scenes, cli_instruments;        // list.c
 extern const cli_command cli_create;                                 // create.c
 extern const cli_command cli_info;                                   // info.c
 extern const cli_command cli_watch;                                  // watch.c

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ls, scenes, rm.
+// ls, scenes, instruments, rm.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/commands.h"
+#include "cautery/instrument.h"
 #include "cautery/name.h"
 #include "cautery/words.h"
 
-enum { SESSIONS_MAX = 65536, SCENES_MAX = 256 };
+enum { SESSIONS_MAX = 65536, SCENES_MAX = 256, INSTRUMENTS_MAX = 64 };
 
 static void print_sessions(const cli *c, const cau_wire_list *list)
 {
@@ -122,6 +123,30 @@ static cli_exit run_scenes(cli *c)
 	return code;
 }
 
+static cli_exit run_instruments(cli *c)
+{
+	static cau_wire_instrument all[INSTRUMENTS_MAX];
+	static cau_wire_instrument_mode modes[INSTRUMENTS_MAX][CAU_MAX_MODES];
+	cau_wire_instrument_list list = {.instruments = {all, 0, INSTRUMENTS_MAX}};
+	for (int i = 0; i < INSTRUMENTS_MAX; i++)
+		all[i].modes = (cau_wire_list){modes[i], 0, CAU_MAX_MODES};
+	cli_exit code = cli_connect(c);
+	if (!code)
+		code = cli_call(c, CAU_METHOD_INSTRUMENT_LIST, &(cau_wire_nothing){0}, &list);
+	if (code || c->json)
+		return code;
+	fprintf(c->out, "%-18s %-12s %8s %12s %7s %6s %6s\n", "INSTRUMENT", "MODE", "POWER", "RANGE",
+	        "PEAK", "CREST", "MOST");
+	for (int32_t i = 0; i < list.instruments.count; i++)
+		for (int32_t m = 0; m < all[i].modes.count; m++) {
+			const cau_wire_instrument_mode *mode = &modes[i][m];
+			fprintf(c->out, "%-18s %-12s %6.4g W %4.4g to %3.4g W %5.4g V %6.3g %4.2g A\n",
+			        all[i].name, mode->mode, mode->power_w, mode->power_least_w, mode->power_most_w,
+			        mode->peak_v, mode->crest_factor, mode->current_max_a);
+		}
+	return CLI_DONE;
+}
+
 static bool same_label(const char *a, const char *b)
 {
 	size_t length = strcspn(a, "-");
@@ -158,6 +183,15 @@ const cli_command cli_scenes = {.name = "scenes",
                                 .arguments = "",
                                 .summary = "lists the scenes that sessions can be made from",
                                 .run = run_scenes};
+
+const cli_command cli_instruments = {
+	.name = "instruments",
+	.arguments = "",
+	.summary = "lists the instruments that tools may name, and the settings of their modes",
+	.help =
+		"`cautery tool` takes them with --instrument and --mode, a scene's tool with its members\n"
+		"instrument and mode. Where the numbers come from is in deploy/instruments.\n",
+	.run = run_instruments};
 
 const cli_command cli_rm = {.name = "rm",
                             .arguments = "SESSION...",

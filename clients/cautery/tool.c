@@ -6,6 +6,7 @@
 #include "cautery/commands.h"
 #include "cautery/defaults.h"
 #include "cautery/drive.h"
+#include "cautery/instrument.h"
 #include "cautery/name.h"
 #include "cautery/words.h"
 
@@ -65,8 +66,47 @@ static cli_exit send_pose(hand *h, const char *what)
 }
 
 // ---- actions -----------------------------------------------------------------------------------
+// The instrument that --instrument names, in --mode, with --power-w.
+static bool take_instrument(hand *h, cau_tool_def *tool)
+{
+	cau_error error = {0};
+	const char *instrument = cli_value(h->c, "instrument"), *mode = cli_value(h->c, "mode");
+	const char *power = cli_value(h->c, "power-w");
+	double power_w = -1;
+	if (power && !cli_read_number(h->c, "--power-w", power, 0, 400, &power_w))
+		return false;
+	if (!cau_instrument_take(instrument, mode, power_w, tool, &error))
+		return true;
+	cli_complain(h->c, "%s: %s", error.path, error.reason);
+	return false;
+}
+
+static cli_exit act_configure(hand *h)
+{
+	cau_command command = command_of(h, CAU_COMMAND_TOOL_CONFIGURE);
+	if (!cli_value(h->c, "instrument")) {
+		cli_complain(h->c, "configure wants --instrument: `cautery instruments` lists them");
+		return CLI_USAGE;
+	}
+	if (!take_instrument(h, &command.as.definition))
+		return CLI_USAGE;
+	return send(h, &command, "configured");
+}
+
+static cli_exit add_instrument(hand *h)
+{
+	cau_command command = command_of(h, CAU_COMMAND_TOOL_ADD);
+	if (!take_instrument(h, &command.as.definition))
+		return CLI_USAGE;
+	snprintf(command.as.definition.name, sizeof command.as.definition.name, "%s", h->tool);
+	h->pose = command.as.definition.pose;
+	return send(h, &command, "added");
+}
+
 static cli_exit act_add(hand *h)
 {
+	if (cli_value(h->c, "instrument"))
+		return add_instrument(h);
 	const char *word = h->at < h->c->argument_count ? h->c->arguments[h->at++] : "";
 	int32_t shape = cli_shape_of_word(word);
 	if (shape < 0) {
@@ -214,11 +254,13 @@ static const struct {
 	bool drives; // needs to be the driver
 	cli_exit (*act)(hand *h);
 } actions[] = {
-	{"add", false, act_add},   {"remove", false, act_remove}, {"take", false, act_take},
-	{"give", true, act_give},  {"move", true, act_move},      {"line", true, act_line},
-	{"turn", true, act_turn},  {"jaw", true, act_jaw},        {"on", true, act_on},
-	{"off", false, act_off},   {"grasp", true, act_grasp},    {"release", true, act_release},
-	{"wait", false, act_wait},
+	{"add", false, act_add},    {"remove", false, act_remove},
+	{"take", false, act_take},  {"give", true, act_give},
+	{"move", true, act_move},   {"line", true, act_line},
+	{"turn", true, act_turn},   {"jaw", true, act_jaw},
+	{"on", true, act_on},       {"off", false, act_off},
+	{"grasp", true, act_grasp}, {"release", true, act_release},
+	{"wait", false, act_wait},  {"configure", false, act_configure},
 };
 
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
@@ -272,10 +314,15 @@ const cli_command cli_tool = {
 	.summary = "adds, moves, energizes a tool: actions one after the other",
 	.help =
 		"Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
-		"jaw J, on [TICKS], off, grasp, release, wait S. Metres, m/s, a unit quaternion, 0 to 1,\n"
-		"seconds; TICKS limits the energy. Actions that need the driver take the tool first.\n"
-		"Energy goes off when the command ends:\n"
-		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n",
+		"jaw J, on [TICKS], off, grasp, release, wait S, configure. Metres, m/s, a unit\n"
+		"quaternion, 0 to 1, seconds; TICKS limits the energy. Actions that need the driver take\n"
+		"the tool first. Energy goes off when the command ends:\n"
+		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n"
+		"With --instrument, `configure` makes the tool that instrument, and `add` adds it:\n"
+		"  cautery tool d1-demo hook configure --instrument monopolar-hook --mode blend\n",
 	.least = 3,
 	.most = CLI_ARGUMENTS_MAX,
+	.options = {{"instrument", "NAME", "of add and configure: one of `cautery instruments`"},
+                {"mode", "MODE", "its mode; the first by default"},
+                {"power-w", "W", "power, in the mode's range"}},
 	.run = run};
