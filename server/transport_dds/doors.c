@@ -162,18 +162,30 @@ static bool admit_setting(const void *sample, void *keys)
 	return cau_dds_keys_admit(keys, setting->session, setting->tool);
 }
 
+static bool admit_instrument(const void *sample, void *keys)
+{
+	const cautery_ToolInstrument *instrument = sample;
+	return cau_dds_keys_admit(keys, instrument->session, instrument->tool);
+}
+
 // A native topic that controllers write.
 static bool open_native(cau_dds *dds, cau_dds_session *session, cau_door *door, cau_door_kind kind)
 {
-	bool commands = kind == DOOR_NATIVE;
+	static const struct {
+		const char *name;
+		const dds_topic_descriptor_t *type;
+		bool (*admit)(const void *sample, void *keys);
+	} natives[] = {
+		[DOOR_NATIVE] = {"cautery/tool_command", &cautery_ToolCommand_desc, admit_command},
+		[DOOR_SETTING] = {"cautery/tool_setting", &cautery_ToolSetting_desc, admit_setting},
+		[DOOR_INSTRUMENT] = {"cautery/tool_instrument", &cautery_ToolInstrument_desc,
+	                         admit_instrument},
+	};
 	dds_qos_t *taken = reliable_qos(NATIVE_KEPT);
 	const struct dds_topic_filter filter = {
-		DDS_TOPIC_FILTER_SAMPLE_ARG,
-		{.sample_arg = commands ? admit_command : admit_setting},
-		&session->keys};
-	dds_entity_t topic = dds_create_topic(
-		dds->participant, commands ? &cautery_ToolCommand_desc : &cautery_ToolSetting_desc,
-		commands ? "cautery/tool_command" : "cautery/tool_setting", NULL, NULL);
+		DDS_TOPIC_FILTER_SAMPLE_ARG, {.sample_arg = natives[kind].admit}, &session->keys};
+	dds_entity_t topic =
+		dds_create_topic(dds->participant, natives[kind].type, natives[kind].name, NULL, NULL);
 	*door = (cau_door){.kind = kind, .topic = topic, .session = session};
 	bool done = topic > 0 && !dds_set_topic_filter_extended(topic, &filter) &&
 	            open_door(dds, door, session->subscriber, taken);
@@ -189,7 +201,8 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
 	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
 	bool done = open_native(dds, session, &session->native, DOOR_NATIVE) &&
-	            open_native(dds, session, &session->setting, DOOR_SETTING);
+	            open_native(dds, session, &session->setting, DOOR_SETTING) &&
+	            open_native(dds, session, &session->instrument, DOOR_INSTRUMENT);
 	dds->ends_changed = true;
 	open_writers(dds, session);
 	dds_delete_qos(partition);
@@ -222,6 +235,7 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 			cau_dds_close_tool(dds, &session->tools[i]);
 	close_door(dds, &session->native);
 	close_door(dds, &session->setting);
+	close_door(dds, &session->instrument);
 	cau_dds_leave_frames(session);
 	if (session->subscriber > 0)
 		dds_delete(session->subscriber);

@@ -27,7 +27,8 @@ enum {
 };
 
 // Native topics, opened once for the participant; doors.c has their names. cautery/tool_command is
-// opened once for each session, since a topic has one filter; so is cautery/tool_setting.
+// opened once for each session, since a topic has one filter; so are cautery/tool_setting
+// and cautery/tool_instrument.
 typedef enum cau_topic {
 	TOPIC_STATE,
 	TOPIC_GRASP,
@@ -48,8 +49,9 @@ typedef enum cau_door_kind {
 	DOOR_SERVO_JP,
 	DOOR_ENERGIZE,
 	DOOR_STATE_COMMAND,
-	DOOR_SETTING, // cautery/tool_setting
-	DOOR_REQUEST, // cautery/session_request; of no session
+	DOOR_SETTING,    // cautery/tool_setting
+	DOOR_INSTRUMENT, // cautery/tool_instrument
+	DOOR_REQUEST,    // cautery/session_request; of no session
 } cau_door_kind;
 
 struct cau_dds_session;
@@ -138,7 +140,7 @@ typedef struct cau_dds_session {
 	char ros_name[CAU_NAME_BYTES];
 	bool has_ros_name;
 	dds_entity_t subscriber, publisher; // of its partition
-	cau_door native, setting;
+	cau_door native, setting, instrument;
 	cau_dds_keys keys; // what these doors let in
 	dds_entity_t status_writer;
 	cau_dds_outlet state, grasp, power, force;
@@ -451,6 +453,8 @@ void cau_dds_grasp(cau_dds_hand *hand, bool level);
 // ---- native.c, settings.c, ros2.c: samples
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
+void cau_dds_take_instrument(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
+                             const void *sample);
 void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                            const void *sample);
 void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,

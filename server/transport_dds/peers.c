@@ -49,8 +49,10 @@ static end find_native(cau_dds *dds, const cau_dds_peer *peer)
 		if (!is_in_partition(peer->qos, id))
 			continue;
 		if (peer->writes) {
-			const cau_door *door = strcmp(leaf, "tool_setting") == 0 ? &s->setting : &s->native;
-			bool is_read = door == &s->setting || strcmp(leaf, "tool_command") == 0;
+			const cau_door *door = strcmp(leaf, "tool_setting") == 0      ? &s->setting
+			                       : strcmp(leaf, "tool_instrument") == 0 ? &s->instrument
+			                                                              : &s->native;
+			bool is_read = door != &s->native || strcmp(leaf, "tool_command") == 0;
 			return (end){.entity = is_read ? door->reader : 0, .door = door, .session = id};
 		}
 		const struct {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of cautery/tool_setting: power, voltage, crest factor and current of a tool's generator.
-// Each sample states all four. So it needs nothing of a sample before it, which may still wait in
-// the session's queue.
+// Samples of cautery/tool_setting: power, voltage, crest factor and current of a tool's generator;
+// and of cautery/tool_instrument: the instrument that a tool is. Each sample states all. So it
+// needs nothing of a sample before it, which may still wait in the session's queue.
 #include <string.h>
 
 #include "cautery.h"
 #include "cautery/defaults.h"
+#include "cautery/instrument.h"
 #include "transport_dds/internal.h"
 
 // Sets one of the tool's sizes, in its range.
@@ -65,30 +66,57 @@ static cau_status order_setting(const cau_dds_hand *hand, const cau_tool_def *to
 	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders now");
 }
 
-static cau_status take(const cau_dds *dds, const cau_door *door, cau_dds_writer *writer,
-                       const cautery_ToolSetting *sample, cau_error *error)
+// Finds the tool that a sample names, as it is, and the writer's hand that drives it.
+static cau_status find(const cau_dds *dds, const cau_door *door, cau_dds_writer *writer,
+                       const char *session, const char *name, const cau_dds_hand **hand,
+                       cau_tool_def *definition, cau_error *error)
 {
 	cau_hosted_tool state;
-	const cau_dds_tool *tool = cau_dds_find_tool(door->session, sample->tool);
-	if (strcmp(sample->session, cau_hosted_id(door->session->hosted)) != 0)
+	const cau_dds_tool *tool = cau_dds_find_tool(door->session, name);
+	if (strcmp(session, cau_hosted_id(door->session->hosted)) != 0)
 		return cau_fail(error, CAU_BAD_VALUE, "session", "is not that of the partition");
 	if (!tool || !cau_hosted_find_tool(door->session->hosted, tool->name, &state))
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no such tool");
-	const cau_dds_hand *hand = find_driving(tool, writer, state.driver.client);
-	if (!hand)
+	*hand = find_driving(tool, writer, state.driver.client);
+	if (!*hand)
 		return cau_fail(error, CAU_BAD_STATE, "tool",
 		                "only the participant that drives it sets its generator");
 	if (cau_dds_is_too_fast(dds, writer))
 		return cau_fail(error, CAU_LIMIT, "tool", "too many settings a second");
-	cau_tool_def wanted = state.state.definition;
-	cau_status status = set_all(&wanted, sample, error);
-	return status ? status : order_setting(hand, &wanted, error);
+	*definition = state.state.definition;
+	return CAU_OK;
 }
 
 void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	cau_error error = {0};
+	cau_tool_def wanted;
+	const cau_dds_hand *hand = NULL;
 	const cautery_ToolSetting *sample = taken;
-	if (take(dds, door, writer, sample, &error))
+	cau_status status =
+		find(dds, door, writer, sample->session, sample->tool, &hand, &wanted, &error);
+	if (!status)
+		status = set_all(&wanted, sample, &error);
+	if (!status)
+		status = order_setting(hand, &wanted, &error);
+	if (status)
+		cau_dds_refuse(door->session, sample->tool, writer, 0, &error);
+}
+
+void cau_dds_take_instrument(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
+                             const void *taken)
+{
+	cau_error error = {0};
+	cau_tool_def wanted;
+	const cau_dds_hand *hand = NULL;
+	const cautery_ToolInstrument *sample = taken;
+	cau_status status =
+		find(dds, door, writer, sample->session, sample->tool, &hand, &wanted, &error);
+	if (!status)
+		status =
+			cau_instrument_take(sample->instrument, sample->mode, sample->power_w, &wanted, &error);
+	if (!status)
+		status = order_setting(hand, &wanted, &error);
+	if (status)
 		cau_dds_refuse(door->session, sample->tool, writer, 0, &error);
 }

@@ -62,6 +62,7 @@ static void serve(cau_dds *dds, cau_door *door)
 		[DOOR_ENERGIZE] = cau_dds_take_energize,
 		[DOOR_STATE_COMMAND] = cau_dds_take_state_command,
 		[DOOR_SETTING] = cau_dds_take_setting,
+		[DOOR_INSTRUMENT] = cau_dds_take_instrument,
 		[DOOR_REQUEST] = cau_dds_take_request,
 	};
 	void *samples[TAKEN_MOST] = {NULL};

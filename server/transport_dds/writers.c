@@ -86,8 +86,8 @@ static cau_dds_writer *add_writer(cau_dds *dds, const cau_door *door, dds_instan
 		made->next = *bucket;
 		made->reader = door->reader;
 		made->handle = handle;
-		made->native =
-			door->kind == DOOR_NATIVE || door->kind == DOOR_SETTING || door->kind == DOOR_REQUEST;
+		made->native = door->kind == DOOR_NATIVE || door->kind == DOOR_SETTING ||
+		               door->kind == DOOR_INSTRUMENT || door->kind == DOOR_REQUEST;
 		made->reliable = is_reliable(endpoint->qos);
 		made->participant = endpoint->participant_instance_handle;
 		made->identity = made->native ? handle : made->participant;

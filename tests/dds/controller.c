@@ -50,14 +50,15 @@ typedef struct controller {
 	double position_m[3], aim_m[3];
 	double last_write_s;
 	dds_entity_t participant, publisher, command, pose, level, state_reader, grasp_reader,
-		power_reader, force_reader, setting;
+		power_reader, force_reader, setting, instrument;
 	cautery_ToolState state;
 	cautery_ToolGrasp holding;
 	cautery_ToolPower power;
 	cautery_ToolForce felt;
-	bool sets;    // set_w is to be written
-	double set_w; // of its generator
-	crtk crtk;    // ros
+	bool sets;                      // set_w is to be written
+	double set_w;                   // of its generator
+	cautery_ToolInstrument becomes; // to be written, if it names an instrument
+	crtk crtk;                      // ros
 	bool crtk_asked;
 	double storm_hz; // 0: writes good samples if any
 	uint64_t stormed;
@@ -139,6 +140,22 @@ static void write_setting(controller *c)
 	memcpy(sample.tool, c->tool, sizeof c->tool);
 	checked(dds_write(c->setting, &sample));
 	c->sets = false;
+}
+
+// Once the daemon reads it.
+static void write_instrument(controller *c)
+{
+	dds_qos_t *qos = reliable_qos(1);
+	if (*c->becomes.instrument && !c->instrument)
+		c->instrument = native_writer(publisher_of(c->participant, c->session),
+		                              &cautery_ToolInstrument_desc, "cautery/tool_instrument", qos);
+	dds_delete_qos(qos);
+	if (!*c->becomes.instrument || !is_matched(c->instrument))
+		return;
+	memcpy(c->becomes.session, c->session, sizeof c->session);
+	memcpy(c->becomes.tool, c->tool, sizeof c->tool);
+	checked(dds_write(c->instrument, &c->becomes));
+	*c->becomes.instrument = 0;
 }
 
 // ---- writing
@@ -324,6 +341,12 @@ static void obey(void *user, const char *line)
 	char word[16] = "", value[16] = "";
 	if (sscanf(line, "aim %lf %lf %lf", &c->aim_m[0], &c->aim_m[1], &c->aim_m[2]) == 3)
 		return;
+	cautery_ToolInstrument wanted = {0};
+	if (sscanf(line, "instrument %48s %48s %lf", wanted.instrument, wanted.mode, &wanted.power_w) ==
+	    3) {
+		c->becomes = wanted;
+		return;
+	}
 	if (sscanf(line, "%15s %15s", word, value) < 1)
 		return;
 	bool on = strcmp(value, "1") == 0 || strcmp(value, "on") == 0;
@@ -387,6 +410,7 @@ static void run(controller *c)
 			printf("{\"event\":\"matched\"}\n");
 		}
 		write_setting(c);
+		write_instrument(c);
 		if (c->storm_hz > 0)
 			write_storm(c);
 		else if (c->writing && c->matched)

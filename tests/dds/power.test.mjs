@@ -77,3 +77,40 @@ test('the participant that drives sets the power, in its range; others are refus
 		await other.kill();
 	}
 });
+
+test('the participant that drives makes its tool an instrument; unknown names and powers are refused', async (t) => {
+	const client = await daemon.connect({ hello: { client: 'operator' } });
+	const definition = await smallScene(client);
+	const session = (await client.call('session.create', { name: 'becomes', definition })).summary.session;
+	t.after(async () => {
+		await Controller.killAll();
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	const { instruments } = await client.call('instrument.list');
+	const { modes } = instruments.find(({ name }) => name === 'monopolar-spatula');
+	const blend = modes.find(({ mode }) => mode === 'blend');
+	const refused = () => daemon.metric('session_refused_total', session);
+	const robot = await Controller.start({ domain: DOMAIN, session, tool: 'hook', via: 'native' });
+	robot.tell('write on');
+	await robot.until((s) => s.driver_name.startsWith('dds ') && s.has_power);
+	robot.tell('instrument monopolar-spatula blend -1');
+	await robot.until((s) => s.set_w === blend.power_w);
+	const tool = async () => (await client.call('session.describe', { session })).definition.tools[0];
+	assert.deepEqual([(await tool()).shape, (await tool()).peak_v], ['spatula', blend.peak_v]);
+	robot.tell('instrument monopolar-spatula coagulation 20');
+	await robot.until((s) => s.set_w === 20);
+	for (const wanted of ['spoon cut -1', 'monopolar-spatula seal -1', 'monopolar-spatula cut 399', 'monopolar-spatula cut nan']) {
+		const before = await refused();
+		robot.tell(`instrument ${wanted}`);
+		while (await refused() === before)
+			await robot.state();
+		assert.equal((await robot.state()).set_w, 20);
+	}
+	const other = await listener(session, 'hook');
+	const before = await refused();
+	other.tell('instrument monopolar-hook cut -1');
+	while (await refused() === before)
+		await other.state();
+	assert.equal((await tool()).shape, 'spatula');
+});
