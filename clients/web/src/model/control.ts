@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Between model and daemon: what the user wants done, and what the daemon pushes.
 import type { Link } from '../wire/link';
-import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool } from '../wire/messages.gen';
+import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool, ToolConfigure } from '../wire/messages.gen';
 import { nameOf } from './person';
 import type { Channels } from '../wire/worker_messages';
 import type { Model } from './model';
@@ -33,6 +33,8 @@ export class Control {
   async refresh(): Promise<void> {
     const { scenes } = await this.link.call('scene.list', {});
     this.model.scenes = scenes;
+    // A daemon of an earlier version has no such request.
+    this.model.instruments = (await this.link.call('instrument.list', {}).catch(() => ({ instruments: [] }))).instruments;
     const { sessions } = await this.link.call('session.list', {});
     this.model.setSessions(sessions);
     if (this.model.session === null) {
@@ -136,6 +138,11 @@ export class Control {
     delete definition.position_m; // the pose stays as it is
     delete definition.rotation;
     await this.link.call('tool.configure', { ...definition, ...this.here(), tool: name });
+    await this.describe();
+  }
+
+  async becomeInstrument(wanted: ToolConfigure): Promise<void> {
+    await this.link.call('tool.configure', { ...wanted, ...this.here() });
     await this.describe();
   }
 

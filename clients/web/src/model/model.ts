@@ -6,6 +6,7 @@ import type {
   Driver,
   FrameProgress,
   HelloResult,
+  Instrument,
   Pushes,
   SceneSummary,
   SessionSummary,
@@ -59,6 +60,7 @@ export class Model {
   link: LinkState = { state: 'connecting' };
   hello: HelloResult | null = null;
   scenes: readonly SceneSummary[] = [];
+  instruments: readonly Instrument[] = [];
   sessions: readonly SessionSummary[] = [];
   elsewhere: readonly SessionSummary[] = [];
   silent: readonly string[] = [];

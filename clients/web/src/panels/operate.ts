@@ -9,6 +9,7 @@ import { PARAMETERS } from '../wire/messages.gen';
 import { cameraButtons } from './camera';
 import { attempt, byId, element, field, problemPlace } from './dom';
 import { drivingButtons } from './driving';
+import { generatorForm } from './generator';
 import { inviteButton } from './invite';
 import { vesselList } from './vessels';
 
@@ -54,7 +55,7 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   const section = element('section', { aria: { label: 'Power' } }, element('h2', {}, 'Power'), slider, shown);
   model.on('tools', () => {
     const { tool } = model;
-    section.hidden = !tool || !hasHeat(tool.shape);
+    section.hidden = !tool || !hasHeat(tool.shape) || model.joined?.description.definition.energy === 'tissue'; // there a generator gives power
     slider.disabled = !hand.driving;
     slider.title = hand.driving ? '' : 'Use the instrument first';
     if (held || !tool) return;
@@ -101,6 +102,6 @@ function session(control: Control): HTMLElement {
 
 export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, self: Self, more: readonly HTMLElement[]): void {
   const problem = problemPlace();
-  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), vesselList(control.model), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), ...more);
+  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), generatorForm(control), vesselList(control.model), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), ...more);
   control.model.emit('tools', undefined);
 }

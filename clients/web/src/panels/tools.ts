@@ -2,11 +2,12 @@
 // Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
-import { hasHeat, hasJaws } from '../model/tool_parts';
+import { hasHeat, hasJaws, type Shape } from '../model/tool_parts';
 import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
 import { ask } from './ask';
 import { attempt, button, element, field, problemPlace, short } from './dom';
 import { drivingButtons } from './driving';
+import { generatorForm } from './generator';
 import { nameInput } from './names';
 import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
@@ -41,7 +42,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
   });
   const form = element('form', { class: 'form' }, field('Shape', shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
   const offer = (): void => {
-    const wanted = shape.value as Tool['shape'];
+    const wanted = shape.value as Shape;
     sizes.offer((name) => (OF_JAWS.includes(name) ? hasJaws(wanted) : !OF_HEAT.includes(name) || hasHeat(wanted)));
   };
   shape.addEventListener('change', offer);
@@ -54,7 +55,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
     event.preventDefault();
     const work = async (): Promise<void> => {
       if (!model.tool) throw new Error('choose a tool first');
-      const wanted = { ...model.tool, ...sizes.read(), shape: shape.value as Tool['shape'] };
+      const wanted = { ...model.tool, ...sizes.read(), shape: shape.value as Shape };
       await control.configureTool(wanted);
       forget();
       refresh();
@@ -67,7 +68,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
     apply.disabled = remove.disabled = !model.driving;
     if (!tool) return;
     if (tool.name !== shown?.name) forget();
-    if (tool.shape !== shown?.shape) shape.value = tool.shape;
+    if (tool.shape && tool.shape !== shown?.shape) shape.value = tool.shape;
     sizes.show({ ...tool });
     offer();
     shown = tool;
@@ -86,7 +87,7 @@ function addForm(control: Control): HTMLElement {
   const form = element('form', { class: 'form' }, field('Shape', shape), field('Name', name), add, problem);
   form.addEventListener('submit', (event) => {
     event.preventDefault();
-    void attempt(problem, () => control.addTool({ name: name.value, shape: shape.value as Tool['shape'], position_m: [0.03, 0, 0.05] }), add);
+    void attempt(problem, () => control.addTool({ name: name.value, shape: shape.value as Shape, position_m: [0.03, 0, 0.05] }), add);
   });
   model.on('tools', () => (add.disabled = !model.mayOperate || !model.joined));
   return element('details', { class: 'section' }, element('summary', {}, 'Another tool'), form);
@@ -128,6 +129,6 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
     const text = `${energy}${power}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
     if (state.value !== text) state.value = text;
   });
-  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, vesselList(model), field('Moves', guide), jawField, edit.form, addForm(control));
+  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, vesselList(model), field('Moves', guide), jawField, generatorForm(control), edit.form, addForm(control));
   return { id: 'tools', title: 'Tools', body };
 }
