@@ -6,6 +6,7 @@ import type { Instrument, InstrumentMode } from '../wire/messages.gen';
 import { attempt, element, field, problemPlace } from './dom';
 
 const words = (name: string): string => name.replaceAll('-', ' ');
+const named = (name: string): string => words(name.charAt(0).toUpperCase() + name.slice(1));
 
 function offer(select: HTMLSelectElement, names: readonly string[], chosen: string): void {
   select.replaceChildren(...names.map((name) => element('option', { value: name }, words(name))));
@@ -32,7 +33,7 @@ export function generatorForm(control: Control): HTMLElement {
     power.min = String(now.power_least_w);
     power.max = String(now.power_most_w);
     power.value = String(watts ?? now.power_w);
-    about.textContent = `${chosen()?.description ?? ''} ${now.description}.`;
+    about.textContent = `${chosen()?.description ?? ''} ${named(now.mode)}: ${now.description}.`;
   };
   const showModes = (wanted: string): void => offer(mode, (chosen()?.modes ?? []).map((one) => one.mode), wanted);
   instrument.addEventListener('change', () => {
