@@ -22,7 +22,7 @@ import symbols
 GPL = "GPL-3.0-or-later"
 APACHE = "Apache-2.0"
 
-EDGES = ("protocol/", "core/types/", "clients/library/", "clients/include/", "clients/python/",
+EDGES = ("protocol/", "core/types/", "clients/library/", "clients/haptics/", "clients/include/", "clients/python/",
          "clients/javascript/", "clients/web/src/wire/", "deploy/instruments/")
 # The viewer's own workers, and the link to them: they stand beside the wire module and need the viewer's model.
 OUTSIDE = {"clients/web/src/wire/" + name

@@ -34,6 +34,7 @@
 //     }
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "cautery/scene.h"
@@ -137,3 +138,43 @@ typedef struct cau_vessel_state {
 	int32_t point_count;       // at most CAU_VESSEL_SHOWN_POINTS
 	cau_vessel_point point[CAU_VESSEL_SHOWN_POINTS]; // (point_count)
 } cau_vessel_state;
+
+// ---- contact of a tool --------------------------------------------------------------------------
+// What the channel `tool_contact` has of each tool: its contact, linear about a tick. A program
+// that renders force faster than ticks come computes it from this (cautery/haptics.h).
+//
+// Let the tool be commanded to a place p, where the tick had asked_pose. With C the compliance,
+// n_i, o_i normal and offset of the planes, and forces f_i >= 0 that are not 0 only where plane i
+// touches, the tissue pushes the tool with f = sum n_i f_i, where
+//
+//     n_i . p - o_i + n_i . C f >= 0, complementary to f_i
+//
+// At p of the tick f is its contact force without friction. Friction comes to it, and the spring of
+// a grasp.
+enum { CAU_CONTACT_PLANES = 8 }; // of one tool, at most
+
+// A plane in which tissue touches a tool, or is near it.
+typedef struct cau_contact_plane {
+	double normal[3];    // unit, in the world: where the tissue pushes the tool
+	double offset_m;     // it touches where normal . p is less, with no other force on the tool
+	double velocity_m_s; // of the tissue there, along the normal
+} cau_contact_plane;
+
+// The contact of a tool after a step.
+typedef struct cau_tool_contact {
+	char name[CAU_NAME_BYTES]; // of the tool
+	bool valid;                // false: the tick has no contact to speak of, as after a restore
+	double time_s;             // simulated, of the tick
+	cau_pose asked_pose;       // commanded pose of the tick
+	cau_pose pose;             // actual pose of the tick
+	double force_n[3];         // of the tissue on the tool, without filter and bound
+	int32_t plane_count;       // at most CAU_CONTACT_PLANES
+	cau_contact_plane plane[CAU_CONTACT_PLANES]; // (plane_count)
+	// How far the tool's commanded place has to move for 1 N more: of the tissue as the contact's
+	// solve has it, and of the virtual coupling. Symmetric: xx, yy, zz, xy, xz, yz; m/N.
+	double compliance_m_n[6];
+	double friction;     // Coulomb coefficient of the tool
+	double damping_ns_m; // of the tissue that moves with the tool
+	double grasp_n_m;    // stiffness of what the jaws hold, seen by the tool; 0: they hold nothing
+	double grasp_anchor_m[3]; // commanded place at which that pulls with 0 N
+} cau_tool_contact;

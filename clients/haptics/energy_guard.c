@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// A force that is held for a period does work force . (way of the device). In the worst case the
+// device is accelerated along the force by it and the hand, and the force is taken back by slew_n a
+// period. energy_guard_need sums that. If the tank has so much in one period, then in the next one
+// it has so much for a force that is slew_n less: so there always is a force that may be given, and
+// the tank is never empty. Any force between that one and the wanted one changes by slew_n at most,
+// as both do; the nearest to the wanted one that the tank pays for is taken.
+#include "haptics/energy_guard.h"
+
+#include <string.h>
+
+#include "haptics/vector.h"
+
+double energy_guard_need(const energy_guard_def *def, double force_n, double speed_m_s)
+{
+	double need = 0, h = def->period_s, speed = speed_m_s;
+	double acceleration = (force_n + def->hand_n) / def->mass_kg;
+	for (double force = force_n; force > 0; force -= def->slew_n) {
+		need += force * (speed + acceleration * h / 2) * h;
+		speed += acceleration * h;
+	}
+	return need;
+}
+
+void energy_guard_account(energy_guard *guard, const double place_m[3])
+{
+	double way[3];
+	if (!guard->begun)
+		guard->tank_j = guard->def.reserve_j;
+	else {
+		add_scaled3(way, place_m, -1, guard->place_m);
+		double given = dot3(guard->force_n, way);
+		guard->given_j += given;
+		guard->tank_j = fmin(guard->tank_j - given, guard->def.tank_j);
+	}
+	guard->begun = true;
+	memcpy(guard->place_m, place_m, sizeof guard->place_m);
+}
+
+// Moves a force to within slew_n of the last one.
+static void bound_change(const energy_guard *guard, double force_n[3])
+{
+	double change[3];
+	add_scaled3(change, force_n, -1, guard->force_n);
+	double length = length3(change), most = guard->def.slew_n;
+	if (length > most)
+		add_scaled3(force_n, guard->force_n, most / length, change);
+}
+
+static bool pays(const energy_guard *guard, const double velocity_m_s[3], const double force_n[3])
+{
+	double length = length3(force_n);
+	if (!(length > 0))
+		return true;
+	double speed = dot3(velocity_m_s, force_n) / length;
+	return energy_guard_need(&guard->def, length, speed) <= guard->tank_j;
+}
+
+bool energy_guard_bound(energy_guard *guard, const double velocity_m_s[3], double force_n[3])
+{
+	enum { HALVINGS = 10 }; // to a thousandth of slew_n
+	bool bound = false;
+	bound_change(guard, force_n);
+	if (!pays(guard, velocity_m_s, force_n)) {
+		double last = length3(guard->force_n), low = 0, high = 1;
+		double left = last > guard->def.slew_n ? 1 - guard->def.slew_n / last : 0;
+		double least[3], towards[3];
+		add_scaled3(least, (double[3]){0, 0, 0}, left, guard->force_n);
+		add_scaled3(towards, force_n, -1, least);
+		for (int k = 0; k < HALVINGS; k++) {
+			double share = (low + high) / 2;
+			add_scaled3(force_n, least, share, towards);
+			if (pays(guard, velocity_m_s, force_n))
+				low = share;
+			else
+				high = share;
+		}
+		add_scaled3(force_n, least, low, towards);
+		bound = true;
+	}
+	memcpy(guard->force_n, force_n, sizeof guard->force_n);
+	return bound;
+}

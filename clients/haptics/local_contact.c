@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// With C the compliance, n_i, o_i the planes: forces f_i >= 0 with n_i . p - o_i + n_i . C f >= 0,
+// complementary, f = sum n_i f_i. This is the linear force F + K (p_record - p), brought into the
+// cone of the normals by the shortest way in the norm of C. What is cut off is friction as far as
+// Coulomb's law lets it.
+#include "haptics/local_contact.h"
+
+#include <string.h>
+
+#include "haptics/vector.h"
+
+enum { SWEEPS = 64 };               // of Gauss-Seidel over at most 8 planes, from the last forces
+static const double settled = 1e-9; // N; a sweep that changes no force by more is the last
+static const double most_m = 100, most_n = 1e5, most_m_n = 1e3; // of any number in a record
+
+static double least_eigenvalue(const double m[6])
+{
+	const double pi = 3.14159265358979323846;
+	double off = m[3] * m[3] + m[4] * m[4] + m[5] * m[5], mean = (m[0] + m[1] + m[2]) / 3;
+	double a = m[0] - mean, b = m[1] - mean, c = m[2] - mean;
+	double size = sqrt((a * a + b * b + c * c + 2 * off) / 6);
+	if (!(size > 0))
+		return mean;
+	double determinant = a * (b * c - m[5] * m[5]) - m[3] * (m[3] * c - m[5] * m[4]) +
+	                     m[4] * (m[3] * m[5] - b * m[4]);
+	double half = determinant / (2 * size * size * size);
+	double angle = acos(fmin(fmax(half, -1), 1)) / 3;
+	return mean + 2 * size * cos(angle + 2 * pi / 3);
+}
+
+static void invert(double to[6], const double m[6])
+{
+	double xx = m[1] * m[2] - m[5] * m[5], xy = m[4] * m[5] - m[3] * m[2];
+	double xz = m[3] * m[5] - m[4] * m[1];
+	double determinant = m[0] * xx + m[3] * xy + m[4] * xz;
+	to[0] = xx / determinant;
+	to[1] = (m[0] * m[2] - m[4] * m[4]) / determinant;
+	to[2] = (m[0] * m[1] - m[3] * m[3]) / determinant;
+	to[3] = xy / determinant;
+	to[4] = xz / determinant;
+	to[5] = (m[3] * m[4] - m[0] * m[5]) / determinant;
+}
+
+static bool is_within(const double *values, int count, double most)
+{
+	for (int i = 0; i < count; i++)
+		if (!(fabs(values[i]) <= most)) // nor one that is not a number
+			return false;
+	return true;
+}
+
+const char *local_contact_check(const cau_tool_contact *record)
+{
+	const double tolerance = CAU_UNIT_TOLERANCE;
+	if (record->plane_count < 0 || record->plane_count > CAU_CONTACT_PLANES)
+		return "it has too many planes";
+	for (int i = 0; i < record->plane_count; i++) {
+		const cau_contact_plane *plane = &record->plane[i];
+		if (!(fabs(length3(plane->normal) - 1) <= tolerance))
+			return "a normal is not of length 1";
+		if (!is_within(&plane->offset_m, 1, 2 * most_m) ||
+		    !is_within(&plane->velocity_m_s, 1, most_m))
+			return "a plane is out of range";
+	}
+	if (!is_within(record->asked_pose.position_m, 3, most_m) ||
+	    !is_within(record->grasp_anchor_m, 3, 10 * most_m) ||
+	    !is_within(record->force_n, 3, most_n))
+		return "a place or a force is out of range";
+	if (!is_within(record->compliance_m_n, 6, most_m_n) ||
+	    !(least_eigenvalue(record->compliance_m_n) > 0))
+		return "its compliance is not positive";
+	const double scalars[] = {record->friction, record->damping_ns_m, record->grasp_n_m};
+	for (int i = 0; i < 3; i++)
+		if (!(scalars[i] >= 0) || !is_within(&scalars[i], 1, most_n))
+			return "friction, damping or the grasp's stiffness is out of range";
+	return NULL;
+}
+
+// One sweep. Returns the largest change, N.
+static double sweep(local_contact *contact, const double gap_m[CAU_CONTACT_PLANES])
+{
+	double change = 0;
+	for (int i = 0; i < contact->plane_count; i++) {
+		double apart = gap_m[i];
+		for (int j = 0; j < contact->plane_count; j++)
+			apart += contact->coupling[i][j] * contact->pressing_n[j];
+		double before = contact->pressing_n[i];
+		contact->pressing_n[i] = fmax(before - apart / contact->coupling[i][i], 0);
+		change = fmax(change, fabs(contact->pressing_n[i] - before));
+	}
+	return change;
+}
+
+// The planes' forces, summed, and the mean speed of the tissue behind them.
+static void push(local_contact *contact, const double place_m[3], local_force *out)
+{
+	double gap_m[CAU_CONTACT_PLANES], sum = 0;
+	for (int i = 0; i < contact->plane_count; i++)
+		gap_m[i] = dot3(contact->plane[i].normal, place_m) - contact->plane[i].offset_m;
+	for (int k = 0; k < SWEEPS && sweep(contact, gap_m) > settled; k++)
+		;
+	for (int i = 0; i < contact->plane_count; i++) {
+		const cau_contact_plane *plane = &contact->plane[i];
+		add_scaled3(out->force_n, out->force_n, contact->pressing_n[i], plane->normal);
+		out->tissue_m_s += contact->pressing_n[i] * plane->velocity_m_s;
+		sum += contact->pressing_n[i];
+	}
+	out->tissue_m_s /= sum > 0 ? sum : 1;
+	out->pressed_n = sum;
+}
+
+static void couple_planes(local_contact *contact)
+{
+	for (int i = 0; i < contact->plane_count; i++)
+		for (int j = 0; j < contact->plane_count; j++) {
+			double moved[3];
+			symmetric_times(moved, contact->compliance, contact->plane[j].normal);
+			contact->coupling[i][j] = dot3(contact->plane[i].normal, moved);
+		}
+}
+
+// In series with a spring, so that nothing is stiffer than `most`. Planes are moved by what that
+// gives way, so that they push as before at the record's place.
+static void bound_stiffness(local_contact *contact, double most)
+{
+	double more = fmax(1 / most - least_eigenvalue(contact->compliance), 0);
+	contact->grasp_n_m = fmin(contact->grasp_n_m, most);
+	if (more == 0)
+		return;
+	local_force at = {0};
+	push(contact, contact->place_m, &at);
+	for (int i = 0; i < 3; i++)
+		contact->compliance[i] += more;
+	for (int i = 0; i < contact->plane_count; i++)
+		contact->plane[i].offset_m += more * dot3(contact->plane[i].normal, at.force_n);
+	couple_planes(contact);
+}
+
+void local_contact_set(local_contact *contact, const cau_tool_contact *record,
+                       double stiffness_max_n_m)
+{
+	memset(contact, 0, sizeof *contact);
+	contact->valid = record->valid && !local_contact_check(record);
+	if (!contact->valid)
+		return;
+	memcpy(contact->place_m, record->asked_pose.position_m, sizeof contact->place_m);
+	memcpy(contact->compliance, record->compliance_m_n, sizeof contact->compliance);
+	contact->plane_count = record->plane_count;
+	memcpy(contact->plane, record->plane, sizeof contact->plane);
+	contact->friction = record->friction;
+	contact->damping_ns_m = record->damping_ns_m;
+	contact->grasp_n_m = record->grasp_n_m;
+	double pull[3]; // of the grasp, as the record has it
+	add_scaled3(pull, record->grasp_anchor_m, -1, contact->place_m);
+	add_scaled3(contact->force_n, record->force_n, -record->grasp_n_m, pull);
+	couple_planes(contact);
+	bound_stiffness(contact, stiffness_max_n_m);
+	if (contact->grasp_n_m > 0) // its spring gives the record's force at its place
+		add_scaled3(contact->grasp_anchor_m, contact->place_m,
+		            record->grasp_n_m / contact->grasp_n_m, pull);
+	invert(contact->stiffness, contact->compliance);
+}
+
+// What the cone cut off the linear force, within Coulomb's law. In a dimple it is not across the
+// force of the planes: friction on the sides also bears.
+static void add_friction(const local_contact *contact, const double place_m[3], local_force *out)
+{
+	double moved[3], pulled[3], linear[3], along[3];
+	add_scaled3(moved, place_m, -1, contact->place_m);
+	symmetric_times(pulled, contact->stiffness, moved);
+	add_scaled3(linear, contact->force_n, -1, pulled);
+	add_scaled3(along, linear, -1, out->force_n);
+	double length = length3(along), most = contact->friction * out->pressed_n;
+	double share = length > most ? most / length : 1;
+	add_scaled3(out->force_n, out->force_n, share, along);
+}
+
+local_force local_contact_force(local_contact *contact, const double place_m[3])
+{
+	local_force out = {.grasp_n_m = contact->grasp_n_m};
+	if (!contact->valid)
+		return out;
+	push(contact, place_m, &out);
+	out.normal_n = length3(out.force_n);
+	if (out.normal_n > 0) {
+		double moved[3];
+		add_scaled3(out.normal, (double[3]){0, 0, 0}, 1 / out.normal_n, out.force_n);
+		symmetric_times(moved, contact->compliance, out.normal);
+		out.normal_n_m = 1 / dot3(out.normal, moved);
+		out.damping_ns_m = contact->damping_ns_m;
+		add_friction(contact, place_m, &out);
+	}
+	double pull[3];
+	add_scaled3(pull, contact->grasp_anchor_m, -1, place_m);
+	add_scaled3(out.force_n, out.force_n, contact->grasp_n_m, pull);
+	return out;
+}
