@@ -37,7 +37,7 @@ cau_haptics_def cau_default_haptics_def(void)
 		.hand_n = 5,
 		.reserve_j = 5e-4,
 		.tank_j = 0.05,
-		.damping_ratio = 0.25,
+		.damping_ratio = 0.2,
 		.damping_hz = 6,
 		.stiffness_max_n_m = 2000,
 		.force_max_n = 5,
@@ -75,8 +75,8 @@ static cau_status check(const cau_haptics_def *def, cau_error *error)
 			                members[i].value, members[i].least, members[i].most);
 	if (def->fade_s >= zero_age(def))
 		return cau_fail(error, CAU_BAD_VALUE, "fade_s",
-		                "%g s is too late: %g N take from %g s on to become 0 in time",
-		                def->fade_s, def->force_max_n, zero_age(def));
+		                "%g s is too late: %g N take from %g s on to become 0 in time", def->fade_s,
+		                def->force_max_n, zero_age(def));
 	return CAU_OK;
 }
 
@@ -175,8 +175,7 @@ static void follow_velocity(cau_haptics *haptics, const double velocity_m_s[3], 
 	const double pi = 3.14159265358979323846;
 	double turned = 2 * pi * haptics->def.damping_hz * passed_s;
 	for (int i = 0; i < 3; i++)
-		haptics->slow_m_s[i] +=
-			turned / (1 + turned) * (velocity_m_s[i] - haptics->slow_m_s[i]);
+		haptics->slow_m_s[i] += turned / (1 + turned) * (velocity_m_s[i] - haptics->slow_m_s[i]);
 }
 
 static void bound_length(double force_n[3], double most)

@@ -3,13 +3,21 @@
 // complementary, f = sum n_i f_i. This is the linear force F + K (p_record - p), brought into the
 // cone of the normals by the shortest way in the norm of C. What is cut off is friction as far as
 // Coulomb's law lets it.
+//
+// A tip is round: with more force it touches more tissue, and its contact is stiffer. After Hertz
+// the force goes with the depth to the power 1.5. So the record's stiffness K at its force F means
+// a depth of 1.5 F / K, and not of F / K. Along F the planes are as soft as that, and what they
+// give is multiplied by the root of its share of F: the force, its slope at the record, and the
+// place where it ends are those of Hertz.
 #include "haptics/local_contact.h"
 
 #include <string.h>
 
 #include "haptics/vector.h"
 
-enum { SWEEPS = 64 };               // of Gauss-Seidel over at most 8 planes, from the last forces
+enum { SWEEPS = 32 };               // of Gauss-Seidel over at most 8 planes, from the last forces
+static const double hertz = 1.5;    // power of the depth
+static const double most_share = 2; // of the record's force; above it, it is no stiffer
 static const double settled = 1e-9; // N; a sweep that changes no force by more is the last
 static const double most_m = 100, most_n = 1e5, most_m_n = 1e3; // of any number in a record
 
@@ -136,6 +144,26 @@ static void bound_stiffness(local_contact *contact, double most)
 	couple_planes(contact);
 }
 
+// Makes the planes half as soft again along the record's force, and no softer across it. They give
+// that force at the record's place all the same.
+static void round_tip(local_contact *contact)
+{
+	local_force at = {0};
+	push(contact, contact->place_m, &at);
+	contact->record_n = length3(at.force_n);
+	if (!(contact->record_n > 0))
+		return;
+	double moved[3];
+	symmetric_times(moved, contact->compliance, at.force_n);
+	double share = (hertz - 1) / dot3(at.force_n, moved);
+	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+	for (int i = 0; i < 6; i++)
+		contact->compliance[i] += share * moved[row[i]] * moved[column[i]];
+	for (int i = 0; i < contact->plane_count; i++)
+		contact->plane[i].offset_m += (hertz - 1) * dot3(contact->plane[i].normal, moved);
+	couple_planes(contact);
+}
+
 void local_contact_set(local_contact *contact, const cau_tool_contact *record,
                        double stiffness_max_n_m)
 {
@@ -158,6 +186,7 @@ void local_contact_set(local_contact *contact, const cau_tool_contact *record,
 	if (contact->grasp_n_m > 0) // its spring gives the record's force at its place
 		add_scaled3(contact->grasp_anchor_m, contact->place_m,
 		            record->grasp_n_m / contact->grasp_n_m, pull);
+	round_tip(contact);
 	invert(contact->stiffness, contact->compliance);
 }
 
@@ -189,6 +218,13 @@ local_force local_contact_force(local_contact *contact, const double place_m[3])
 		out.normal_n_m = 1 / dot3(out.normal, moved);
 		out.damping_ns_m = contact->damping_ns_m;
 		add_friction(contact, place_m, &out);
+		if (contact->record_n > 0) { // Hertz
+			double factor = sqrt(fmin(out.normal_n / contact->record_n, most_share));
+			for (int i = 0; i < 3; i++)
+				out.force_n[i] *= factor;
+			out.normal_n *= factor;
+			out.normal_n_m *= hertz;
+		}
 	}
 	double pull[3];
 	add_scaled3(pull, contact->grasp_anchor_m, -1, place_m);

@@ -39,8 +39,7 @@ static inline cau_tool_contact *mailbox_get(mailbox *mail)
 {
 	if (!(atomic_load_explicit(&mail->between, memory_order_relaxed) & MAILBOX_FRESH))
 		return NULL;
-	mail->reading =
-		atomic_exchange_explicit(&mail->between, mail->reading, memory_order_acq_rel) &
-		~(unsigned)MAILBOX_FRESH;
+	mail->reading = atomic_exchange_explicit(&mail->between, mail->reading, memory_order_acq_rel) &
+	                ~(unsigned)MAILBOX_FRESH;
 	return &mail->slot[mail->reading];
 }

@@ -317,6 +317,7 @@ void cau_session_destroy(cau_session *session)
 		return;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		cau_heat_grid_finish(&session->tool[i].grid);
+	cau_session_unwatch_contact(session);
 	cau_matrix_update_finish(&session->update);
 	cau_solver_finish(&session->solver);
 	cau_tissue_finish(&session->tissue);

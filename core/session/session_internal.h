@@ -84,6 +84,8 @@ typedef struct cau_spin {
 	int32_t *first;  // (piece_count + 1): into `member`
 } cau_spin;
 
+typedef struct cau_contact_watch cau_contact_watch; // tool_contact.c
+
 // Results of possible.c's last check of the edges, and its scratch.
 typedef struct cau_watch {
 	double left_m;        // vertices may still go half as far before an edge can be too long
@@ -153,7 +155,8 @@ struct cau_session {
 	double (*now_s)(void);
 	double stage_s[CAU_STAGE_COUNT];
 	double stage_start;
-	uint32_t watched; // CAU_CHANNEL_* bits of scalars
+	uint32_t watched;                 // CAU_CHANNEL_* bits
+	cau_contact_watch *contact_watch; // tool_contact.c; NULL: the contact was never watched
 };
 
 // command.c: applies the queued commands that are due.
@@ -308,6 +311,14 @@ cau_status cau_session_rebuild_system(cau_session *session, cau_error *error);
 // after a restore.
 void cau_session_show_scalars(cau_session *session);
 void cau_session_renew_scalars(cau_session *session);
+// tool_contact.c: begins or ends to compute the contact of tools; frees what that takes; forgets
+// the last tick's, as after a restore; computes it after a step, if it is watched; what a frame
+// shows of it (tool_count), or NULL.
+void cau_session_watch_contact(cau_session *session, bool watched);
+void cau_session_unwatch_contact(cau_session *session);
+void cau_session_forget_contact(cau_session *session);
+void cau_session_read_contact(cau_session *session);
+const cau_tool_contact *cau_session_show_contact(const cau_session *session);
 // view.c: layer and texture of the faces.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
 // drive.c: moves pinned vertices to the positions of cau_session_drive in this tick.

@@ -325,6 +325,7 @@ static cau_status take(cau_session *session, snapshot_state *state, cau_error *e
 	cau_frame_rebuild(&session->frame, &session->dissection);
 	cau_session_look_at_vessels(session);
 	cau_session_renew_scalars(session);
+	cau_session_forget_contact(session);
 	return status;
 }
 

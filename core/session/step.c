@@ -230,7 +230,8 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 		return fault(session, status);
 	cau_session_read_forces(session); // touch.c
 	end_solve_stages(session);
-	cau_session_tear(session); // tear.c
+	cau_session_read_contact(session); // tool_contact.c
+	cau_session_tear(session);         // tear.c
 	if (session->cells)
 		cau_session_operate(session); // electrosurgery.c
 	else

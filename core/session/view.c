@@ -164,6 +164,7 @@ void cau_session_watch(cau_session *session, uint32_t channels)
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		if (is_watched(channels & ~session->watched, scalar))
 			sources[scalar].make(session);
+	cau_session_watch_contact(session, (channels & CAU_CHANNEL_TOOL_CONTACT) != 0);
 	session->watched = channels;
 }
 
@@ -221,6 +222,7 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 		session->tool_view[i] = session->tool[i].state;
 	for (int32_t i = 0; session->vessels && i < session->vessels->vessel_count; i++)
 		frame->vessels[frame->vessel_count++] = &session->vessels->vessel[i].state;
+	frame->contacts = cau_session_show_contact(session);
 	fill_statistics(session, &frame->statistics);
 }
 

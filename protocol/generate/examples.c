@@ -8,7 +8,7 @@
 #include "cautery/topology_codec.h"
 #include "generate/write.h"
 
-enum { ROW_BYTES = 16, VERTICES = 3, CAPACITY = 4096, ENCODER_BYTES = 1 << 14 };
+enum { ROW_BYTES = 16, VERTICES = 3, CAPACITY = 4096, ENCODER_BYTES = 1 << 15 };
 
 static const uint64_t epoch = 0x0123456789abcdef;
 

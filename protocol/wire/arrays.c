@@ -3,9 +3,9 @@
 
 #include "cautery/assert.h"
 
-// Positions, mask, tools, statistics and vessels have cases of their own here, in encoder and
-// decoder.
-_Static_assert(CAU_CHANNEL_COUNT - CAU_SCALAR_COUNT == 5, "a channel is a scalar or has cases");
+// Positions, mask, tools, statistics, vessels and contacts of tools have cases of their own here,
+// in encoder and decoder.
+_Static_assert(CAU_CHANNEL_COUNT - CAU_SCALAR_COUNT == 6, "a channel is a scalar or has cases");
 
 int cau_channel_of_section(int type)
 {

@@ -5,6 +5,7 @@
 
 #include "cautery/assert.h"
 #include "wire/arrays.h"
+#include "wire/contact_records.h"
 #include "wire/header.h"
 #include "wire/records.h"
 #include "wire/vessel_records.h"
@@ -15,6 +16,7 @@ struct cau_frame_decoder {
 	uint32_t *arrays[CAU_CHANNEL_COUNT];
 	cau_stream_tool tools[CAU_MAX_TOOLS];
 	cau_vessel_state vessels[CAU_MAX_VESSELS];
+	cau_tool_contact contacts[CAU_MAX_TOOLS];
 	uint8_t *scratch;
 };
 
@@ -54,6 +56,7 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 	made->state.face_mask = made->arrays[CAU_CHANNEL_INDEX_MASK];
 	made->state.tools = made->tools;
 	made->state.vessels = made->vessels;
+	made->state.contacts = made->contacts;
 	CAU_ASSERT((size_t)(made->scratch - (uint8_t *)storage) + cau_arrays_scratch_bytes(def) <=
 	               storage_bytes,
 	           "arrays beyond %zu bytes", storage_bytes);
@@ -116,7 +119,7 @@ static cau_status check_place(const cau_frame_decoder *decoder, const cau_frame_
 static void forget(cau_frame_decoder *decoder)
 {
 	memset(decoder->arrays[0], 0, 4 * cau_arrays_words(&decoder->def));
-	decoder->state.tool_count = decoder->state.vessel_count = 0;
+	decoder->state.tool_count = decoder->state.vessel_count = decoder->state.contact_count = 0;
 	decoder->state.statistics = (cau_stream_statistics){0};
 }
 
@@ -185,6 +188,9 @@ static const char *read_section(cau_frame_decoder *decoder, const section_cursor
 	case CAU_CHANNEL_INDEX_VESSELS:
 		return cau_vessels_read(cursor->payload, cursor->payload_bytes, decoder->vessels,
 		                        &state->vessel_count);
+	case CAU_CHANNEL_INDEX_TOOL_CONTACT:
+		return cau_contacts_read(cursor->payload, cursor->payload_bytes, decoder->contacts,
+		                         &state->contact_count);
 	case CAU_CHANNEL_INDEX_STATISTICS:
 		return cau_statistics_read(cursor->payload, cursor->payload_bytes, &state->statistics);
 	default:
@@ -231,6 +237,8 @@ cau_status cau_frame_decode(cau_frame_decoder *decoder, const void *bytes, size_
 	state->sequence = header.sequence;
 	state->tick = header.tick;
 	state->time_s = header.time_s;
+	for (int32_t i = 0; i < state->contact_count; i++)
+		decoder->contacts[i].time_s = header.time_s;
 	state->published_us = header.published_us;
 	state->flags = header.flags;
 	return CAU_OK;

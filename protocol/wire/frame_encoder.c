@@ -6,6 +6,7 @@
 
 #include "cautery/assert.h"
 #include "wire/bytes.h"
+#include "wire/contact_records.h"
 #include "wire/header.h"
 #include "wire/records.h"
 #include "wire/vessel_records.h"
@@ -21,7 +22,8 @@ size_t cau_frame_bytes_max(const cau_stream_def *def)
 	       (size_t)CAU_MAX_TOOLS * (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES + TOOL_JAW_BYTES +
 	                                TOOL_POWER_BYTES + TOOL_FORCE_BYTES) +
 	       STATISTICS_RECORD_BYTES +
-	       (cau_stream_has(def, CAU_CHANNEL_INDEX_VESSELS) ? VESSELS_BYTES_MAX : 0);
+	       (cau_stream_has(def, CAU_CHANNEL_INDEX_VESSELS) ? VESSELS_BYTES_MAX : 0) +
+	       (cau_stream_has(def, CAU_CHANNEL_INDEX_TOOL_CONTACT) ? CONTACTS_BYTES_MAX : 0);
 }
 
 static size_t struct_bytes(void)
@@ -88,7 +90,8 @@ static bool wants(const cau_frame_encoder *encoder, int channel)
 	return cau_stream_has(&encoder->def, channel);
 }
 
-// What the sample has of a channel; NULL: nothing. A sample may have no tools and no vessels.
+// What the sample has of a channel; NULL: nothing. A sample may have no tools, no vessels
+// and no contacts.
 static const void *given(const cau_stream_sample *sample, int channel)
 {
 	switch (channel) {
@@ -98,6 +101,7 @@ static const void *given(const cau_stream_sample *sample, int channel)
 		return sample->face_mask;
 	case CAU_CHANNEL_INDEX_TOOLS:
 	case CAU_CHANNEL_INDEX_VESSELS:
+	case CAU_CHANNEL_INDEX_TOOL_CONTACT:
 		return sample;
 	case CAU_CHANNEL_INDEX_STATISTICS:
 		return sample->statistics;
@@ -130,6 +134,14 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 		const char *wrong = cau_vessel_state_check(sample->vessels[i]);
 		if (wrong)
 			return cau_fail(error, CAU_BAD_VALUE, "vessels", "vessel %d: %s", i, wrong);
+	}
+	if (sample->contact_count < 0 || sample->contact_count > CAU_MAX_TOOLS)
+		return cau_fail(error, CAU_BAD_VALUE, "contact_count", "%d is not within 0 and %d",
+		                sample->contact_count, CAU_MAX_TOOLS);
+	for (int32_t i = 0; i < sample->contact_count; i++) {
+		const char *wrong = cau_tool_contact_check(&sample->contacts[i]);
+		if (wrong)
+			return cau_fail(error, CAU_BAD_VALUE, "contacts", "contact %d: %s", i, wrong);
 	}
 	return isfinite(sample->time_s)
 	           ? CAU_OK
@@ -320,6 +332,10 @@ static void write_sections(const cau_frame_encoder *encoder, frame_part part, fr
 			end_section(writer, CAU_SECTION_VESSELS,
 			            cau_vessels_write(section_payload(writer), encoder->vessels,
 			                              encoder->vessel_count));
+		else if (channel == CAU_CHANNEL_INDEX_TOOL_CONTACT)
+			end_section(writer, CAU_SECTION_TOOL_CONTACT,
+			            cau_contacts_write(section_payload(writer), encoder->contacts,
+			                               encoder->contact_count));
 		else if (channel == CAU_CHANNEL_INDEX_STATISTICS)
 			end_section(writer, CAU_SECTION_STATISTICS,
 			            cau_statistics_write(section_payload(writer), &encoder->statistics));
@@ -399,6 +415,10 @@ static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 	encoder->vessel_count = sample->vessel_count;
 	for (int32_t i = 0; wants(encoder, CAU_CHANNEL_INDEX_VESSELS) && i < sample->vessel_count; i++)
 		encoder->vessels[i] = *sample->vessels[i];
+	encoder->contact_count =
+		wants(encoder, CAU_CHANNEL_INDEX_TOOL_CONTACT) ? sample->contact_count : 0;
+	for (int32_t i = 0; i < encoder->contact_count; i++)
+		encoder->contacts[i] = sample->contacts[i];
 }
 
 static cau_status encode(cau_frame_encoder *encoder, const cau_stream_sample *sample, void *bytes,

@@ -21,6 +21,8 @@ struct cau_frame_encoder {
 	cau_stream_statistics statistics;
 	int32_t vessel_count;
 	cau_vessel_state vessels[CAU_MAX_VESSELS];
+	int32_t contact_count;
+	cau_tool_contact contacts[CAU_MAX_TOOLS];
 	uint8_t *scratch;
 };
 

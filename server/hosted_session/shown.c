@@ -95,6 +95,8 @@ void cau_show(const cau_session *core, cau_shown *shown)
 		.statistics = &shown->statistics,
 		.vessel_count = frame->vessel_count,
 		.vessels = frame->vessels,
+		.contact_count = frame->contacts ? frame->tool_count : 0,
+		.contacts = frame->contacts,
 	};
 	memcpy(shown->sample.scalar, frame->scalar, sizeof shown->sample.scalar);
 }

@@ -13,8 +13,9 @@
 //         cau_haptics_render(haptics, device, now_s, force_n);
 //     }
 //
-// The force is that of the record's linear contact at the place where the device is now. So a link's
-// delay does not soften it. A new record is blended in. Three rules hold whatever the records say:
+// The force is that of the record's linear contact at the place where the device is now. So a
+// link's delay does not soften it. A new record is blended in. Three rules hold whatever the
+// records say:
 //
 //   - Over any time the device gets no more energy than it gave, and reserve_j. That holds as long
 //     as the device has at least mass_kg, a hand pushes it with hand_n at most, and the calls come
@@ -49,7 +50,7 @@ typedef struct cau_haptics_def {
 	double hand_n;            // force that the hand gives at most; 5
 	double reserve_j;         // energy that it may give beyond what it got; 5e-4
 	double tank_j;            // energy that it keeps at most of what it got; 0.05
-	double damping_ratio;     // of the device on the contact's spring, above damping_hz; 0.25
+	double damping_ratio;     // of the device on the contact's spring, above damping_hz; 0.2
 	double damping_hz;        // slower motion is not damped; 6
 	double stiffness_max_n_m; // stiffer contact is rendered with this; 2000
 	double force_max_n;       // of the device, at most CAU_HAPTICS_SLEW_N_S * 0.02 s; 5
@@ -70,7 +71,7 @@ void cau_haptics_take(cau_haptics *haptics, const cau_tool_contact *record);
 
 // What a period begins with.
 typedef struct cau_haptics_device {
-	cau_pose pose;         // of the tool's tip in the world: what the device commands
+	cau_pose pose;          // of the tool's tip in the world: what the device commands
 	double velocity_m_s[3]; // of the tip
 } cau_haptics_device;
 
@@ -82,12 +83,13 @@ void cau_haptics_render(cau_haptics *haptics, const cau_haptics_device *device, 
 
 // What the last call of cau_haptics_render found.
 typedef struct cau_haptics_report {
-	double given_j;  // energy given to the device since creation, less what it gave; below 0: it gave more
-	double tank_j;   // energy that may be given now
-	double age_s;    // of the newest record
-	bool touching;   // the record's contact pushes
-	bool limited;    // energy kept the force from being that of the contact
-	bool fading;     // the newest record is too old, or not valid, or the device's state is bad
+	double given_j; // energy given to the device since creation, less what it gave; below 0: it
+	                // gave more
+	double tank_j;  // energy that may be given now
+	double age_s;   // of the newest record
+	bool touching;  // the record's contact pushes
+	bool limited;   // energy kept the force from being that of the contact
+	bool fading;    // the newest record is too old, or not valid, or the device's state is bad
 } cau_haptics_report;
 // Fills *report. Called by the thread that renders.
 void cau_haptics_describe(const cau_haptics *haptics, cau_haptics_report *report);

@@ -2,6 +2,7 @@
 // The package `cautery`: the viewer's wire module (clients/web/src/wire), and a client that ties its parts together.
 export { Client, type ClientOptions } from './client';
 export { Stream } from './stream';
+export type { ContactPlane, ContactState } from '../../web/src/wire/contacts';
 export { Connection, RpcError, type ConnectionEvents, type ConnectionOptions, type LinkState, type Socket } from '../../web/src/wire/connection';
 export { FrameDecoder, type Changes, type Outcome, type StreamShape, type StreamState } from '../../web/src/wire/decoder';
 export { decoderReady } from '../../web/src/wire/elements';

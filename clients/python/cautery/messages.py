@@ -79,6 +79,7 @@ SECTION = {
     "temperature": 9,
     "vessels": 10,
     "blood": 11,
+    "tool_contact": 12,
     "tool_names": 6,
     "faces": 16,
     "face_layers": 17,
@@ -622,7 +623,7 @@ class Observe(TypedDict):
     """what session.advance is to answer with, besides tick and time"""
 
     # positions, mask, tools, vessels, and scalars by their names; `statistics` is in frames alone
-    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]]
 
     # of positions and scalars: these alone, in this order; all by default (0 to 16777215)
     vertices: NotRequired[Sequence[int]]
@@ -654,7 +655,7 @@ class ObservedScalar(TypedDict):
     """a scalar channel"""
 
     # which
-    channel: Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]
+    channel: Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]
 
     # of the vertices, in the channel's unit (-1e+300 to 1e+300)
     values: Sequence[float]
@@ -1076,7 +1077,7 @@ class SessionFrameAt(TypedDict):
     tick: int
 
     # by default those that the table of channels marks
-    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]]
 
     # quantisation; 5e-5 by default (1e-07 to 0.001 m)
     step_m: NotRequired[float]
@@ -1119,7 +1120,7 @@ class PastFrame(TypedDict):
     epoch: str
 
     # in the frame
-    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]
+    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]
 
     # of positions and scalars (0 to 16777216)
     vertex_count: int
@@ -1385,7 +1386,7 @@ class SessionJoin(TypedDict):
     rate_hz: NotRequired[float]
 
     # by default those that the table of channels marks
-    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]]
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]]
 
     # quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m)
     step_m: NotRequired[float]
@@ -1413,7 +1414,7 @@ class StreamDescription(TypedDict):
     rate_hz: float
 
     # granted
-    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]]
+    channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]
 
     # of positions and scalars (0 to 16777216)
     vertex_count: int
@@ -3368,7 +3369,7 @@ class Calls:
         *,
         session: str | None = None,
         rate_hz: float | None = None,
-        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]] | None = None,
+        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]] | None = None,
         step_m: float | None = None,
         plain: bool | None = None,
     ) -> StreamDescription:
@@ -3679,7 +3680,7 @@ class Calls:
         *,
         session: str | None = None,
         tick: int,
-        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood"]] | None = None,
+        channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]] | None = None,
         step_m: float | None = None,
         plain: bool | None = None,
     ) -> PastFrame:

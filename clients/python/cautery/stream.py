@@ -84,6 +84,27 @@ class Vessel:
 
 
 @dataclass(frozen=True)
+class Contact:
+    """The contact of a tool, linear about the frame's tick (channel `tool_contact`). P planes."""
+
+    name: str
+    valid: bool
+    asked_position_m: Floats  # (3,): commanded
+    asked_rotation: Floats  # (4,): w, x, y, z
+    position_m: Floats  # (3,): actual
+    rotation: Floats  # (4,)
+    force_n: Floats  # (3,): raw, of the tissue on the tool
+    compliance_m_n: Floats  # (3, 3): at the commanded place
+    friction: float
+    damping_ns_m: float
+    grasp_n_m: float  # stiffness of what the jaws hold; 0: nothing
+    grasp_anchor_m: Floats  # (3,): commanded place at which that pulls with 0 N
+    normals: Floats  # (P, 3): of the planes, out of the tissue
+    offsets_m: Floats  # (P,): a plane touches where normal . place is less
+    velocities_m_s: Floats  # (P,): of the tissue along the normal
+
+
+@dataclass(frozen=True)
 class State:
     """What a frame showed. The arrays are copies; V vertices, F faces."""
 
@@ -97,6 +118,7 @@ class State:
     tools: Mapping[str, Tool]
     statistics: Mapping[str, float]
     vessels: Mapping[str, Vessel]  # empty without the channel `vessels`
+    contacts: Mapping[str, Contact]  # by tool; empty without the channel `tool_contact`
 
 
 @dataclass(frozen=True)
@@ -213,6 +235,7 @@ class Stream:
         self._tools: dict[str, Tool] = {}
         self._statistics: dict[str, float] = {}
         self._vessels: dict[str, Vessel] = {}
+        self._contacts: dict[str, Contact] = {}
         self._changed = threading.Condition()
         self._over: Exception | None = None
 
@@ -314,6 +337,8 @@ class Stream:
             self._tools = _with_raw_force(payload, self._tools)
         elif number == SECTION["vessels"]:
             self._vessels = _vessels(payload)
+        elif number == SECTION["tool_contact"]:
+            self._contacts = _contacts(payload)
         elif number == SECTION["statistics"]:
             self._statistics = _statistics(payload)
 
@@ -331,7 +356,8 @@ class Stream:
             faulted=bool(header.flags & _FAULTED), positions=self._metres(self._held[SECTION["positions"]]),
             removed=bits[:len(self.faces)].astype(bool),
             scalars={name: self._scalar(name) for name in SCALARS if name in channels},
-            tools=dict(self._tools), statistics=dict(self._statistics), vessels=dict(self._vessels))
+            tools=dict(self._tools), statistics=dict(self._statistics), vessels=dict(self._vessels),
+            contacts=dict(self._contacts))
 
 
 def _vessels(payload: bytes) -> dict[str, Vessel]:
@@ -348,6 +374,25 @@ def _vessels(payload: bytes) -> dict[str, Vessel]:
     if at != len(payload):
         raise BadFrame("vessels of another length")
     return vessels
+
+
+def _contacts(payload: bytes) -> dict[str, Contact]:
+    contacts, at = {}, 4
+    for _ in range(int.from_bytes(payload[:4], "little")):
+        length, flags, count = struct.unpack_from("<BBH", payload, at)
+        numbers = np.frombuffer(payload, "<f4", 29, at + 4).astype(float)
+        name = payload[at + 120:at + 120 + length].decode()
+        at += 120 + -(-length // 4) * 4
+        planes = np.frombuffer(payload, "<f4", 5 * count, at).reshape(count, 5).astype(float)
+        at += 20 * count
+        xx, yy, zz, xy, xz, yz = numbers[17:23]
+        contacts[name] = Contact(
+            name, bool(flags & 1), numbers[0:3], numbers[3:7], numbers[7:10], numbers[10:14], numbers[14:17],
+            np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), float(numbers[23]), float(numbers[24]),
+            float(numbers[25]), numbers[26:29], planes[:, :3], planes[:, 3], planes[:, 4])
+    if at != len(payload):
+        raise BadFrame("contacts of another length")
+    return contacts
 
 
 def _tool_names(payload: bytes) -> list[tuple[str, str]]:

@@ -125,7 +125,8 @@ class Frame(Structure):
                 ("moved_count", c_int32), ("moved", c_void_p), ("face_mask", c_void_p),
                 ("mask_changed_count", c_int32), ("mask_changed", c_void_p), ("vertex_visible", c_void_p),
                 ("scalar", c_void_p * len(SCALARS)), ("tool_count", c_int32), ("tools", POINTER(ToolState)),
-                ("vessel_count", c_int32), ("vessels", POINTER(VesselState) * MAX_VESSELS), ("refusal_count", c_int32), ("refusals", POINTER(Error)), ("statistics", Statistics)]
+                ("vessel_count", c_int32), ("vessels", POINTER(VesselState) * MAX_VESSELS),
+                ("contacts", c_void_p), ("refusal_count", c_int32), ("refusals", POINTER(Error)), ("statistics", Statistics)]
 
 
 # The struct of each class in the headers.

@@ -312,6 +312,7 @@ typedef struct cau_frame {
 	const cau_tool_state *tools;     // (tool_count)
 	int32_t vessel_count;            // at most CAU_MAX_VESSELS
 	const cau_vessel_state *vessels[CAU_MAX_VESSELS]; // (vessel_count), in the scene's order
+	const cau_tool_contact *contacts;                 // (tool_count), by tool; NULL: not watched
 	int32_t refusal_count;                            // commands refused at their tick in this step
 	const cau_error *refusals;                        // (refusal_count)
 	cau_statistics statistics;                        // of this step
@@ -322,8 +323,10 @@ void cau_session_frame(const cau_session *session, cau_frame *frame);
 
 // Turns stage timing on with the caller's clock `now_s` (s), or off with NULL, the default.
 void cau_session_set_clock(cau_session *session, double (*now_s)(void));
-// Sets the watched scalars (CAU_CHANNEL_* bits; other bits are ignored; none by default). Watched
-// scalars that cost work of their own are computed at once, and after each step.
+// Sets the watched channels (CAU_CHANNEL_* bits of scalars and of tool_contact; other bits are
+// ignored; none by default). Watched scalars that cost work of their own are computed at once, and
+// after each step. The contact of tools is computed after each step that is not at rest. It is not
+// valid before that. No step changes by what is watched.
 void cau_session_watch(cau_session *session, uint32_t channels);
 
 // Which elements exist, as bytes 0 or 1, borrowed until the next call that changes the session:

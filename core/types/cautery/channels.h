@@ -55,6 +55,7 @@
 	       "what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c")        \
 	OWN(X, VESSELS, vessels, 10, ON_REQUEST, "flags, bleeding, seal and line of every vessel")     \
 	SCALAR(X, BLOOD, blood, 11, ON_REQUEST, 0.0, 2e-5, 255, "m", "depth of blood on the surface")  \
+	OWN(X, TOOL_CONTACT, tool_contact, 12, ON_REQUEST, "linear contact of every tool, to render")  \
 	/* a new row goes above this line */
 // clang-format on
 

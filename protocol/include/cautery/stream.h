@@ -150,6 +150,8 @@ typedef struct cau_stream_sample {
 	const cau_stream_statistics *statistics; // of the last step
 	int32_t vessel_count;                    // at most CAU_MAX_VESSELS
 	const cau_vessel_state *const *vessels;  // (vessel_count)
+	int32_t contact_count;                   // at most CAU_MAX_TOOLS
+	const cau_tool_contact *contacts;        // (contact_count)
 } cau_stream_sample;
 
 // The state of a decoder; borrowed, valid until the next decode. A face is drawn if its bit in
@@ -174,6 +176,8 @@ typedef struct cau_stream_state {
 	cau_stream_statistics statistics;   // of the last frame that has them
 	int32_t vessel_count;               // at most CAU_MAX_VESSELS
 	const cau_vessel_state *vessels;    // (vessel_count), of the last frame that has them
+	int32_t contact_count;              // at most CAU_MAX_TOOLS
+	const cau_tool_contact *contacts;   // (contact_count), of the last frame that has them
 } cau_stream_state;
 
 #ifdef __cplusplus

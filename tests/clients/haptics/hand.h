@@ -8,7 +8,7 @@
 typedef struct simulated_hand {
 	double place_m[3], velocity_m_s[3];
 	double wanted_m[3];
-	double most_n; // that it gives; 0: no bound
+	double most_n;  // that it gives; 0: no bound
 	double given_j; // work of the rendered force on it
 } simulated_hand;
 

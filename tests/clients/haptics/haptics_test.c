@@ -35,6 +35,19 @@ static cau_tool_contact floor_at(double z)
 	return record;
 }
 
+// The same under a round tip, after Hertz: 1.5 N at 3 mm.
+static cau_tool_contact hertz_at(double z)
+{
+	cau_tool_contact record = floor_at(fmin(z, 0));
+	double deep = fmax(-z, 0), stiffness = fmax(1.5 * 1.5 * sqrt(deep / 0.003) / 0.003, 10);
+	record.asked_pose.position_m[2] = z;
+	record.force_n[2] = 1.5 * pow(deep / 0.003, 1.5);
+	for (int i = 0; i < 3; i++)
+		record.compliance_m_n[i] = 1 / stiffness;
+	record.plane[0].offset_m = deep > 0 ? z + record.force_n[2] / stiffness : 0;
+	return record;
+}
+
 static double render_at(cau_haptics *haptics, double z, double velocity, double now_s)
 {
 	double force[3];
@@ -65,16 +78,16 @@ static void force_follows_the_place_not_the_record(void **state)
 	double next = 0, worst = 0;
 	for (int k = 0; k < 4000; k++) {
 		double now = period_s * k, turn = 6.28318530718 * 0.5;
-		double z = -0.0015 * (1 - cos(turn * now)), v = -0.0015 * turn * sin(turn * now);
+		double z = -0.0003 - 0.0014 * (1 - cos(turn * now)), v = -0.0014 * turn * sin(turn * now);
 		if (now >= next) {
 			double then = fmax(now - 0.1, 0);
-			cau_tool_contact record = floor_at(-0.0015 * (1 - cos(turn * then)));
+			cau_tool_contact record = hertz_at(-0.0003 - 0.0014 * (1 - cos(turn * then)));
 			cau_haptics_take(haptics, &record);
 			next += tick_s;
 		}
 		double force = render_at(haptics, z, v, now);
 		if (k > 100)
-			worst = fmax(worst, fabs(force + 500 * z));
+			worst = fmax(worst, fabs(force - 1.5 * pow(-z / 0.003, 1.5)));
 	}
 	print_message("at most %.4f N off at 1.5 N\n", worst);
 	assert_true(worst < 0.03); // what damping takes below damping_hz

@@ -129,6 +129,27 @@ class Decoder(unittest.TestCase):
                 self.assertTrue(np.allclose(vessel.open, [0.5, -1, 0.5, 0.5][:count]))
         self.assertGreater(found, 0)
 
+    def test_contacts_are_as_sent(self):  # as tests/protocol/wire/tissue.c sends them
+        stream, found = Stream(DESCRIPTION), 0
+        for number in range(FRAMES):
+            stream.take(self.read(f"frame-{number:02d}.bin"))
+            seen = stream.wait(timeout_s=0)
+            self.assertEqual(list(seen.contacts), [] if seen.tick < 8 else ["hook"])
+            for contact in seen.contacts.values():
+                found += 1
+                self.assertEqual(contact.valid, seen.tick % 4 != 3)
+                self.assertEqual(contact.asked_position_m.tolist(), [0.5, 0.25, -0.125 * seen.tick])
+                self.assertEqual(contact.rotation.tolist(), [0.5] * 4)
+                self.assertEqual(contact.force_n.tolist(), [0.125, -0.25, 0.5 * seen.tick])
+                self.assertEqual(contact.compliance_m_n.tolist(), [[1, 0.125, 0.25], [0.125, 2, 0.5], [0.25, 0.5, 3]])
+                self.assertEqual((contact.friction, contact.damping_ns_m), (0.25, 0.5))
+                self.assertEqual(contact.grasp_n_m, 256 * (seen.tick % 2))
+                self.assertEqual(contact.grasp_anchor_m.tolist(), [1, 2, 0.5 * seen.tick])
+                self.assertEqual(contact.normals.tolist(), [[0, 0, 1], [0, 1, 0]][:seen.tick % 3])
+                self.assertEqual(contact.offsets_m.tolist(), [0.25 * seen.tick] * (seen.tick % 3))
+                self.assertEqual(contact.velocities_m_s.tolist(), [0, -0.5][:seen.tick % 3])
+        self.assertGreater(found, 0)
+
     def test_spoilt_frames_raise_and_nothing_else(self):
         whole = {name: self.read(name) for name in ("frame-00.bin", "topology-00.bin")}
         random = np.random.default_rng(7)

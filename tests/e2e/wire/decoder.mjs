@@ -115,6 +115,26 @@ function vesselRecords(payload) {
 	return found;
 }
 
+// The records of a section of tools' contacts.
+function contactRecords(payload) {
+	const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+	const found = [];
+	let at = 4;
+	for (let i = 0; i < view.getUint32(0, true); i++) {
+		const length = payload[at], planes = view.getUint16(at + 2, true);
+		const floats = (from, count) => Array.from({ length: count }, (_, k) => view.getFloat32(from + 4 * k, true));
+		const first = at + 120 + 4 * Math.ceil(length / 4);
+		found.push({
+			name: new TextDecoder().decode(payload.subarray(at + 120, at + 120 + length)), valid: payload[at + 1] === 1,
+			asked: floats(at + 4, 3), position: floats(at + 32, 3), force: floats(at + 60, 3), compliance: floats(at + 72, 6),
+			planes: Array.from({ length: planes }, (_, k) => floats(first + 20 * k, 5)) });
+		at = first + 20 * planes;
+	}
+	if (at !== payload.length)
+		throw new Error(`contacts end at byte ${at} of ${payload.length}`);
+	return found;
+}
+
 // Writes a section's elements into `held`; returns how many there were.
 function elements(payload, held) {
 	const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
@@ -248,6 +268,8 @@ export class Decoder {
 				raw: { force: floats(28 * i, 3), torque: floats(28 * i + 12, 3), filterS: view.getFloat32(28 * i + 24, true) } }));
 		} else if (type === 10) {
 			this.vessels = vesselRecords(payload);
+		} else if (type === 12) {
+			this.contacts = contactRecords(payload);
 		} else if (type === 8) {
 			const view = new DataView(payload.buffer, payload.byteOffset);
 			this.realtimeFactor = view.getFloat32(0, true);

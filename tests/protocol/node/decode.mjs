@@ -215,6 +215,26 @@ function readVessels(payload) {
   return vessels;
 }
 
+function readContacts(payload) {
+  const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+  const contacts = [];
+  let at = 4;
+  for (let left = view.getUint32(0, true); left > 0; left--) {
+    const length = payload[at];
+    const planes = view.getUint16(at + 2, true);
+    const floats = (from, count) => Array.from({ length: count }, (_, i) => view.getFloat32(from + 4 * i, true));
+    const first = at + 120 + 4 * Math.ceil(length / 4);
+    contacts.push({
+      name: new TextDecoder().decode(payload.subarray(at + 120, at + 120 + length)), valid: payload[at + 1] === 1, asked: floats(at + 4, 3), askedRotation: floats(at + 16, 4),
+      position: floats(at + 32, 3), rotation: floats(at + 44, 4), force: floats(at + 60, 3), compliance: floats(at + 72, 6), scalars: floats(at + 96, 3), anchor: floats(at + 108, 3),
+      planes: floats(first, 5 * planes),
+    });
+    at = first + 20 * planes;
+  }
+  if (at !== payload.length) fail('contacts of another length');
+  return contacts;
+}
+
 /** Holds one stream, as a subscriber does. */
 export class StreamDecoder {
   constructor({ session, profile, vertexCount, faceCount }) {
@@ -275,6 +295,8 @@ export class StreamDecoder {
       this.tools.forEach((tool, i) => Object.assign(tool, { power: [view.getFloat32(8 * i, true)], load: [view.getFloat32(8 * i + 4, true)] }));
     } else if (type === 10) {
       this.vessels = readVessels(payload);
+    } else if (type === 12) {
+      this.toolContacts = readContacts(payload);
     } else if (type === 8) {
       this.statistics = readStatistics(payload);
     }

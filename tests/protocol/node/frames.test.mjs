@@ -31,6 +31,14 @@ function compareVessels(vessels, expected) {
   });
 }
 
+function compareContacts(contacts, expected) {
+  assert.equal(contacts.length, expected.length);
+  contacts.forEach((contact, i) => {
+    const rounded = Object.entries(expected[i]).map(([key, value]) => [key, Array.isArray(value) ? value.map(Math.fround) : value]);
+    assert.deepEqual(contact, Object.fromEntries(rounded));
+  });
+}
+
 function compareState(decoder, state) {
   assert.equal(decoder.epoch.toString(16).padStart(16, '0'), state.epoch);
   assert.equal(Number(decoder.sequence), state.sequence);
@@ -42,6 +50,7 @@ function compareState(decoder, state) {
   assert.equal(decoder.statistics.contacts, state.contacts);
   compareTools(decoder.tools, state.tools);
   compareVessels(decoder.vessels ?? [], state.vessels);
+  compareContacts(decoder.toolContacts ?? [], state.toolContacts);
 }
 
 test('every stream decodes to what the C decoder holds', () => {

@@ -113,6 +113,29 @@ static void write_vessel(FILE *out, const cau_vessel_state *vessel)
 	fputc('}', out);
 }
 
+static void write_contact(FILE *out, const cau_tool_contact *contact)
+{
+	double planes[5 * CAU_CONTACT_PLANES];
+	for (int32_t i = 0; i < contact->plane_count; i++) {
+		memcpy(planes + (ptrdiff_t)5 * i, contact->plane[i].normal,
+		       sizeof contact->plane[i].normal);
+		planes[5 * i + 3] = contact->plane[i].offset_m;
+		planes[5 * i + 4] = contact->plane[i].velocity_m_s;
+	}
+	const double scalars[] = {contact->friction, contact->damping_ns_m, contact->grasp_n_m};
+	fprintf(out, "{\"name\":\"%s\",\"valid\":%s", contact->name, contact->valid ? "true" : "false");
+	write_floats(out, "asked", contact->asked_pose.position_m, 3);
+	write_floats(out, "askedRotation", contact->asked_pose.rotation, 4);
+	write_floats(out, "position", contact->pose.position_m, 3);
+	write_floats(out, "rotation", contact->pose.rotation, 4);
+	write_floats(out, "force", contact->force_n, 3);
+	write_floats(out, "compliance", contact->compliance_m_n, 6);
+	write_floats(out, "scalars", scalars, 3);
+	write_floats(out, "anchor", contact->grasp_anchor_m, 3);
+	write_floats(out, "planes", planes, 5 * (size_t)contact->plane_count);
+	fputc('}', out);
+}
+
 static void write_state(FILE *out, const cau_frame_decoder *decoder)
 {
 	const cau_stream_state *state = cau_frame_decoder_state(decoder);
@@ -138,6 +161,11 @@ static void write_state(FILE *out, const cau_frame_decoder *decoder)
 	for (int32_t i = 0; i < state->vessel_count; i++) {
 		fputs(i ? "," : "", out);
 		write_vessel(out, &state->vessels[i]);
+	}
+	fputs("],\"toolContacts\":[", out);
+	for (int32_t i = 0; i < state->contact_count; i++) {
+		fputs(i ? "," : "", out);
+		write_contact(out, &state->contacts[i]);
 	}
 	fputs("]}", out);
 }

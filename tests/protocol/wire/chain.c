@@ -97,6 +97,21 @@ static void assert_vessels_equal(const cau_vessel_state *a, const cau_vessel_sta
 	assert_memory_equal(a->point, b->point, (size_t)a->point_count * sizeof *a->point);
 }
 
+static void assert_contacts_equal(const cau_tool_contact *a, const cau_tool_contact *b)
+{
+	assert_string_equal(a->name, b->name);
+	assert_true(a->valid == b->valid && a->time_s == b->time_s);
+	assert_memory_equal(&a->asked_pose, &b->asked_pose, sizeof a->asked_pose);
+	assert_memory_equal(&a->pose, &b->pose, sizeof a->pose);
+	assert_memory_equal(a->force_n, b->force_n, sizeof a->force_n);
+	assert_memory_equal(a->compliance_m_n, b->compliance_m_n, sizeof a->compliance_m_n);
+	assert_true(a->friction == b->friction && a->damping_ns_m == b->damping_ns_m);
+	assert_true(a->grasp_n_m == b->grasp_n_m);
+	assert_memory_equal(a->grasp_anchor_m, b->grasp_anchor_m, sizeof a->grasp_anchor_m);
+	assert_int_equal(a->plane_count, b->plane_count);
+	assert_memory_equal(a->plane, b->plane, (size_t)a->plane_count * sizeof *a->plane);
+}
+
 // Half a step, and a little for the last bits of single precision.
 static void assert_scalars_rounded(const cau_frame_decoder *decoder, const tissue *shown, int32_t v)
 {
@@ -134,6 +149,9 @@ void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown)
 	assert_int_equal(state->vessel_count, sample.vessel_count);
 	for (int32_t i = 0; i < sample.vessel_count; i++)
 		assert_vessels_equal(&state->vessels[i], sample.vessels[i]);
+	assert_int_equal(state->contact_count, sample.contact_count);
+	for (int32_t i = 0; i < sample.contact_count; i++)
+		assert_contacts_equal(&state->contacts[i], &sample.contacts[i]);
 	free(position);
 }
 
@@ -153,4 +171,7 @@ void chain_assert_same(const cau_frame_decoder *a, const cau_frame_decoder *b)
 	assert_int_equal(x->vessel_count, y->vessel_count);
 	for (int32_t i = 0; i < x->vessel_count; i++)
 		assert_vessels_equal(&x->vessels[i], &y->vessels[i]);
+	assert_int_equal(x->contact_count, y->contact_count);
+	for (int32_t i = 0; i < x->contact_count; i++)
+		assert_contacts_equal(&x->contacts[i], &y->contacts[i]);
 }

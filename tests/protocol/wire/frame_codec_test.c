@@ -153,8 +153,8 @@ static void test_a_still_tissue_costs_next_to_nothing(void **unused)
 	chain_init(&of, 30, 30);
 	chain_pass(&of);
 	chain_pass(&of);
-	// One tool, its raw force, the statistics and no vessel.
-	size_t records = 4 * 8 + 84 + 28 + 112 + 4;
+	// One tool, its raw force, the statistics, no vessel and no contact.
+	size_t records = 5 * 8 + 84 + 28 + 112 + 4 + 4;
 	assert_int_equal(of.byte_count, CAU_FRAME_HEADER_BYTES + records);
 	assert_int_equal(cau_frame_decoder_state(of.decoder)->moved_count, 0);
 	chain_finish(&of);

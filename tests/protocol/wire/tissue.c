@@ -119,6 +119,26 @@ static void move_vessel(cau_vessel_state *vessel, int32_t tick)
 		                                      i == 1 ? -1.0f : 0.5f};
 }
 
+static void move_contact(cau_tool_contact *contact, int32_t tick)
+{
+	*contact = (cau_tool_contact){
+		.name = "hook",
+		.valid = tick % 4 != 3,
+		.time_s = tick / 60.0,
+		.asked_pose = {.position_m = {0.5, 0.25, -0.125 * tick}, .rotation = {1, 0, 0, 0}},
+		.pose = {.position_m = {0.5, 0.25, 0}, .rotation = {0.5, 0.5, 0.5, 0.5}},
+		.force_n = {0.125, -0.25, 0.5 * tick},
+		.plane_count = tick % 3,
+		.compliance_m_n = {1, 2, 3, 0.125, 0.25, 0.5},
+		.friction = 0.25,
+		.damping_ns_m = 0.5,
+		.grasp_n_m = tick % 2 ? 256 : 0,
+		.grasp_anchor_m = {1, 2, 0.5 * tick},
+	};
+	for (int32_t i = 0; i < contact->plane_count; i++)
+		contact->plane[i] = (cau_contact_plane){{0, i ? 1 : 0, i ? 0 : 1}, 0.25 * tick, -0.5 * i};
+}
+
 void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 {
 	double time_s = tick / 60.0;
@@ -139,6 +159,7 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	move_tool(&moved->tools[0], "hook", CAU_TOOL_HOOK, tick);
 	move_vessel(&moved->vessel, tick);
 	moved->vessels[0] = &moved->vessel;
+	move_contact(&moved->contact, tick);
 	move_tool(&moved->tools[1], "left-grasper", CAU_TOOL_GRASPER, tick);
 	moved->statistics = (cau_stream_statistics){.realtime_factor = 1.0f,
 	                                            .step_cost_s = 0.002f,
@@ -178,6 +199,8 @@ cau_stream_sample tissue_sample(const tissue *of)
 		.statistics = &of->statistics,
 		.vessel_count = of->tick < 8 ? 0 : 1,
 		.vessels = of->vessels,
+		.contact_count = of->tick < 8 ? 0 : 1,
+		.contacts = &of->contact,
 	};
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		sample.scalar[scalar] = of->scalar[scalar];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A make-believe tissue for tests of streams: a grid in smooth motion with a little noise, a cut
-// that runs across it, exposure that rises along the cut, one or two tools, later a vessel. The
-// same in every run.
+// that runs across it, exposure that rises along the cut, one or two tools, later a vessel and the
+// contact of a tool. The same in every run.
 #pragma once
 
 #include "cautery/stream.h"
@@ -17,6 +17,7 @@ typedef struct tissue {
 	cau_stream_statistics statistics;
 	cau_vessel_state vessel;
 	const cau_vessel_state *vessels[1]; // it
+	cau_tool_contact contact;
 } tissue;
 
 // Heap arrays; NULL members after tissue_finish.

@@ -4,6 +4,7 @@ import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
 import { SCALARS, SECTION, type ScalarName } from './messages.gen';
 import { readAsked, readForces, readJaws, readPower, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
+import { readContacts, type ContactState } from './contacts';
 import { readVessels, type VesselState } from './vessels';
 
 export interface StreamShape {
@@ -33,6 +34,8 @@ export interface StreamState extends ScalarArrays {
   tools: ToolState[];
   /** in the scene's order; none where the stream does not have the channel */
   vessels: VesselState[];
+  /** by tool; none where the stream does not have the channel `tool_contact` */
+  contacts: ContactState[];
   statistics: Statistics | null;
 }
 
@@ -70,6 +73,7 @@ export class FrameDecoder {
       mask: new Int32Array(Math.ceil(shape.face_count / 32)),
       tools: [],
       vessels: [],
+      contacts: [],
       statistics: null,
     };
   }
@@ -140,6 +144,7 @@ export class FrameDecoder {
     for (const name of SCALAR_NAMES) state[name].fill(0);
     state.tools = [];
     state.vessels = [];
+    state.contacts = [];
     state.statistics = null;
     this.names = [];
   }
@@ -165,6 +170,8 @@ export class FrameDecoder {
     if (forces) this.state.tools = readForces(forces, this.state.tools);
     const vessels = sections.get(SECTION.vessels);
     if (vessels) this.state.vessels = readVessels(vessels);
+    const contacts = sections.get(SECTION.tool_contact);
+    if (contacts) this.state.contacts = readContacts(contacts);
     const statistics = sections.get(SECTION.statistics);
     if (statistics) this.state.statistics = readStatistics(statistics);
   }

@@ -331,7 +331,7 @@ export interface ObservedRegion {
 /** what session.advance is to answer with, besides tick and time */
 export interface Observe {
   /** positions, mask, tools, vessels, and scalars by their names; `statistics` is in frames alone */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
   /** of positions and scalars: these alone, in this order; all by default (0 to 16777215) */
   vertices?: number[];
   /** where removed volume and damage are reported */
@@ -355,7 +355,7 @@ export interface SessionAdvance {
 /** a scalar channel */
 export interface ObservedScalar {
   /** which */
-  channel: 'positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood';
+  channel: 'positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact';
   /** of the vertices, in the channel's unit (-1e+300 to 1e+300) */
   values: number[];
 }
@@ -667,7 +667,7 @@ export interface SessionFrameAt {
   /** on the present line, from oldest_tick to the present (0 to 9007199254740991) */
   tick: number;
   /** by default those that the table of channels marks */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
   /** quantisation; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
   /** no section of the frame is in meshoptimizer's codec; false by default */
@@ -697,7 +697,7 @@ export interface PastFrame {
   /** in the frame's header; that of no stream */
   epoch: string;
   /** in the frame */
-  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
   /** of positions and scalars (0 to 16777216) */
   vertex_count: number;
   /** of the mask (0 to 16777216) */
@@ -901,7 +901,7 @@ export interface SessionJoin {
   /** frames a wall second at most; 60 by default (0.1 to 1000 1/s) */
   rate_hz?: number;
   /** by default those that the table of channels marks */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
   /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
   /** no section of the frames is in meshoptimizer's codec; false by default */
@@ -921,7 +921,7 @@ export interface StreamDescription {
   /** granted (0.1 to 1000 1/s) */
   rate_hz: number;
   /** granted */
-  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood')[];
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
   /** of positions and scalars (0 to 16777216) */
   vertex_count: number;
   /** of mask and topology (0 to 16777216) */
@@ -2457,6 +2457,7 @@ export const SECTION = {
   temperature: 9,
   vessels: 10,
   blood: 11,
+  tool_contact: 12,
   tool_names: 6,
   faces: 16,
   face_layers: 17,

@@ -4,6 +4,7 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
+import type { ContactState } from '../../../../clients/web/src/wire/contacts';
 import { FrameDecoder } from '../../../../clients/web/src/wire/decoder';
 import { decoderReady } from '../../../../clients/web/src/wire/elements';
 import { SCALARS, type ScalarName } from '../../../../clients/web/src/wire/messages.gen';
@@ -40,6 +41,19 @@ function expectVessels(vessels: readonly VesselState[], tick: number): void {
   }]);
 }
 
+/** As tests/protocol/wire/tissue.c makes it: none before tick 8. */
+function expectContacts(contacts: readonly ContactState[], tick: number): void {
+  if (tick < 8) {
+    expect(contacts).toEqual([]);
+    return;
+  }
+  expect(contacts).toEqual([{
+    name: 'hook', valid: tick % 4 !== 3, askedPositionM: [0.5, 0.25, -0.125 * tick], askedRotation: [1, 0, 0, 0], positionM: [0.5, 0.25, 0], rotation: [0.5, 0.5, 0.5, 0.5],
+    forceN: [0.125, -0.25, 0.5 * tick], complianceMN: [1, 2, 3, 0.125, 0.25, 0.5], friction: 0.25, dampingNsM: 0.5, graspNM: tick % 2 === 1 ? 256 : 0, graspAnchorM: [1, 2, 0.5 * tick],
+    planes: [{ normal: [0, 0, 1], offsetM: 0.25 * tick, velocityMS: -0 }, { normal: [0, 1, 0], offsetM: 0.25 * tick, velocityMS: -0.5 }].slice(0, tick % 3),
+  }]);
+}
+
 function expectState(decoder: FrameDecoder, number: number): void {
   const bytes = read('state', number);
   const view = new DataView(bytes.buffer, bytes.byteOffset);
@@ -66,6 +80,7 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
       expect(decoder.decode(read('frame', i)).kind).toBe('applied');
       expectState(decoder, i);
       expectVessels(decoder.state.vessels, decoder.state.tick);
+      expectContacts(decoder.state.contacts, decoder.state.tick);
       for (const { raw } of decoder.state.tools) expect(raw !== null).toBe(i % 5 !== 4); // as tests/protocol/wire/tissue.c sends it
     }
     const last = FRAMES - 1;
@@ -80,6 +95,7 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
     expect(decoder.decode(read('key', FRAMES - 1))).toMatchObject({ kind: 'applied', key: true });
     expectState(decoder, FRAMES - 1);
     expectVessels(decoder.state.vessels, FRAMES - 1);
+    expectContacts(decoder.state.contacts, FRAMES - 1);
   });
 
   it('reads the topology', () => {

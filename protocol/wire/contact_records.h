@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section of the channel `tool_contact`.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/channels.h"
+
+enum { CONTACTS_BYTES_MAX = 3 << 10 };
+
+// Returns why a decoder would refuse this record, or NULL.
+const char *cau_tool_contact_check(const cau_tool_contact *contact);
+
+// Writes the payload and returns its length, CONTACTS_BYTES_MAX at most.
+size_t cau_contacts_write(uint8_t *out, const cau_tool_contact *contacts, int32_t count);
+// Reads a payload, without time_s, which is the frame's. Returns NULL, or why it is refused.
+const char *cau_contacts_read(const uint8_t *payload, size_t bytes, cau_tool_contact *contacts,
+                              int32_t *count);
