@@ -15,6 +15,7 @@ import elements  # noqa: E402
 import geometry  # noqa: E402
 import heat  # noqa: E402
 import held  # noqa: E402
+import measured  # noqa: E402
 import patterns  # noqa: E402
 import plots  # noqa: E402
 import run  # noqa: E402
@@ -149,6 +150,37 @@ class Validation(unittest.TestCase):
 
     def test_pictures_are_named_by_their_cut(self):
         self.assertEqual(viewer.file_stem("fascia, frayed"), "figure-7-fascia-frayed")
+
+
+class PublishedMeasurements(unittest.TestCase):
+    def test_a_value_counts_within_a_factor_of_two_and_a_temperature_by_its_rise(self):
+        self.assertTrue(measured.Value("", 10, 20).within())
+        self.assertTrue(measured.Value("", 10, 5).within())
+        self.assertFalse(measured.Value("", 10, 20.1).within())
+        self.assertFalse(measured.Value("", 10, 0).within())
+        self.assertTrue(measured.Value("", 60, 55, above=40).within())
+        self.assertFalse(measured.Value("", 60, 49, above=40).within())
+
+    def test_a_measurement_holds_where_all_its_values_do(self):
+        near, far = measured.Value("near", 1, 1), measured.Value("far", 1, 3)
+        self.assertTrue(measured.Measured("1", "", "", True, [near]).holds())
+        self.assertFalse(measured.Measured("1", "", "", True, [near, far]).holds())
+        said = measured.verdict([measured.Measured("1", "", "", True, [near]), measured.Measured("2", "", "", True, [far]),
+                                 measured.Measured("3", "", "", True, []), measured.Measured("4", "", "", False, [near])])
+        self.assertIn("Of the 3 measurements that are to be within a factor of two, 1 are: 1.", said)
+
+    def test_each_term_is_taken_away_alone(self):
+        whole = measured.with_jaws_of(0.5)
+        changes = {"boiling": {"boiling"}, "blade": {"upper_j_k", "lower_j_k"}, "perfusion": {"perfusion"}, "contact": {"groove_mm"}}
+        self.assertEqual(set(changes), set(measured.SETUPS["terms"]))
+        for term, names in changes.items():
+            less = measured.without(whole, term)
+            self.assertEqual({name for name in whole if whole[name] != less[name]}, names)
+
+    def test_every_number_of_a_set_up_has_its_source(self):
+        for group, numbers in measured.SETUPS.items():
+            for name, pair in numbers.items() if isinstance(numbers, dict) else ():
+                self.assertEqual((len(pair), isinstance(pair[1], str) and len(pair[1]) > 0), (2, True), f"{group}.{name}")
 
 
 class Geometry(unittest.TestCase):
