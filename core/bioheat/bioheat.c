@@ -159,11 +159,27 @@ static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *co
 	return cau_bioheat_conductivity(bioheat, contact->cell) * contact->over_length_m;
 }
 
-// Explicit steps are stable while no cell loses more in a part than what brings it to the mean of
-// its neighbours.
-static double longest_part_s(cau_bioheat *bioheat)
+// Longest part in which no blade passes the mean temperature of the cells that it touches.
+static double longest_of_blades_s(const cau_bioheat *bioheat, const cau_blade *blade,
+                                  int32_t blade_count)
 {
-	double longest = INFINITY;
+	double longest = INFINITY, flow_w_k[CAU_BLADES] = {0};
+	for (int32_t k = 0; k < bioheat->contact_count; k++) {
+		CAU_ASSERT_INDEX(bioheat->contact[k].blade, blade_count);
+		flow_w_k[bioheat->contact[k].blade] += contact_w_k(bioheat, &bioheat->contact[k]);
+	}
+	for (int32_t b = 0; b < blade_count; b++)
+		if (flow_w_k[b] > 0)
+			longest =
+				fmin(longest, blade[b].heat_capacity_j_k / (flow_w_k[b] + blade[b].cooling_w_k));
+	return longest;
+}
+
+// Explicit steps are stable while no cell loses more in a part than what brings it to the mean of
+// its neighbours, and no blade either.
+static double longest_part_s(cau_bioheat *bioheat, const cau_blade *blade, int32_t blade_count)
+{
+	double longest = longest_of_blades_s(bioheat, blade, blade_count);
 	find_faces(bioheat);
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		bioheat->flow_w[i] = open_and_faces(bioheat, i);
@@ -230,7 +246,6 @@ static void touch_blades(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_c
 	double given_w[CAU_BLADES] = {0};
 	for (int32_t k = 0; k < bioheat->contact_count; k++) {
 		const cau_contact_cell *contact = &bioheat->contact[k];
-		CAU_ASSERT_INDEX(contact->blade, blade_count);
 		double flow = contact_w_k(bioheat, contact) *
 		              (blade[contact->blade].temperature_c - bioheat->temperature[contact->cell]);
 		bioheat->flow_w[contact->cell] += flow;
@@ -305,7 +320,7 @@ bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 {
 	CAU_ASSERT(duration_s > 0, "a step of %g s", duration_s);
 	CAU_ASSERT(blade_count >= 0 && blade_count <= CAU_BLADES, "%d blades", blade_count);
-	double parts = fmax(ceil(duration_s / longest_part_s(bioheat)), 1);
+	double parts = fmax(ceil(duration_s / longest_part_s(bioheat, blade, blade_count)), 1);
 	if (!(parts <= CAU_BIOHEAT_PARTS))
 		return false;
 	for (int part = 0; part < (int)parts; part++)

@@ -150,7 +150,7 @@ cut_found cut_run(const cut_def *def, cau_bioheat_material tissue)
 	double seconds = def->way_mm / def->speed_mm_s;
 	for (double at_s = 0; at_s < seconds; at_s += def->step_s)
 		step(&cut, true, 1e-3 * (margin_mm + at_s * def->speed_mm_s), def->step_s);
-	for (double left = def->cool_s; left > 1e-9; left -= def->step_s)
+	for (double left = def->cool_s; left > 1e-9 && measured_warm(&cut.cells); left -= def->step_s)
 		step(&cut, false, 0, fmin(left, def->step_s));
 	measure(&cut);
 	cut.found.ledger_gap = measured_gap(&cut.cells, &cut.found.came_in_j);

@@ -64,6 +64,15 @@ bool measured_parts(const measured_cells *cells, int32_t cell, double parted_wat
 	                               : cells->bioheat.temperature[cell] >= CAU_BOILING_C;
 }
 
+bool measured_warm(const measured_cells *cells)
+{
+	static const double damage_from_c = 43; // of core/bioheat/bioheat.c
+	for (int32_t i = 0; i < cells->bioheat.cells.count; i++)
+		if (cells->bioheat.temperature[i] > damage_from_c)
+			return true;
+	return false;
+}
+
 double measured_gap(const measured_cells *cells, double *came_in_j)
 {
 	const cau_energy_ledger *ledger = &cells->bioheat.ledger;

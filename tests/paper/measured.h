@@ -60,7 +60,7 @@ typedef struct section_def {
 	X(parted)   /* 1: no cell between the jaws has more than parted_water */                       \
 	X(to_60_s)  /* from the end of energy to a blade of 60 degC */                                 \
 	X(to_42_s)  /* and of 42 degC */                                                               \
-	X(fusion)   /* of the coldest cell between the jaws: damage of collagen while closed */        \
+	X(fusion)   /* damage of collagen while closed: of the coldest layer, at the best place */     \
 	X(first_ohm)                                                                                   \
 	X(last_ohm)                                                                                    \
 	X(came_in_j)                                                                                   \
@@ -180,6 +180,9 @@ bool measured_parts(const measured_cells *cells, int32_t cell, double parted_wat
 
 // Steps, in halves where stability asks it. `blades` may be none.
 void measured_step(measured_cells *cells, cau_blade *blade, int32_t blade_count, double step_s);
+
+// Whether a cell is so warm that damage counts.
+bool measured_warm(const measured_cells *cells);
 
 // Greatest gap of the ledger as a share of what came in. `came_in_j` is that.
 double measured_gap(const measured_cells *cells, double *came_in_j);

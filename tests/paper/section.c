@@ -202,6 +202,15 @@ static void wait(section_state *section, double seconds)
 		step(section, false, fmin(left, section->def->step_s));
 }
 
+// Until no more tissue dies.
+static void cool(section_state *section)
+{
+	section->closed = false;
+	for (double left = section->def->cool_s; left > 1e-9 && measured_warm(&section->cells);
+	     left -= section->def->step_s)
+		step(section, false, fmin(left, section->def->step_s));
+}
+
 // From now on the blade is in gas: T - gas falls with exp(-cooling t / capacity).
 static double seconds_to(const section_state *section, double to_c)
 {
@@ -228,6 +237,19 @@ static double deepest_mm(const section_state *section)
 	return deepest * section->def->cell_mm;
 }
 
+// A seal is as good as the coldest part of the wall, at its best place (core/vessel/vessels.c).
+static double best_fusion(const section_state *section)
+{
+	double best = 0;
+	for (int32_t x = 0; x < section->across; x++) {
+		double coldest = INFINITY;
+		for (int32_t z = 0; z < section->inside; z++)
+			coldest = fmin(coldest, section->fusion[find(section, x, section->below + z)]);
+		best = fmax(best, coldest);
+	}
+	return best;
+}
+
 section_found section_run(const section_def *def, cau_bioheat_material tissue)
 {
 	section_state section;
@@ -240,14 +262,10 @@ section_found section_run(const section_def *def, cau_bioheat_material tissue)
 	}
 	wait(&section, def->hold_s);
 	found->parted = has_parted(&section);
-	found->fusion = INFINITY;
-	for (int32_t i = 0; i < section.cells.bioheat.cells.count; i++)
-		if (is_between(&section, i))
-			found->fusion = fmin(found->fusion, section.fusion[i]);
+	found->fusion = best_fusion(&section);
 	found->to_60_s = def->hold_s + seconds_to(&section, 60);
 	found->to_42_s = def->hold_s + seconds_to(&section, 42);
-	section.closed = false;
-	wait(&section, def->cool_s);
+	cool(&section);
 	found->necrosis_mm = deepest_mm(&section);
 	found->ledger_gap = measured_gap(&section.cells, &found->came_in_j);
 	found->came_in_j /= section.share;

@@ -183,6 +183,26 @@ static void a_blade_cools_and_gives_its_heat(void **state)
 	cau_arena_finish(&arena);
 }
 
+// A blade much lighter than its cell comes to the cell's temperature, and never passes it.
+static void a_light_blade_is_stable(void **state)
+{
+	(void)state;
+	cau_arena arena = {0};
+	cau_bioheat bar = bar_of(&plain_tissue, 1, SIDE_M, 37, &arena);
+	double capacity = cau_bioheat_capacity(&bar, 0);
+	cau_blade blade = {.temperature_c = 77, .heat_capacity_j_k = capacity / 100};
+	bar.contact[bar.contact_count++] = (cau_contact_cell){.cell = 0, .over_length_m = 2 * SIDE_M};
+	bar.temperature[0] = 57;
+	double mean = 57 + 20.0 / 101;
+	for (int tick = 0; tick < 20; tick++) {
+		run(&bar, &blade, 1.0 / 60);
+		assert_true(blade.temperature_c <= 77 && blade.temperature_c >= mean - 1e-9);
+	}
+	assert_near(blade.temperature_c, mean, 1e-6);
+	assert_near(bar.temperature[0], mean, 1e-6);
+	cau_arena_finish(&arena);
+}
+
 static void damage_follows_arrhenius(void **state)
 {
 	(void)state;
@@ -283,6 +303,7 @@ int main(void)
 		cmocka_unit_test(a_boiling_front_moves_with_the_root_of_time),
 		cmocka_unit_test(a_surface_cools_in_gas),
 		cmocka_unit_test(a_blade_cools_and_gives_its_heat),
+		cmocka_unit_test(a_light_blade_is_stable),
 		cmocka_unit_test(damage_follows_arrhenius),
 		cmocka_unit_test(the_ledger_closes),
 		cmocka_unit_test(nothing_flows_through_a_cell_that_is_gone),
