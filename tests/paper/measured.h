@@ -39,6 +39,7 @@
 	X(on_s)                                                                                        \
 	X(pause_s)                                                                                     \
 	X(again_s)                                                                                     \
+	X(pause_open)   /* 1: the jaws are open in the pause */                                        \
 	X(hold_s)       /* closed after energy */                                                      \
 	X(cool_s)       /* open */                                                                     \
 	X(parted_water) /* energy ends when no cell between the jaws has more water left, */           \

@@ -55,7 +55,7 @@ def shears_metal():
 
 
 NO_POWER = {"friction_w": 0, "voltage_v": 0, "power_w": 0, "peak_v": 0, "current_a": 0, "crest": 1.414214, "far": 0}
-NO_RULE = {"pause_s": 0, "again_s": 0, "parted_water": 0, "reaction_s": 0, "rise": 0, "held_c": 0, "groove_mm": 0}
+NO_RULE = {"pause_s": 0, "again_s": 0, "pause_open": 0, "parted_water": 0, "reaction_s": 0, "rise": 0, "held_c": 0, "groove_mm": 0}
 GENERATOR = ("power_w", "peak_v", "current_a", "crest")
 
 
@@ -178,12 +178,14 @@ def without(numbers, term):
 
 
 class Bench:
-    """Runs exposures without `term`; several at once."""
+    """Runs exposures without `term`; several at once. `coarse`: cells are twice as large."""
 
-    def __init__(self, sim, term=None):
-        self.sim, self.term = sim, term
+    def __init__(self, sim, term=None, coarse=False):
+        self.sim, self.term, self.coarse = sim, term, coarse
 
     def one(self, kind, tissue, numbers):
+        if self.coarse:
+            numbers = {**numbers, "cell_mm": 2 * numbers["cell_mm"]}
         arguments = [f"{name}={value!r}" for name, value in without(numbers, self.term).items()]
         return table(self.sim, "paper_measured_probe", kind, tissue, *arguments)[0]
 
@@ -225,10 +227,19 @@ def pauses(bench, number, name, thick_mm, published):
     for level in (3, 5):
         keys = sorted((key for key in published if key[0] == level), key=published.get)
         orders.append((f"level {level}: {' < '.join(key[1] for key in keys)}", is_descending([depth[key] for key in reversed(keys)])))
+    # Jaws that are open in the pause were tried after the first run.
+    opened = bench.all({level: ("jaws", "muscle", {**with_shears(thick_mm, level, 0, COMMON["body_c"], 1), **PAUSES["5 + 5 s"], "pause_open": 1})
+                        for level in (3, 5)})
+    for level, one in opened.items():
+        also = {**{key[1]: depth[key] for key in depth if key[0] == level}, "5 + 5 s": one["necrosis_mm"]}
+        keys = sorted((key for key in published if key[0] == level), key=published.get)
+        orders.append((f"the same, open in the pause (level {level})", is_descending([also[key[1]] for key in reversed(keys)])))
     hot = ", ".join(f"{found[(level, '10 s')]['blade_peak_c']:.0f}" for level in (3, 5))
+    beside = " and ".join(f"{opened[level]['necrosis_mm']:.2f}" for level in (3, 5))
     return Measured(number, f"necrosis beside ultrasonic shears, {name}", "mm", True,
                     [Value(f"level {key[0]}, {key[1]}", published[key], depth[key]) for key in published], orders,
-                    f"blades of level 3 and 5 were at {hot} degC after 10 s")
+                    f"blades of level 3 and 5 were at {hot} degC after 10 s. The jaws stay closed in the pause. Open ones were tried after "
+                    f"the first run: then 5 + 5 s give {beside} mm")
 
 
 def abdominal_wall(bench):
@@ -326,7 +337,7 @@ def burst(bench):
     return Measured("15", "burst pressure of sealed arteries", "mmHg", True,
                     [Value(" ".join(key), published[key], ours[key]) for key in published],
                     note="the strength of joined walls is assumed (core/vessel/README.md), so this confirms little. Published seals of "
-                         "shears are stronger than those of the sealer; ours differ by nothing but the wall's temperature, and by no more than 1 %"
+                         "shears are stronger than those of the sealer. Ours differ by no more than 1 %"
                     if max(ours.values()) < 1.01 * min(ours.values()) else "the strength of joined walls is assumed (core/vessel/README.md)")
 
 
@@ -368,23 +379,51 @@ def measure(bench, what=ALL):
 BY_NUMBER = {"9": flat_or_grooved, "11": cutting, "27": living_or_not}
 
 
-def named(bench, number):
-    return next(one for one in measure(bench, (BY_NUMBER[number],)) if one.number == number)
+def numbered(measured, number):
+    return next(one for one in measured if one.number == number)
 
 
-def stands(one):
-    return one.holds() and one.ordered()
+def breaks(whole, less):
+    """What holds with all terms and no longer without one: its values, or its order."""
+    lost = [what for what, held, left in (("values", whole.holds(), less.holds()), ("order", whole.ordered(), less.ordered()))
+            if held and not left]
+    return " and ".join(lost)
 
 
-def without_terms(sim):
-    """{term: (number, the measurement with all terms, without this one)}"""
-    return {term: (number, named(Bench(sim), number), named(Bench(sim, term), number))
-            for term, (number, _) in SETUPS["terms"].items()}
+def without_terms(sim, measured, names=tuple(TERMS)):
+    """{term: (the measurement named for it, the same without it)}; `measured` has the first."""
+    return {term: (numbered(measured, number), numbered(measure(Bench(sim, term), (BY_NUMBER[number],)), number))
+            for term, (number, _) in SETUPS["terms"].items() if term in names}
+
+
+def quick(sim):
+    """Figures for expected.json: the measurements that take seconds, and what is lost without each term."""
+    whole = measure(Bench(sim, coarse=True), (flat_or_grooved, cutting, living_or_not))
+    figures = {f"energy.published.{one.number}.{value.label.replace(' ', '_')}": value.ours for one in whole for value in one.values
+               if value.label not in ("Sonicision", "SonoSurg")}
+    for term in TERMS:
+        number = SETUPS["terms"][term][0]
+        less = numbered(measure(Bench(sim, term, coarse=True), (BY_NUMBER[number],)), number)
+        figures[f"energy.lost_without.{term}"] = float(bool(breaks(numbered(whole, number), less)))
+    return figures
 
 
 # ---- a page
 
-REASONS = []  # (number, sentence)
+REASONS = [
+    ("4", "the shears need 8 to 10 s for a fold that surgeons divide in one or two. The friction, 0.045, was measured at a hundredth of the "
+     "speed and less than a thousandth of the pressure. So heat has time to go 1.3 mm. The monopolar cut has 30 W, of which the abstract says "
+     "nothing. Its kerf takes about 18 of the 26 J that the fold takes up. The rest spreads in the fold, as there is no muscle below"),
+    ("5, 6", "5 s and 10 s come out within a factor of 2.4. With a pause necrosis is deeper than without. The hot blade stays closed "
+     "on the tissue for 16 s instead of 11. With jaws that are open in the pause the order is right in three of the four series"),
+    ("9", "both jaws bring the tissue to 100 degC within the 5 s that were assumed. Water keeps it there, so there is no order"),
+    ("12, 13", "a blade's temperature is that of its metal here. A camera or a thermometer sees its surface later, at a place that the "
+     "abstract does not name. Load and shape of the tips are assumed"),
+    ("14", "fusion only grows with temperature and time, and force does no more than shut the vessel. Nothing in the model makes a weld worse again"),
+    ("27", "at 45 W a dry shell forms around the needle, current ends, and no water comes back. Ours took up a quarter of the published "
+     "energy, or less. Real generators pause and go on"),
+]
+
 
 def shown(value):
     return "never" if math.isinf(value) else f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
@@ -411,9 +450,9 @@ def terms_table(terms):
     def described(one):
         return "; ".join([f"{value.label} {shown(value.ours)} {one.unit}" for value in one.values] +
                          [f"{what}: {'yes' if right else 'no'}" for what, right in one.orders])
-    for term, (number, whole, less) in terms.items():
-        fails = "it fails with all terms, too" if not stands(whole) else "no" if stands(less) else "yes"
-        lines.append(f"| {TERMS[term]} | {number} | {described(whole)} | {described(less)} | {fails} |")
+    for term, (whole, less) in terms.items():
+        lost = breaks(whole, less)
+        lines.append(f"| {TERMS[term]} | {whole.number} | {described(whole)} | {described(less)} | {f'yes, its {lost}' if lost else 'no'} |")
     return "\n".join(lines)
 
 
@@ -459,12 +498,14 @@ def verdict(measured):
 
 def page(measured, terms):
     notes = "\n".join(f"- {one.number}: {one.note}." for one in measured if one.note)
-    reasons = "\n".join(f"- {number}: {why}" for number, why in REASONS)
+    reasons = "\n".join(f"- {number}: {why}." for number, why in REASONS)
     return f"""### Set-ups
 
 [setups.json](setups.json) has every number, with its source or the reason for an assumption. They were written down before
-the first run, and none was changed after it. Only cells, metal, current and a generator take part; nothing moves. Force comes in
-by friction alone. Heat capacity of the shears' blade: {shears_metal()['upper_j_k']:.2f} J/K; cooling {1000 * shears_metal()['upper_w_k']:.1f} mW/K.
+the first run, and none was changed after it. Whoever wrote them knew the published values. Only cells, metal, current and a
+generator take part. Nothing moves. Force counts by friction alone.
+
+After the first run one law was set right: a seal counts where it is best, as in [core/vessel](../../core/vessel/README.md). Heat capacity of the shears' blade: {shears_metal()['upper_j_k']:.2f} J/K; cooling {1000 * shears_metal()['upper_w_k']:.1f} mW/K.
 
 {setups_table()}
 
@@ -488,8 +529,10 @@ What fails, and the likely reason:
 
 ### Without one term
 
-Before the first run one measurement was named for each term, which must fail without it. Where nothing boils, water neither
-takes up heat nor leaves. A blade without heat capacity has a hundredth of it.
+Before the first run one measurement was named for each term, which must fail without it: its values, or its order. Where nothing
+boils, water neither takes up heat nor leaves. A blade without heat capacity has a hundredth of it.
 
 {terms_table(terms)}
+
+Grooves change the load, and not the greatest temperature: so contact area has no measurement here that needs it.
 """

@@ -257,7 +257,9 @@ section_found section_run(const section_def *def, cau_bioheat_material tissue)
 	section_found *found = &section.found;
 	energize(&section, def->on_s);
 	if (def->again_s > 0) {
+		section.closed = !(def->pause_open > 0);
 		wait(&section, def->pause_s);
+		section.closed = true;
 		energize(&section, def->again_s);
 	}
 	wait(&section, def->hold_s);
