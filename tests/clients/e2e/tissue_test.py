@@ -53,6 +53,15 @@ class Tissue(programs.Case):
         self.assertEqual(gone, sorted(gone))
         self.assertIn("energy on", out)
 
+    def test_a_simulated_device_feels_the_tissue(self):
+        """How still it holds is not judged here: a busy machine makes too few ticks (clients_haptics_fat judges it)."""
+        out, _ = self.program("cautery-device", self.daemon.url)
+        *reports, last = out.splitlines()
+        forces = [float(line.split()[-2]) for line in reports]
+        self.assertEqual(forces[0], 0)
+        self.assertGreater(max(forces), 0.01)
+        self.assertTrue(last.startswith("held with "), last)
+
     def test_a_mesh_is_uploaded(self):
         file = self.path("Left Knee.obj", sheet(12, 60))
         session = self.create("--mesh", file, "--unit-m", 0.001)
