@@ -115,6 +115,13 @@ void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 	cau_cells_sever(&bioheat->cells, cell);
 }
 
+// What boils takes its own warmth along with the enthalpy of evaporation.
+double cau_bioheat_vapour(const cau_bioheat *bioheat)
+{
+	double warmth = water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);
+	return bioheat->boiled_w / (boiling_j_kg + warmth);
+}
+
 // ---- one step
 
 // Conductances of all faces: of both cells the harmonic mean. Each is found once, from the cell on
@@ -323,8 +330,10 @@ bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 	double parts = fmax(ceil(duration_s / longest_part_s(bioheat, blade, blade_count)), 1);
 	if (!(parts <= CAU_BIOHEAT_PARTS))
 		return false;
+	double boiled_before_j = bioheat->ledger.boiled_j;
 	for (int part = 0; part < (int)parts; part++)
 		step_part(bioheat, blade, blade_count, duration_s / parts);
+	bioheat->boiled_w = (bioheat->ledger.boiled_j - boiled_before_j) / duration_s;
 	bioheat->cold = is_cold(bioheat, blade);
 	if (bioheat->cold)
 		forget_rest(bioheat);

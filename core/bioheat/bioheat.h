@@ -51,7 +51,8 @@ typedef struct cau_bioheat {
 	int32_t contact_count;
 	cau_contact_cell *contact; // (capacity)
 	cau_energy_ledger ledger;
-	bool cold; // every cell is at ambient_c and no power is set
+	double boiled_w; // of the ledger's boiled_j, mean of the last step
+	bool cold;       // every cell is at ambient_c and no power is set
 	// Scratch: (capacity) each but the last, (capacity x 6).
 	double *own_w_mk, *flow_w, *open_w_k, *face_w_k;
 } cau_bioheat;
@@ -79,6 +80,9 @@ bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell);
 double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell);
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell);
+
+// kg/s of water that boiled off, mean of the last step.
+double cau_bioheat_vapour(const cau_bioheat *bioheat);
 
 // J that a cell takes up until it is dry at CAU_BOILING_C.
 double cau_bioheat_until_dry(const cau_bioheat *bioheat, int32_t cell);

@@ -486,6 +486,7 @@ void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from)
 	memcpy(to->bioheat.damage, from->bioheat.damage, count * sizeof(double));
 	memcpy(to->current.potential, from->current.potential, count * sizeof(double));
 	to->bioheat.ledger = from->bioheat.ledger;
+	to->bioheat.boiled_w = from->bioheat.boiled_w;
 	to->bioheat.cold = from->bioheat.cold;
 	memcpy(to->owner, from->owner, count * sizeof *to->owner);
 	memcpy(to->local, from->local, 3 * count * sizeof *to->local);

@@ -89,6 +89,11 @@ double cau_session_vaporised(const cau_session *session)
 	return volume_m3;
 }
 
+double cau_session_vapour(const cau_session *session)
+{
+	return session->cells ? cau_bioheat_vapour(&session->cells->bioheat) : 0;
+}
+
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger)
 {
 	*ledger = session->cells ? session->cells->bioheat.ledger : (cau_energy_ledger){0};

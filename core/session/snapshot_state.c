@@ -413,6 +413,8 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 	                    &ledger->ambient_j,   &ledger->shed_j};
 	for (size_t i = 0; i < sizeof energy / sizeof *energy; i++)
 		cau_snapshot_doubles(archive, "energy", energy[i], 1, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+	if (archive->mode == SNAPSHOT_READ)
+		bioheat->boiled_w = 0; // of no step yet
 }
 
 static void pass_vessels(snapshot_archive *archive, const cau_vessels *vessels,

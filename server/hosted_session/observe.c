@@ -189,7 +189,8 @@ static void observe_energy(const cau_hosted *h, observation *o)
 	                                              .perfused_j = ledger.perfused_j,
 	                                              .ambient_j = ledger.ambient_j,
 	                                              .shed_j = ledger.shed_j,
-	                                              .coagulated_m3 = cau_session_coagulated(h->core)};
+	                                              .coagulated_m3 = cau_session_coagulated(h->core),
+	                                              .vapour_kg_s = cau_session_vapour(h->core)};
 }
 
 // What costs the core work of its own is made for this answer, and for the streams that have it.

@@ -48,7 +48,8 @@
 	X("ambient_j", ".9g", ledger->ambient_j)                                                       \
 	X("shed_j", ".9g", ledger->shed_j)                                                             \
 	X("coagulated_m3", ".9g", row->coagulated_m3)                                                  \
-	X("vaporised_m3", ".9g", row->vaporised_m3)
+	X("vaporised_m3", ".9g", row->vaporised_m3)                                                    \
+	X("vapour_kg_s", ".9g", row->vapour_kg_s)
 
 // suffix of a tool's column, value of `tool`
 #define TOOL_COLUMNS(X)                                                                            \

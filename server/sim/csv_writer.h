@@ -18,6 +18,7 @@ typedef struct sim_csv_row {
 	cau_energy_ledger ledger;
 	double coagulated_m3; // cau_session_coagulated
 	double vaporised_m3;  // cau_session_vaporised
+	double vapour_kg_s;   // cau_session_vapour
 } sim_csv_row;
 
 // Stage times are the machine's, and 0 unless the session has a clock. Cells of a tool that is gone

@@ -120,7 +120,8 @@ static cau_status write_outputs(run *r, const cau_frame *frame)
 	if (r->csv) {
 		sim_csv_row row = {.frame = frame,
 		                   .coagulated_m3 = cau_session_coagulated(r->session),
-		                   .vaporised_m3 = cau_session_vaporised(r->session)};
+		                   .vaporised_m3 = cau_session_vaporised(r->session),
+		                   .vapour_kg_s = cau_session_vapour(r->session)};
 		cau_status status = cau_session_balance(r->session, &row.balance);
 		if (status)
 			return cau_fail(r->error, status, NULL, "no memory for a tick's energies");

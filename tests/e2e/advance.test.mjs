@@ -287,6 +287,10 @@ test('where the energy of instruments went is reported where that is asked for, 
 	assert.ok(given > 1 && spent.delivered_j > 0 && spent.delivered_j <= 1.001 * given, `${spent.delivered_j} J, by the tool's power ${given} J`);
 	assert.ok(Math.abs(spent.delivered_j + spent.blade_j - parts) <= 0.01 * spent.delivered_j, JSON.stringify(spent));
 	assert.ok(spent.coagulated_m3 > 0);
+	const { energy: again } = await advance(client, session, [energy(true)], { observe: { energy: true } });
+	// By the enthalpy of evaporation, and the warmth of water between 37 and 100 degC.
+	const boiled = again.vapour_kg_s * STEP_S * (2.257e6 + 4186 * 63);
+	assert.ok(Math.abs(boiled - (again.boiled_j - spent.boiled_j)) <= 1e-6 * (1e-6 + boiled), JSON.stringify(again));
 	await client.close();
 });
 

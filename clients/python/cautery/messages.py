@@ -803,6 +803,9 @@ class ObservedEnergy(TypedDict):
     # volume of the tissue that is there and dead by heat (0 to 1000000000 m^3)
     coagulated_m3: float
 
+    # water that boiled off in the last tick (0 to 1000000 kg/s)
+    vapour_kg_s: float
+
 
 class Advanced(TypedDict):
     """the ticks are made, and this is what was asked for"""

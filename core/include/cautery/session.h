@@ -384,6 +384,9 @@ double cau_session_coagulated(const cau_session *session);
 // removed it, or it went with its element. 0 with energy `paper`. Divided by the severed area, it
 // is the mean width of the kerf.
 double cau_session_vaporised(const cau_session *session);
+// Water that boiled off in the last step, kg/s: vapour, of which smoke is made. 0 with energy
+// `paper`, and from a restore to the next step.
+double cau_session_vapour(const cau_session *session);
 
 // Total mechanical quantities, for tests and plots.
 typedef struct cau_balance {

@@ -130,6 +130,29 @@ static void off_ends_the_power_and_not_the_heat(void **state)
 	cau_session_destroy(session);
 }
 
+// The rate at which water leaves adds up to the energy that it took along. None leaves at rest.
+static void vapour_adds_up_to_what_has_boiled(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = needle_over_sheet(30);
+	cau_session *session = stage_open(scene, 1);
+	double mass_kg = 0, j_kg = 2.257e6 + 4186 * (100 - scene->ambient_c);
+	assert_true(cau_session_vapour(session) == 0);
+	for (int tick = 0; tick < DWELL_TICKS + DRAWN_TICKS; tick++) {
+		go(session, tick, tick + 1);
+		mass_kg += cau_session_vapour(session) / 60;
+	}
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(session, &ledger);
+	assert_true(ledger.boiled_j > 1);
+	assert_true(fabs(mass_kg * j_kg - ledger.boiled_j) <= 1e-9 * ledger.boiled_j);
+	stage_energize(session, "hook", 0);
+	stage_step(session, 120);
+	assert_true(cau_session_vapour(session) == 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 static void threads_and_a_restore_change_no_bit(void **state)
 {
 	(void)state;
@@ -510,6 +533,7 @@ int main(void)
 		cmocka_unit_test(lips_move_with_what_is_left),
 		cmocka_unit_test(one_watt_holds_the_needle_up),
 		cmocka_unit_test(off_ends_the_power_and_not_the_heat),
+		cmocka_unit_test(vapour_adds_up_to_what_has_boiled),
 		cmocka_unit_test(threads_and_a_restore_change_no_bit),
 		cmocka_unit_test(heat_goes_on_beyond_the_tool),
 		cmocka_unit_test(soft_coagulation_heats_and_parts_nothing),

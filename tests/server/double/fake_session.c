@@ -596,6 +596,18 @@ double cau_session_coagulated(const cau_session *s)
 	return 0;
 }
 
+double cau_session_vaporised(const cau_session *s)
+{
+	(void)s;
+	return 0;
+}
+
+double cau_session_vapour(const cau_session *s)
+{
+	(void)s;
+	return 0;
+}
+
 void cau_session_read_ledger(const cau_session *s, cau_energy_ledger *ledger)
 {
 	(void)s;

@@ -133,10 +133,17 @@ static void ticks_tell_the_ledger(void **state)
 	assert_true(in > 1);
 	assert_true(fabs(in - out) < 1e-6 * in);
 	double watts = 0, ohm = 0; // in some ticks nothing is within reach
+	double vapour_kg = 0;
 	for (const char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
 		watts = fmax(watts, cell_of(line, column_of(text, "needle_delivered_w")));
 		ohm = fmax(ohm, cell_of(line, column_of(text, "needle_load_ohm")));
+		if (line <= last)
+			vapour_kg += cell_of(line, column_of(text, "vapour_kg_s")) / 60;
 	}
+	// By the enthalpy of evaporation, and the warmth of water between 37 and 100 degC.
+	double boiled_j = cell_of(last, column_of(text, "boiled_j"));
+	assert_true(boiled_j > 0 &&
+	            fabs(vapour_kg * (2.257e6 + 4186 * 63) - boiled_j) < 1e-6 * boiled_j);
 	assert_true(watts > 10 && watts <= 30);
 	assert_true(ohm > 100);
 	free(text);

@@ -460,6 +460,8 @@ export interface ObservedEnergy {
   shed_j: number;
   /** volume of the tissue that is there and dead by heat (0 to 1000000000 m^3) */
   coagulated_m3: number;
+  /** water that boiled off in the last tick (0 to 1000000 kg/s) */
+  vapour_kg_s: number;
 }
 
 /** the ticks are made, and this is what was asked for */
