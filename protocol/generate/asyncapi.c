@@ -137,6 +137,29 @@ static void write_required(cau_json_writer *writer, const type *of)
 	cau_json_close(writer);
 }
 
+static void write_needed(cau_json_writer *writer, const char *name)
+{
+	cau_json_open(writer, NULL, '{');
+	cau_json_open(writer, "required", '(');
+	cau_json_string(writer, NULL, name);
+	cau_json_close(writer);
+	cau_json_close(writer);
+}
+
+// A member that is needed unless another is there.
+static void write_alternatives(cau_json_writer *writer, const type *of)
+{
+	for (int i = 0; i < of->property_count; i++) {
+		const property *member = &of->properties[i];
+		if (!member->unless)
+			continue;
+		cau_json_open(writer, "anyOf", '[');
+		write_needed(writer, member->name);
+		write_needed(writer, member->unless);
+		cau_json_close(writer);
+	}
+}
+
 static void write_type(cau_json_writer *writer, const type *of)
 {
 	cau_json_open(writer, of->name, '{');
@@ -151,6 +174,7 @@ static void write_type(cau_json_writer *writer, const type *of)
 	}
 	cau_json_string(writer, "type", "object");
 	write_required(writer, of);
+	write_alternatives(writer, of);
 	if (of->strict)
 		cau_json_bool(writer, "additionalProperties", false);
 	cau_json_open(writer, "properties", '{');

@@ -109,7 +109,10 @@ static void write_type(FILE *out, const type *of)
 	fputs("\n| member | | value | meaning |\n|---|---|---|---|\n", out);
 	for (int i = 0; i < of->property_count; i++) {
 		const property *member = &of->properties[i];
-		fprintf(out, "| `%s` | %s | ", member->name, member->required ? "required" : "");
+		fprintf(out, "| `%s` | %s", member->name, member->required ? "required" : "");
+		if (member->unless)
+			fprintf(out, "required without `%s`", member->unless);
+		fputs(" | ", out);
 		write_value(out, member);
 		fputs(" | ", out);
 		write_meaning(out, member->meaning);

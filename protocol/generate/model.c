@@ -108,6 +108,7 @@ static void add_field(type *to, const cau_field *field, const void *defaults)
 	property *added = add_property(to, field->name, kind_of_field(field), field->meaning);
 	bool whole = field->type == CAU_FIELD_COUNT;
 	added->required = field->required && !field->unless;
+	added->unless = field->unless;
 	added->least = whole ? 0.0 : field->least;
 	added->most = whole ? 9007199254740991.0 : field->most;
 	added->count = field->type == CAU_FIELD_TEXT ? CAU_TEXT_BYTES - 1 : field->count;

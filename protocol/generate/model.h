@@ -25,6 +25,7 @@ typedef struct property {
 	const char *name;
 	property_kind kind;
 	bool required;
+	const char *unless; // with this member it is not needed, and without it is; or NULL
 	double least, most;
 	int32_t count, least_count;
 	const cau_choices *choices;

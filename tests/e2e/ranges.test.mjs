@@ -67,7 +67,7 @@ function filler(name, property) {
 }
 
 function base(schema, session) {
-	const params = Object.fromEntries((schema.required ?? []).map((name) => [name, filler(name, schema.properties[name])]));
+	const params = Object.fromEntries([...(schema.required ?? []), ...(schema.anyOf?.[0].required ?? [])].map((name) => [name, filler(name, schema.properties[name])]));
 	return schema.properties.session ? { ...params, session } : params;
 }
 

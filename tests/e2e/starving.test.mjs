@@ -61,7 +61,8 @@ function paramsOf(method) {
 	const named = ({ $ref }) => schemas[$ref.split('/').at(-1)];
 	const params = messages[method].payload.properties.params;
 	const whole = params ? named(params) : {};
-	const { properties = {}, required = [] } = whole.oneOf ? named(whole.oneOf[0]) : whole;
+	const { properties = {}, required: always = [], anyOf = [] } = whole.oneOf ? named(whole.oneOf[0]) : whole;
+	const required = [...always, ...(anyOf[0]?.required ?? [])];
 	const wanted = Object.keys(properties).filter((name) => required.includes(name) || name === 'session');
 	return Object.fromEntries(wanted.map((name) => [name, filler(name, properties[name])]));
 }
