@@ -11,16 +11,22 @@ from __future__ import annotations
 
 import json
 from collections import OrderedDict
-from typing import Any, Mapping
-
-import numpy as np
-import numpy.typing as npt
+from typing import Any, Mapping, Sequence
 
 from cautery.environments import part_band
-from cautery.environments.tissue import Seen
+from cautery.environments.tissue import Seen, SeenTool, SeenVessel, ToolCommand
 
-from .session import Session
+from .session import Session, Tool, Vessel
 
+
+def _seen_tool(tool: Tool) -> SeenTool:
+    return SeenTool(tool.position_m, tool.jaw, tool.energized, tool.grasped_vertices, tool.force_n,
+                    tool.tip_temperature_c, tool.power_w, tool.load_ohm)
+
+
+def _seen_vessel(vessel: Vessel) -> SeenVessel:
+    return SeenVessel(vessel.parted, vessel.pierced, vessel.shut, vessel.sealed, vessel.bleeds, vessel.bleeding_m3_s,
+                      vessel.shed_m3, vessel.burst_pa)
 
 
 class CoreTissue:
@@ -35,9 +41,17 @@ class CoreTissue:
         self._kept, self._instruction_set = kept, instruction_set
         self._sessions: OrderedDict[str, tuple[Session, bytes]] = OrderedDict()
         self._session: Session | None = None
-        self._energized = False
+        self._done: dict[str, ToolCommand] = {}
+        self._scalars: Sequence[str] = ()
 
-    def begin(self, scene: Mapping[str, Any]) -> None:
+    @property
+    def session(self) -> Session:
+        """The session of the present episode."""
+        if self._session is None:
+            raise ValueError("there is no session: call begin")
+        return self._session
+
+    def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
         """Builds the scene, or restores its beginning."""
         text = json.dumps(scene, sort_keys=True)
         if text in self._sessions:
@@ -49,19 +63,27 @@ class CoreTissue:
         self._sessions.move_to_end(text)
         while len(self._sessions) > self._kept:
             self._sessions.popitem(last=False)[1][0].close()
-        self._session, self._tool, self._energized = session, scene["tools"][0]["name"], False
+        self._session, self._done, self._scalars = session, {}, scalars
         self.faces, self.face_layers, self.rest = session.faces, session.face_layers, session.rest
 
-    def step(self, tip_m: npt.NDArray[np.float64], energized: bool, ticks: int) -> Seen:
-        """The command acts at the first of the ticks."""
-        if self._session is None:
-            raise ValueError("there is no session: call begin")
-        self._session.move_tool(self._tool, tip_m)
-        if energized != self._energized:
-            self._session.energize(self._tool, energized)
-            self._energized = energized
-        tick = self._session.step(ticks)
-        return Seen(tick, self._session.positions, self._session.removed, self._session.scalar("exposure").astype(float))
+    def step(self, commands: Sequence[ToolCommand], ticks: int) -> Seen:
+        """The commands act at the first of the ticks."""
+        now = self.session
+        for wanted in commands:
+            self._command(now, wanted)
+        tick = now.step(ticks)
+        return Seen(tick, now.positions, now.removed, {name: now.scalar(name).astype(float) for name in self._scalars},
+                    {name: _seen_tool(tool) for name, tool in now.tools.items()},
+                    {name: _seen_vessel(vessel) for name, vessel in now.vessels.items()})
+
+    def _command(self, session: Session, wanted: ToolCommand) -> None:
+        done = self._done.get(wanted.tool)
+        session.move_tool(wanted.tool, wanted.position_m, wanted.rotation, wanted.jaw)
+        if wanted.energized != (done is not None and done.energized):
+            session.energize(wanted.tool, wanted.energized)
+        if wanted.grasping != (done is not None and done.grasping):
+            (session.grasp if wanted.grasping else session.release)(wanted.tool)
+        self._done[wanted.tool] = wanted
 
     def close(self) -> None:
         """Ends all sessions."""
@@ -71,14 +93,15 @@ class CoreTissue:
         self._session = None
 
 
-class PartBand(part_band.PartBand):
-    """`cautery.environments.PartBand` without a daemon, and with equal episodes.
-
-    With `tissue_count`, at most `kept` of whose tissues are kept, a reset restores a snapshot.
-    """
+class _InProcess:
+    """A task without a daemon. With `tissue_count` of at most `kept`, a reset restores a snapshot of a tissue."""
 
     def __init__(self, *, render_mode: str | None = None, tissue_count: int | None = None, kept: int = 4,
                  instruction_set: str | None = None, **how: Any) -> None:
         if tissue_count is not None:
             how["tissue_count"] = tissue_count
         super().__init__(render_mode=render_mode, tissue=CoreTissue(kept, instruction_set=instruction_set), **how)
+
+
+class PartBand(_InProcess, part_band.PartBand):
+    """`cautery.environments.PartBand` without a daemon, and with equal episodes."""

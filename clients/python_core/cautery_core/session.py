@@ -55,6 +55,8 @@ class Tool:
     raw_torque_nm: Floats  # (3,)
     tip_temperature_c: float
     energy_j: float  # taken up by tissue
+    power_w: float  # with energy `tissue`: given to tissue in the last step
+    load_ohm: float  # that its generator finds; 0: no current flows
     slips: int  # times that it fell too far behind its commanded pose
     sizes: Mapping[str, float]  # the members of a scene's tool, temperature_c among them
 
@@ -103,7 +105,8 @@ def _tool(state: layout.ToolState) -> Tool:
         grasped_vertices=state.grasped_vertices, contact_vertices=state.contact_vertices,
         force_n=np.array(state.force_n), torque_nm=np.array(state.torque_nm),
         raw_force_n=np.array(state.raw_force_n), raw_torque_nm=np.array(state.raw_torque_nm),
-        tip_temperature_c=state.tip_temperature_c, energy_j=state.energy_j, slips=state.slips,
+        tip_temperature_c=state.tip_temperature_c, energy_j=state.energy_j, power_w=state.delivered_w,
+        load_ohm=state.load_ohm, slips=state.slips,
         sizes=_sizes(state.definition))
 
 

@@ -113,11 +113,11 @@ class Task(unittest.TestCase):
 
     def test_what_a_closed_task_is_asked_for_is_refused(self):
         tissue = CoreTissue()
-        tissue.begin(cautery.environments.part_band.scene(1))
+        tissue.begin(cautery.environments.part_band.scene(1), ("exposure",))
         tissue.close()
         tissue.close()
         with self.assertRaises(ValueError):
-            tissue.step(np.zeros(3), False, 1)
+            tissue.step([], 1)
         for how in ({"tissue_count": 0}, {"kept": 0}, {"render_mode": "human"}):
             with self.assertRaises(ValueError):
                 PartBand(**how)

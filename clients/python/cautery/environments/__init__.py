@@ -12,6 +12,8 @@ from .check import check_environment
 from .check_vector import check_vector_environment
 from .part_band import PartBand
 from .spaces import Box
+from .task import Task
 from .vector import AutoresetMode, VectorEnvironment
 
-__all__ = ["AutoresetMode", "Box", "PartBand", "VectorEnvironment", "check_environment", "check_vector_environment"]
+__all__ = ["AutoresetMode", "Box", "PartBand", "Task", "VectorEnvironment",
+           "check_environment", "check_vector_environment"]

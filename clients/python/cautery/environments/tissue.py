@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
-from typing import Any, Mapping, Protocol
+from typing import Any, Mapping, Protocol, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -13,41 +13,95 @@ import numpy.typing as npt
 from ..client import Client
 from ..errors import Error, RequestError
 from ..local import LocalDaemon
-from ..messages import AdvanceCommand
+from ..messages import AdvanceCommand, ObservedTool, ObservedVessel
 from ..session import Session
 
+Floats = npt.NDArray[np.float64]
+
 _REST = (1.0, 0.0, 0.0, 0.0)
-_CHANNELS: list[Any] = ["positions", "mask", "exposure", "tools"]
+_CHANNELS: list[Any] = ["positions", "mask", "tools", "vessels"]
 # Settings of the task's own daemon. It has one client, so its quotas have no use.
 _OWN = {"quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000, "quota_admin": 1000000,
         "quota_all": 1000000}
 
 
 @dataclass(frozen=True)
+class ToolCommand:
+    """What a tool does in a step. Rotation: w, x, y, z; jaw: 0 closed to 1 open; grasping: whether its jaws hold."""
+
+    tool: str
+    position_m: Floats  # (3,), of the tip
+    rotation: tuple[float, float, float, float] = _REST
+    jaw: float = 0.0
+    energized: bool = False
+    grasping: bool = False
+
+
+@dataclass(frozen=True)
+class SeenTool:
+    """A tool after a step. `power_w` and `load_ohm` are 0 in scenes with energy `paper`."""
+
+    position_m: Floats  # (3,), of the tip: tissue can stop the tool
+    jaw: float  # 0 closed to 1 open
+    energized: bool
+    grasped_vertices: int  # that its jaws hold
+    force_n: Floats  # (3,), of the tissue on the tool, filtered
+    tip_temperature_c: float
+    power_w: float  # given to tissue in the last tick
+    load_ohm: float  # that the generator finds; 0: no current flows
+
+
+@dataclass(frozen=True)
+class SeenVessel:
+    """A blood vessel after a step."""
+
+    parted: bool
+    pierced: bool  # its wall has a hole
+    shut: bool  # pressed so flat somewhere that nothing flows
+    sealed: bool  # a seal withstands the pressure of its blood
+    bleeds: bool
+    bleeding_m3_s: float  # blood that left it in the last tick, by time
+    shed_m3: float  # blood that has left it since the beginning
+    burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
+
+
+@dataclass(frozen=True)
 class Seen:
-    """The tissue after a step. V vertices, F faces."""
+    """The tissue after a step. V vertices, F faces. Tools and vessels by name."""
 
     tick: int
-    positions: npt.NDArray[np.float64]  # (V, 3), m
+    positions: Floats  # (V, 3), m
     removed: npt.NDArray[np.bool_]  # (F,)
-    exposure: npt.NDArray[np.float64]  # (V,), 0 to 1
+    scalars: Mapping[str, Floats]  # (V,) each, by channel: those that the task has asked for
+    tools: Mapping[str, SeenTool]
+    vessels: Mapping[str, SeenVessel]
 
 
 class Tissue(Protocol):
-    """A session of one tool, the first of its scene. `begin` comes first, and again for each episode."""
+    """A session of a scene. `begin` comes first, and again for each episode."""
 
     faces: npt.NDArray[np.int32]  # (F, 3)
     face_layers: npt.NDArray[np.int32]  # (F,)
-    rest: npt.NDArray[np.float64]  # (V, 3), m
+    rest: Floats  # (V, 3), m
 
-    def begin(self, scene: Mapping[str, Any]) -> None:
-        """Begins at tick 0 of a scene, energy off."""
+    def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
+        """Begins at tick 0 of a scene, energy off and nothing grasped. `scalars`: channels that each step shows."""
 
-    def step(self, tip_m: npt.NDArray[np.float64], energized: bool, ticks: int) -> Seen:
-        """Commands the tool's place and energy, and goes on by so many ticks."""
+    def step(self, commands: Sequence[ToolCommand], ticks: int) -> Seen:
+        """Commands tools, and goes on by so many ticks. A tool without a command does what it did."""
 
     def close(self) -> None:
         """Ends it."""
+
+
+def _seen_tool(tool: ObservedTool) -> SeenTool:
+    return SeenTool(np.asarray(tool["position_m"], float), tool["jaw"], tool["energized"], tool["grasped_vertices"],
+                    np.asarray(tool["force_n"], float), tool["tip_temperature_c"], tool["power_w"], tool["load_ohm"])
+
+
+def _seen_vessel(vessel: ObservedVessel) -> SeenVessel:
+    return SeenVessel(vessel["parted"], vessel["pierced"], vessel["shut"], vessel["sealed"], vessel["bleeds"],
+                      vessel["bleeding_m3_s"], vessel["shed_m3"], vessel["burst_pa"])
 
 
 class RemoteTissue:
@@ -64,36 +118,49 @@ class RemoteTissue:
             self._things.close()
             raise
 
-    def begin(self, scene: Mapping[str, Any]) -> None:
+    def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
         """Makes another session in the place of the last one."""
         if self._session:
             self._client.session_destroy(session=self._session.name)
         made = self._client.session_create(definition=scene, paused=True, ephemeral=True)  # type: ignore[arg-type]
-        self._session, self._tool = Session(self._client, made["summary"]), scene["tools"][0]["name"]
+        self._session = Session(self._client, made["summary"])
         stream = self._client.join(self._session.name)  # for the faces, which stay as they are
         self._client.session_leave(session=self._session.name)
-        self._client.tool_take_over(session=self._session.name, tool=self._tool)
-        self._energized = False
+        self._done: dict[str, ToolCommand] = {}
+        self._channels = [*_CHANNELS, *scalars]
+        for tool in scene["tools"]:
+            self._client.tool_take_over(session=self._session.name, tool=tool["name"])
         self.faces, self.face_layers, self.rest = stream.faces, stream.face_layers, stream.rest
 
-    def step(self, tip_m: npt.NDArray[np.float64], energized: bool, ticks: int) -> Seen:
+    def _commands(self, wanted: ToolCommand) -> list[AdvanceCommand]:
+        done = self._done.get(wanted.tool)
+        commands: list[AdvanceCommand] = [{
+            "method": "tool.move", "tool": wanted.tool, "position_m": wanted.position_m.tolist(),
+            "rotation": wanted.rotation, "jaw": wanted.jaw}]
+        if wanted.energized != (done is not None and done.energized):
+            commands.append({"method": "tool.energize", "tool": wanted.tool, "energized": wanted.energized})
+        if wanted.grasping != (done is not None and done.grasping):
+            commands.append({"method": "tool.grasp" if wanted.grasping else "tool.release", "tool": wanted.tool})
+        return commands
+
+    def step(self, commands: Sequence[ToolCommand], ticks: int) -> Seen:
         """Advances the session in lock-step, and observes it."""
         assert self._session
-        commands: list[AdvanceCommand] = [
-            {"method": "tool.move", "tool": self._tool, "position_m": tip_m.tolist(), "rotation": _REST}]
-        if energized != self._energized:
-            commands.append({"method": "tool.energize", "tool": self._tool, "energized": energized})
         try:
-            state = self._session.advance(ticks, commands, {"channels": _CHANNELS})
+            state = self._session.advance(ticks, [one for wanted in commands for one in self._commands(wanted)],
+                                          {"channels": self._channels})
         except RequestError as error:
             if error.status == "faulted":
                 raise Error("the tissue's motion became numerically unsound: reset") from error
             raise
-        self._energized = energized
-        if state.tools[self._tool]["energized"] != energized:
-            raise Error("energy went off by itself: somebody else uses this session")
+        self._done.update({wanted.tool: wanted for wanted in commands})
+        for name, done in self._done.items():
+            if state.tools[name]["energized"] != done.energized:
+                raise Error("energy went off by itself: somebody else uses this session")
         assert state.positions is not None and state.removed is not None
-        return Seen(state.tick, state.positions, state.removed, state.scalars["exposure"])
+        return Seen(state.tick, state.positions, state.removed, state.scalars,
+                    {name: _seen_tool(tool) for name, tool in state.tools.items()},
+                    {name: _seen_vessel(vessel) for name, vessel in state.vessels.items()})
 
     def close(self) -> None:
         """Ends the session, and the daemon if it is the task's own."""
