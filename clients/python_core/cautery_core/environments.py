@@ -13,7 +13,7 @@ import json
 from collections import OrderedDict
 from typing import Any, Mapping, Sequence
 
-from cautery.environments import part_band
+from cautery.environments import clear_plane, part_band, seal_and_divide
 from cautery.environments.tissue import Seen, SeenTool, SeenVessel, ToolCommand
 
 from .session import Session, Tool, Vessel
@@ -105,3 +105,11 @@ class _InProcess:
 
 class PartBand(_InProcess, part_band.PartBand):
     """`cautery.environments.PartBand` without a daemon, and with equal episodes."""
+
+
+class ClearPlane(_InProcess, clear_plane.ClearPlane):
+    """`cautery.environments.ClearPlane` without a daemon, and with equal episodes."""
+
+
+class SealAndDivide(_InProcess, seal_and_divide.SealAndDivide):
+    """`cautery.environments.SealAndDivide` without a daemon, and with equal episodes."""

@@ -10,10 +10,12 @@
 
 from .check import check_environment
 from .check_vector import check_vector_environment
+from .clear_plane import ClearPlane
 from .part_band import PartBand
+from .seal_and_divide import SealAndDivide
 from .spaces import Box
 from .task import Task
 from .vector import AutoresetMode, VectorEnvironment
 
-__all__ = ["AutoresetMode", "Box", "PartBand", "Task", "VectorEnvironment",
+__all__ = ["AutoresetMode", "Box", "ClearPlane", "PartBand", "SealAndDivide", "Task", "VectorEnvironment",
            "check_environment", "check_vector_environment"]

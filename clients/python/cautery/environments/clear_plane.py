@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An areolar plane: strands join two sheets. Part all strands under traction, and burn neither sheet."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from .spaces import Box
+from .task import Observation, Picture, Task
+from .tissue import Seen, ToolCommand
+
+LENGTH_M, WIDTH_M = 0.014, 0.010  # of the plane, along x and y
+TAB_M = 0.004  # of the upper sheet, in front of the plane, where the grasper holds it
+STEP_M = 0.001  # from strand to strand, along x and y
+GAP_M = 0.003  # from sheet to sheet: a strand's length
+HOT_RADIUS_M = 0.0004  # so thin that the wire passes between the sheets a millimetre from both
+FOOT_M = 0.004  # of the hook, along x: four strands beside each other
+TEMPERATURE_C = 700
+LEAST_M = np.array([-0.008, -0.012, -GAP_M])  # that the tip reaches
+MOST_M = np.array([0.008, 0.006, 0.003])
+MOVE_M = 0.0005  # of the tip in a step, along each axis, and of the grasper, at most
+HEIGHT_MOST_M = 0.01  # of the grasper
+HEIGHT_FIRST_M = 0.004  # the tab stands upright there, and the strands bear nothing yet
+FORCE_MOST_N = 0.8  # that costs nothing: a grasper 6 mm high, where the sheet is out of the way, feels up to 0.76 N
+TICKS = 4  # of the simulation in a step
+STEPS_MOST = 250  # of an episode
+ROWS = 5  # of blocks of strands, along x and along y
+
+_HELD_Y_M = -WIDTH_M / 2 - TAB_M / 2  # where the grasper holds
+_FREE_Y_M = -0.02  # where nothing is
+_APPROACH_TICKS, _GRASP_TICKS, _LIFT_STEPS, _LIFT_TICKS = 10, 15, 10, 2  # of the way to traction, before an episode
+_SIDEWAYS = (0.5 ** 0.5, 0.5 ** 0.5, 0.0, 0.0)  # the shaft comes along y, from the free edge; the foot lies along x
+_FLAT = (0.5, 0.5, 0.5, -0.5)  # as the hook's, and the jaws open along z
+_CLEARED_REWARD, _DONE_REWARD, _BURNT_REWARD, _FORCE_REWARD, _STEP_REWARD = 10.0, 10.0, -0.5, -0.1, -0.005
+
+
+def _sheet(name: str, width_m: float, y_m: float, z_m: float) -> dict[str, Any]:
+    cells = [round(LENGTH_M / STEP_M), round(width_m / STEP_M)]
+    return {"source": "sheet", "name": name, "size_m": [LENGTH_M, width_m], "cells": cells, "translate_m": [0, y_m, z_m]}
+
+
+def _layer(name: str) -> dict[str, Any]:
+    return {"kind": "fascia", "name": name, "mesh": name, "thickness_m": 0.0005, "density_kg_m3": 1100,
+            "limit_stiffness_pa": 1e6, "limit": "range", "strain_min": [-0.1, -0.1], "strain_max": [0.1, 0.1],
+            "shear_max": 0.2, "ignition_c": 120, "ignition_spread_c": 20, "absorption_per_s": 4}
+
+
+def scene(seed: int) -> dict[str, Any]:
+    """The task's scene. `seed`: of which strands and faces are tougher."""
+    # Each strand goes straight down: no other vertex is within its reach. The ends of a strand are further from the
+    # wire than the faces of a cut, so it takes heat up ten times as fast as these.
+    strands = {"kind": "links", "name": "strands", "of": "upper", "to": "lower", "young_modulus_pa": 1e5,
+               "area_m2": 1e-7, "reach_m": 1.02 * GAP_M, "per_vertex": 1, "ignition_c": 120, "ignition_spread_c": 20,
+               "absorption_per_s": 40}
+    hook = {"name": "hook", "shape": "hook", "hot_radius_m": HOT_RADIUS_M, "tip_length_m": FOOT_M,
+            "shaft_radius_m": HOT_RADIUS_M, "temperature_c": TEMPERATURE_C, "grid_step_m": HOT_RADIUS_M,
+            "position_m": [0, _FREE_Y_M, -GAP_M / 2], "rotation": list(_SIDEWAYS)}
+    grasper = {"name": "grasper", "shape": "grasper", "tip_length_m": 0.008, "shaft_radius_m": 0.003,
+               "close_force_n": 4, "position_m": [0, _FREE_Y_M, 0], "rotation": list(_FLAT)}
+    far = {"kind": "box", "layer": "upper", "least_m": [-1, WIDTH_M / 2 - 1e-4, -1], "most_m": [1, 1, 1]}
+    bed = {"kind": "box", "layer": "lower", "least_m": [-1, -1, -1], "most_m": [1, 1, 1]}
+    return {"name": "clear-plane", "description": "Two sheets, joined by strands.", "seed": seed, "parting": "elements",
+            "meshes": [_sheet("upper", WIDTH_M + TAB_M, -TAB_M / 2, 0), _sheet("lower", WIDTH_M, 0, -GAP_M)],
+            "layers": [_layer("upper"), _layer("lower"), strands], "pins": [bed, far], "tools": [hook, grasper]}
+
+
+class ClearPlane(Task):
+    """Part all strands, and no face of either sheet. `cautery.environments.Task` has the parameters.
+
+    A grasper holds the upper sheet's free edge. Its height is the traction: without it the sheet lies in the hook's way.
+    The hook lies between the sheets, its foot along x.
+
+    An action has five numbers from -1 to 1: how the hook's tip moves along x, y and z, and the grasper up (1 is 0.5 mm),
+    and the energy, which is on above 0. An observation: the tip's place (3, from -1 to 1 in its reach), whether energy is
+    on, the grasper's height (in shares of 10 mm), its force (1: all that costs nothing; at most 2, shown halved), whether
+    it holds, and of 5 x 5 blocks of strands, x slowest, the share that is parted (25) and how far the upper sheet is from
+    the lower one (25, in shares of 10 mm).
+
+    Rewards: 10 times the share of strands that part, 10 once all have, -0.5 for each face that parts, -0.1 for each step
+    at twice the force that costs nothing (in proportion to what is above it), -0.005 a step. It is terminated once all
+    strands or a face have parted, and truncated after 250 steps.
+
+    Streams do not show strands. A strand has parted when both vertices that it joined count a parted edge (the channel
+    `charring`): while no face has parted, no other edge has. `reset(options={"tip_m": [x, y, z]})` says where the tip
+    begins. `render()` returns the plane from above, (110, 150, 3): strands that hold, and the wire.
+    """
+
+    steps_usual, ticks, scalars = STEPS_MOST, TICKS, ("charring",)
+
+    def _spaces(self) -> tuple[Box, Box]:
+        shares = 4 + 2 * ROWS ** 2
+        return Box(-np.ones(5), np.ones(5)), Box(np.r_[-np.ones(3), np.zeros(shares)], np.ones(3 + shares))
+
+    # ---- an episode
+    def _begin(self, options: Mapping[str, Any]) -> None:
+        place = self._random.uniform((-0.006, -0.011, -0.002), (0.006, -0.008, -0.001))
+        toughness = self._draw_tissue()
+        if "tip_m" in options:
+            place = np.asarray(options["tip_m"], float)
+        self._tissue.begin(scene(toughness), self.scalars)
+        self._take_strands()
+        self._tip, self._energy = place, False
+        self._take_hold()
+
+    def _take_strands(self) -> None:
+        """The ends of each strand, upper and lower, and its block."""
+        # In whole steps from strand to strand: a daemon sends places at rest as floats, and they would be rounded otherwise.
+        corner = (-LENGTH_M / 2, -WIDTH_M / 2)
+        steps = np.round((self._tissue.rest[:, :2] - corner) / STEP_M).astype(int)
+        upper, lower = (np.unique(self._tissue.faces[self._faces_of(layer)]) for layer in (0, 1))
+        below = {tuple(steps[vertex]): vertex for vertex in lower}
+        self._ends = np.array([(vertex, below[tuple(steps[vertex])]) for vertex in upper if tuple(steps[vertex]) in below])
+        along, across = (steps[self._ends[:, 0]] * ROWS // (steps[lower].max(axis=0) + 1)).T
+        self._block = along * ROWS + across
+        self._in_block = np.bincount(self._block, minlength=ROWS ** 2)
+
+    def _take_hold(self) -> None:
+        """The grasper closes on the tab, and lifts it."""
+        place = np.array([0, _HELD_Y_M, 0])
+        hook = ToolCommand("hook", self._tip, _SIDEWAYS)
+        self._go([hook, ToolCommand("grasper", place, _FLAT, jaw=1.0)], _APPROACH_TICKS)
+        self._go([ToolCommand("grasper", place, _FLAT, grasping=True)], _GRASP_TICKS)
+        for k in range(_LIFT_STEPS):
+            self._height = HEIGHT_FIRST_M * (k + 1) / _LIFT_STEPS
+            self._go(self._commands(), _LIFT_TICKS)
+
+    def _commands(self) -> list[ToolCommand]:
+        held = np.array([0, _HELD_Y_M, self._height])
+        return [ToolCommand("hook", self._tip, _SIDEWAYS, energized=self._energy),
+                ToolCommand("grasper", held, _FLAT, grasping=True)]
+
+    def _act(self, action: npt.NDArray[np.float64]) -> list[ToolCommand]:
+        self._tip = (self._tip + MOVE_M * action[:3]).clip(LEAST_M, MOST_M)
+        self._height = float(np.clip(self._height + MOVE_M * action[3], 0, HEIGHT_MOST_M))
+        self._energy = bool(action[4] > 0)
+        return self._commands()
+
+    def _judge(self, before: Seen) -> tuple[float, bool]:
+        parted, burnt = self._parted(self._state), int(self._state.removed.sum())
+        gone = (parted.sum() - self._parted(before).sum()) / len(parted)
+        cleared = bool(parted.all())
+        above = max(self._force_n() / FORCE_MOST_N - 1, 0)
+        reward = (_CLEARED_REWARD * gone + _DONE_REWARD * (cleared and not burnt) + _FORCE_REWARD * above
+                  + _BURNT_REWARD * (burnt - int(before.removed.sum())) + _STEP_REWARD)
+        return float(reward), cleared or burnt > 0
+
+    # ---- what is seen
+    def _parted(self, state: Seen) -> npt.NDArray[np.bool_]:
+        """Which strands have parted."""
+        return (state.scalars["charring"][self._ends] > 0).all(axis=1)
+
+    def _force_n(self) -> float:
+        return float(np.linalg.norm(self._state.tools["grasper"].force_n))
+
+    def _of_blocks(self, of_strands: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+        """The mean in each block."""
+        return np.bincount(self._block, of_strands, ROWS ** 2) / self._in_block
+
+    def _heights_m(self) -> npt.NDArray[np.float64]:
+        """From where each strand is joined to the lower sheet up to where it is, or was, to the upper one."""
+        return (self._state.positions[self._ends[:, 0]] - self._state.positions[self._ends[:, 1]])[:, 2]
+
+    def _observe(self) -> Observation:
+        tip = 2 * (self._tip - LEAST_M) / (MOST_M - LEAST_M) - 1
+        holds = self._state.tools["grasper"].grasped_vertices > 0
+        seen = np.r_[tip, self._energy, self._height / HEIGHT_MOST_M, self._force_n() / FORCE_MOST_N / 2, holds,
+                     self._of_blocks(self._parted(self._state)), (self._of_blocks(self._heights_m()) / 0.01).clip(0)]
+        return seen.clip(-1, 1).astype(np.float32)
+
+    def _info(self) -> dict[str, Any]:
+        upper, lower = (int(self._state.removed[self._faces_of(layer)].sum()) for layer in (0, 1))
+        parted = self._parted(self._state)
+        return {"tick": self._state.tick, "strands": len(parted), "strands_parted": int(parted.sum()),
+                "cleared": bool(parted.all()), "faces_burnt_above": upper, "faces_burnt_below": lower,
+                "force_n": self._force_n(), "tip_m": self._tip.copy()}
+
+    def _draw(self) -> Picture:
+        picture = np.full((110, 150, 3), (220, 150, 130), np.uint8)
+
+        def place(x: float, y: float) -> tuple[int, int]:
+            return int((x / LENGTH_M + 0.5) * 140) + 5, int((y / WIDTH_M + 0.5) * 100) + 5
+        for (x, y, _), parted in zip(self._tissue.rest[self._ends[:, 0]], self._parted(self._state)):
+            column, row = place(x, y)
+            picture[row - 2:row + 3, column - 2:column + 3] = (150, 90, 80) if parted else (255, 245, 235)
+        x, y, _ = self._tip
+        left, row = place(x - FOOT_M / 2, y)
+        right, _ = place(x + FOOT_M / 2, y)
+        picture[max(row - 1, 0):max(row + 2, 0), max(left, 0):max(right, 0)] = (220, 60, 0)
+        return picture
