@@ -23,6 +23,9 @@ static const double reach_m = 3e-3;       // of the current's cells around an el
 static const double residual_most = 1e-3; // of the potential
 static const double spark_v = 200;        // peak, from which a metal electrode sparks to tissue
 static const double spark_v_m = 3e6;      // breakdown of air
+// A generator finds no load below this conductance: 10 kV, the most that one has, would give 0.1
+// mW.
+static const double least_conductance_s = 1e-12;
 // An arc enters tissue through a spot, of about this radius (no measurement was found). Most of the
 // resistance is there, and most of the heat.
 static const double spot_m = 1e-4;
@@ -391,7 +394,8 @@ static void give_power(cau_session *session, cau_tool *tool)
 	double far_w = current->far_w * output.voltage_v * output.voltage_v;
 	bioheat->ledger.far_j += far_w * session->solver.step_s;
 	tool->state.delivered_w = output.power_w - far_w;
-	tool->state.load_ohm = current->conductance_s > 0 ? 1 / current->conductance_s : 0;
+	double conductance_s = current->conductance_s;
+	tool->state.load_ohm = conductance_s > least_conductance_s ? 1 / conductance_s : 0;
 }
 
 static void follow_load(cau_tool *tool)

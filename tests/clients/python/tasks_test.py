@@ -46,6 +46,12 @@ class Tasks(unittest.TestCase):
         with self.assertRaises(cautery.Error):
             self.SealAndDivide.step(np.zeros(7))
 
+    def test_a_needle_that_all_but_lost_its_tissue_has_no_load(self):
+        """In this episode it is joined to it by 1e-34 S for a step, which is no number for the wire."""
+        _, info, steps = scripted_policies.play(self.SealAndDivide, 7, scripted_policies.divide)
+        self.assertGreater(info["shed_m3"], 1e-6)
+        self.assertTrue((steps[:, 12] <= 1).all())
+
     def test_actions_that_are_none_are_refused(self):
         for task, count in ((self.ClearPlane, 5), (self.SealAndDivide, 7)):
             task.reset(seed=4)
