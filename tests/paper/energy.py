@@ -38,8 +38,8 @@ LIVER = {
 }
 
 NOT_BY_NUMBERS = [
-    ("1: regime at 10, 25 and 50 W in liver", "in part", "the abstract does not name the blade's speed or size. Of the speeds above, its regimes come out with the flat blade at 20 mm/s only. Slower, 25 W cuts and leaves little coagulated. A hook coagulates at 10 W, too"),
-    ("2: width of coagulation from 25 to 50 W", "no", "elements of 2 mm part whole and take what coagulated along, so the width that is left says little"),
+    ("1: regime at 10, 25 and 50 W in liver", "in part", "the abstract does not name the blade's speed or size. With the hook at 10 mm/s, 25 W coagulates and cuts only where it dwelled, and 50 W cuts and coagulates, as published. At 10 W it coagulates, where the published blade did nothing. Slower, 25 W cuts"),
+    ("2: width of coagulation from 25 to 50 W", "no", "where 25 W coagulates without a cut there is no width beside a cut to compare with that of 50 W"),
     ("3: heat capacity near 100 degC", "no", "with boiling at one temperature it depends on the window, which the abstract does not name"),
     ("17: ultrasonic seals fail above 4.5 mm", "no", "a seal's strength is that of a thin wall, by the ratio of wall and radius, so it has no such limit"),
     ("24: sparks from about 200 V", "yes", "by construction: see the voltages above"),
