@@ -12,7 +12,8 @@
 #include "session/snapshot_bytes.h"
 
 enum {
-	// 15: the elements that cells move with, a tool's blade and load_rise_off. No release wrote earlier
+	// 15: the elements that cells move with, a tool's blade and load_rise_off. No release wrote
+	// earlier
 	// versions, and none is read.
 	CAU_SNAPSHOT_VERSION = 15,
 	CAU_SNAPSHOT_HASH_BYTES = 8, // the last
