@@ -260,7 +260,7 @@ static const struct {
 	{"turn", true, act_turn},   {"jaw", true, act_jaw},
 	{"on", true, act_on},       {"off", false, act_off},
 	{"grasp", true, act_grasp}, {"release", true, act_release},
-	{"wait", false, act_wait},  {"configure", false, act_configure},
+	{"wait", false, act_wait},  {"configure", true, act_configure},
 };
 
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };

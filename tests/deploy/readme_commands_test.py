@@ -270,6 +270,7 @@ class Commands(unittest.TestCase):
         def drive():
             self.run_it("cautery-sim --scene layers --print-cut | cautery run d1-demo -", r"\d", at, until=True)
             self.run_it("cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off", "", at)
+            self.run_it("cautery tool d1-demo hook configure --instrument monopolar-hook --mode blend --power-w 25", "", at)
 
         def look():
             self.run_it("cautery watch d1-demo", r"tick \d+", at, until=True)
