@@ -15,7 +15,9 @@ double energy_guard_need(const energy_guard_def *def, double force_n, double spe
 {
 	double need = 0, h = def->period_s, speed = speed_m_s;
 	double acceleration = (force_n + def->hand_n) / def->mass_kg;
-	for (double force = force_n; force > 0; force -= def->slew_n) {
+	int periods = (int)ceil(force_n / def->slew_n);
+	for (int k = 0; k < periods; k++) {
+		double force = force_n - k * def->slew_n;
 		need += force * (speed + acceleration * h / 2) * h;
 		speed += acceleration * h;
 	}
