@@ -147,11 +147,15 @@ cut_found cut_run(const cut_def *def, cau_bioheat_material tissue)
 {
 	cut_state cut;
 	open_cut(&cut, def, tissue);
-	double seconds = def->way_mm / def->speed_mm_s;
-	for (double at_s = 0; at_s < seconds; at_s += def->step_s)
+	double seconds = def->way_mm / def->speed_mm_s, at_s = 0, left = def->cool_s;
+	while (at_s < seconds) {
 		step(&cut, true, 1e-3 * (margin_mm + at_s * def->speed_mm_s), def->step_s);
-	for (double left = def->cool_s; left > 1e-9 && measured_warm(&cut.cells); left -= def->step_s)
+		at_s += def->step_s;
+	}
+	while (left > 1e-9 && measured_warm(&cut.cells)) {
 		step(&cut, false, 0, fmin(left, def->step_s));
+		left -= def->step_s;
+	}
 	measure(&cut);
 	cut.found.ledger_gap = measured_gap(&cut.cells, &cut.found.came_in_j);
 	cut.found.came_in_j *= HALVES;

@@ -117,15 +117,22 @@ static double dead_cm3(const needle_state *needle)
 	return 1e6 * volume_m3 / needle->share;
 }
 
+static void steps(needle_state *needle, bool powered, double seconds)
+{
+	double left = seconds;
+	while (left > 1e-9) {
+		step(needle, powered, fmin(left, needle->def->step_s));
+		left -= needle->def->step_s;
+	}
+}
+
 needle_found needle_run(const needle_def *def, cau_bioheat_material tissue)
 {
 	needle_state needle;
 	open_needle(&needle, def, tissue);
-	for (double left = def->seconds; left > 1e-9; left -= def->step_s)
-		step(&needle, true, fmin(left, def->step_s));
+	steps(&needle, true, def->seconds);
 	needle.found.temperature_c = at_thermometer(&needle);
-	for (double left = def->cool_s; left > 1e-9; left -= def->step_s)
-		step(&needle, false, fmin(left, def->step_s));
+	steps(&needle, false, def->cool_s);
 	needle.found.dead_cm3 = dead_cm3(&needle);
 	needle.found.ledger_gap = measured_gap(&needle.cells, &needle.found.came_in_j);
 	needle.found.came_in_j /= needle.share;

@@ -198,17 +198,22 @@ static void energize(section_state *section, double seconds)
 
 static void wait(section_state *section, double seconds)
 {
-	for (double left = seconds; left > 1e-9; left -= section->def->step_s)
+	double left = seconds;
+	while (left > 1e-9) {
 		step(section, false, fmin(left, section->def->step_s));
+		left -= section->def->step_s;
+	}
 }
 
 // Until no more tissue dies.
 static void cool(section_state *section)
 {
+	double left = section->def->cool_s;
 	section->closed = false;
-	for (double left = section->def->cool_s; left > 1e-9 && measured_warm(&section->cells);
-	     left -= section->def->step_s)
+	while (left > 1e-9 && measured_warm(&section->cells)) {
 		step(section, false, fmin(left, section->def->step_s));
+		left -= section->def->step_s;
+	}
 }
 
 // From now on the blade is in gas: T - gas falls with exp(-cooling t / capacity).

@@ -32,7 +32,8 @@ static void the_worst_push_gets_the_reserve_at_most(void **state)
 {
 	(void)state;
 	for (int wait = 0; wait < 60; wait++)
-		for (double wanted = 0.1; wanted < 6; wanted *= 2) {
+		for (int doublings = 0; doublings < 6; doublings++) {
+			double wanted = ldexp(0.1, doublings);
 			energy_guard guard = {.def = def};
 			double place[3] = {0}, velocity[3] = {0}, most = 0;
 			for (int step = 0; step < 200; step++) {
