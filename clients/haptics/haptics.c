@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One render: the newest record's linear contact at the device's place, what is left of the jump
-// that the record made, damping of fast motion, fading with the record's age. Then the guard.
+// One render: the newest record's linear contact at the device's place, the rest of the jump that
+// the record made, damping of fast motion, fading with the record's age. Then the guard.
 #include "cautery/haptics.h"
 
 #include <math.h>

@@ -6,9 +6,9 @@
 //
 // A tip is round: with more force it touches more tissue, and its contact is stiffer. After Hertz
 // the force goes with the depth to the power 1.5. So the record's stiffness K at its force F means
-// a depth of 1.5 F / K, and not of F / K. Along F the planes are as soft as that, and what they
-// give is multiplied by the root of its share of F: the force, its slope at the record, and the
-// place where it ends are those of Hertz.
+// a depth of 1.5 F / K, and not of F / K. Along F the planes get that compliance. Their force is
+// multiplied by the root of its share of F. So the force, its slope at the record, and the place
+// where it ends are those of Hertz.
 #include "haptics/local_contact.h"
 
 #include <string.h>

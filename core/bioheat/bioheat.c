@@ -166,7 +166,8 @@ static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *co
 	return cau_bioheat_conductivity(bioheat, contact->cell) * contact->over_length_m;
 }
 
-// Longest part in which no blade passes the mean temperature of the cells that it touches.
+// Longest part in which no blade passes the mean temperature of the cells that it touches and of
+// the shaft that cools it.
 static double longest_of_blades_s(const cau_bioheat *bioheat, const cau_blade *blade,
                                   int32_t blade_count)
 {
@@ -175,10 +176,11 @@ static double longest_of_blades_s(const cau_bioheat *bioheat, const cau_blade *b
 		CAU_ASSERT_INDEX(bioheat->contact[k].blade, blade_count);
 		flow_w_k[bioheat->contact[k].blade] += contact_w_k(bioheat, &bioheat->contact[k]);
 	}
-	for (int32_t b = 0; b < blade_count; b++)
-		if (flow_w_k[b] > 0)
-			longest =
-				fmin(longest, blade[b].heat_capacity_j_k / (flow_w_k[b] + blade[b].cooling_w_k));
+	for (int32_t b = 0; b < blade_count; b++) {
+		double out_w_k = flow_w_k[b] + blade[b].cooling_w_k;
+		if (out_w_k > 0)
+			longest = fmin(longest, blade[b].heat_capacity_j_k / out_w_k);
+	}
 	return longest;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact of each tool, linear about a tick, for those who render force between ticks
-// (cautery/channels.h, cau_tool_contact). It is computed after a step while it is watched, from
-// what the solve of the contact left. It changes no state.
+// The contact of each tool, linear about a tick, for clients that render force between ticks
+// (cautery/channels.h, cau_tool_contact). It is computed after a step while it is watched, from the
+// solved contact constraints. It changes no state.
 //
 // Compliance: a load that is spread over the contact constraints as their reactions are moves its
 // own place by that. The answer is the one of the tissue's elements (solve/tangent.h). The virtual
@@ -32,7 +32,7 @@ void cau_session_watch_contact(cau_session *session, bool watched)
 	cau_contact_watch *watch = session->contact_watch;
 	cau_error error;
 	if (!watched || watch) {
-		if (!watched && watch) // what it has is of another time when it is watched again
+		if (!watched && watch) // its records are too old when contact is watched again
 			memset(watch->record, 0, sizeof watch->record);
 		return;
 	}
@@ -277,7 +277,7 @@ static bool is_finite(const cau_tool_contact *record)
 	return finite;
 }
 
-// Only who and where, and that there is nothing to render.
+// A record with the tool's name and poses that is not valid.
 static void show_nothing(const cau_tool_state *state, cau_tool_contact *record)
 {
 	*record = (cau_tool_contact){.asked_pose = state->asked_pose, .pose = state->pose};

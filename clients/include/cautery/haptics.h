@@ -48,8 +48,8 @@ typedef struct cau_haptics_def {
 	double fade_s;            // age of the last record at which the force begins to fade; 0.05
 	double mass_kg;           // least mass that device and hand have at the tip; 0.05
 	double hand_n;            // force that the hand gives at most; 5
-	double reserve_j;         // energy that it may give beyond what it got; 5e-4
-	double tank_j;            // energy that it keeps at most of what it got; 0.05
+	double reserve_j;         // energy that the device may get beyond the energy it gave; 5e-4
+	double tank_j;            // most of the device's energy that is kept to give back; 0.05
 	double damping_ratio;     // of the device on the contact's spring, above damping_hz; 0.2
 	double damping_hz;        // slower motion is not damped; 6
 	double stiffness_max_n_m; // stiffer contact is rendered with this; 2000
@@ -83,8 +83,8 @@ void cau_haptics_render(cau_haptics *haptics, const cau_haptics_device *device, 
 
 // What the last call of cau_haptics_render found.
 typedef struct cau_haptics_report {
-	double given_j; // energy given to the device since creation, less what it gave; below 0: it
-	                // gave more
+	double given_j; // energy given to the device since creation, minus the energy that the device
+	                // gave
 	double tank_j;  // energy that may be given now
 	double age_s;   // of the newest record
 	bool touching;  // the record's contact pushes

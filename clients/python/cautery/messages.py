@@ -2669,7 +2669,7 @@ class ToolRemove(TypedDict):
 
 
 class ToolConfigure(TypedDict):
-    """replaces shape and sizes; what is absent is the instrument's, or the default"""
+    """replaces shape and sizes; an absent member takes the instrument's value, or the default"""
 
     # its id; that of the connection's URL by default
     session: NotRequired[str]
@@ -3935,7 +3935,7 @@ class Calls:
         instrument: str | None = None,
         mode: str | None = None,
     ) -> CommandResult:
-        """`tool.configure`: replaces shape and sizes; what is absent is the instrument's, or the default
+        """`tool.configure`: replaces shape and sizes; an absent member takes the instrument's value, or the default
 
         session: its id; that of the connection's URL by default
         client_sequence: see session_change (1 to 9007199254740991)

@@ -325,8 +325,8 @@ void cau_session_frame(const cau_session *session, cau_frame *frame);
 void cau_session_set_clock(cau_session *session, double (*now_s)(void));
 // Sets the watched channels (CAU_CHANNEL_* bits of scalars and of tool_contact; other bits are
 // ignored; none by default). Watched scalars that cost work of their own are computed at once, and
-// after each step. The contact of tools is computed after each step that is not at rest. It is not
-// valid before that. No step changes by what is watched.
+// after each step. The contact of tools is computed after each step that is not at rest, and is not
+// valid before. Watching changes no step.
 void cau_session_watch(cau_session *session, uint32_t channels);
 
 // Which elements exist, as bytes 0 or 1, borrowed until the next call that changes the session:

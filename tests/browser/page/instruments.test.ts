@@ -25,7 +25,7 @@ describe('the form of the generator', () => {
   it('offers the instruments, and the modes and powers of the one that is chosen', async () => {
     await form.waitFor();
     expect(await form.locator('select[name=profile] option').count()).toBe(6);
-    expect(await form.getByRole('button', { name: 'Set' }).isDisabled()).toBe(true); // somebody must drive it
+    expect(await form.getByRole('button', { name: 'Set' }).isDisabled()).toBe(true); // the tool has no driver
     await choose('profile', 'ultrasonic-shears');
     expect(await form.locator('select[name=mode] option').allTextContents()).toEqual(['level 1', 'level 2', 'level 3', 'level 4', 'level 5']);
     await choose('profile', 'monopolar-spatula');

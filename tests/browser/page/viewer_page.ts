@@ -133,7 +133,7 @@ export class ViewerPage {
 
   /**
    * Presses on a point of the tissue, which takes a free tool, until the tip is there. A page that stood still for too long
-   * loses its energy, and its tool rises until somebody presses again.
+   * loses its energy, and its tool rises until the next press.
    */
   async grab(point: [number, number, number]): Promise<void> {
     const end = Date.now() + PATIENCE_MS;

@@ -203,6 +203,23 @@ static void a_light_blade_is_stable(void **state)
 	cau_arena_finish(&arena);
 }
 
+// The shaft cools it within less than a step, whether it touches tissue or not.
+static void a_blade_that_cools_fast_is_stable(void **state)
+{
+	(void)state;
+	cau_arena arena = {0};
+	cau_bioheat bar = bar_of(&plain_tissue, 1, SIDE_M, 37, &arena);
+	cau_blade blade = {.temperature_c = 237, .heat_capacity_j_k = 0.01, .cooling_w_k = 1};
+	double before_c = 237;
+	for (int tick = 0; tick < 20; tick++) {
+		run(&bar, &blade, 1.0 / 60);
+		assert_true(blade.temperature_c <= before_c && blade.temperature_c >= 37 - 1e-9);
+		before_c = blade.temperature_c;
+	}
+	assert_near(blade.temperature_c, 37, 1e-6);
+	cau_arena_finish(&arena);
+}
+
 static void damage_follows_arrhenius(void **state)
 {
 	(void)state;
@@ -304,6 +321,7 @@ int main(void)
 		cmocka_unit_test(a_surface_cools_in_gas),
 		cmocka_unit_test(a_blade_cools_and_gives_its_heat),
 		cmocka_unit_test(a_light_blade_is_stable),
+		cmocka_unit_test(a_blade_that_cools_fast_is_stable),
 		cmocka_unit_test(damage_follows_arrhenius),
 		cmocka_unit_test(the_ledger_closes),
 		cmocka_unit_test(nothing_flows_through_a_cell_that_is_gone),

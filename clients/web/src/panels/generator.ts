@@ -52,7 +52,7 @@ export function generatorForm(control: Control): HTMLElement {
     apply.disabled = !model.driving;
     if (!tool || form.hidden) return;
     const next = JSON.stringify([tool.name, tool.shape, tool.power_w, tool.peak_v, tool.crest_factor]);
-    if (next === shown) return; // what somebody chooses and has not set yet stays
+    if (next === shown) return; // a choice that is not set yet stays
     shown = next;
     const is = instrumentOf(model.instruments, tool);
     offer(instrument, model.instruments.map(({ name }) => name), is?.instrument ?? '');

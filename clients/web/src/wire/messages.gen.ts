@@ -1809,7 +1809,7 @@ export interface ToolRemove {
   tool: string;
 }
 
-/** replaces shape and sizes; what is absent is the instrument's, or the default */
+/** replaces shape and sizes; an absent member takes the instrument's value, or the default */
 export interface ToolConfigure {
   /** its id; that of the connection's URL by default */
   session?: string;
@@ -2276,7 +2276,7 @@ export interface Requests {
   'tool.add': { params: ToolAdd; result: CommandResult };
   /** takes it away */
   'tool.remove': { params: ToolRemove; result: CommandResult };
-  /** replaces shape and sizes; what is absent is the instrument's, or the default */
+  /** replaces shape and sizes; an absent member takes the instrument's value, or the default */
   'tool.configure': { params: ToolConfigure; result: CommandResult };
   /** moves it, at its speed limit; needs to be its driver */
   'tool.move': { params: ToolMove; result: CommandResult };
