@@ -20,6 +20,7 @@
 #include "hub/hub.h"
 #include "lease/lease.h"
 #include "log/log.h"
+#include "move/move.h"
 #include "places/places.h"
 #include "rpc/service.h"
 #include "transport_dds/dds_transport.h"
@@ -46,6 +47,7 @@ struct cau_daemon {
 	cau_worker_pool *pool;
 	cau_builder *builder, *mover;
 	cau_hub *hub;
+	cau_moves *moves;
 	cau_watchdog *watchdog;
 	cau_service *service;
 	cau_network *network;
@@ -217,6 +219,15 @@ static int32_t count_builders(int32_t workers)
 	return workers < CAU_BUILDER_THREADS_MOST ? workers : CAU_BUILDER_THREADS_MOST;
 }
 
+static cau_status open_moves(cau_daemon *daemon, cau_error *error)
+{
+	cau_moves_def def = {.config = daemon->config,
+	                     .store = daemon->store,
+	                     .mover = daemon->mover,
+	                     .hub = daemon->hub};
+	return cau_moves_create(&daemon->moves, &def, error);
+}
+
 static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 {
 	cau_config *config = daemon->config;
@@ -240,14 +251,20 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status = cau_hub_create(&daemon->hub, &def, error);
 	if (!status)
+		status = open_moves(daemon, error);
+	if (!status)
 		status = cau_watchdog_create(&daemon->watchdog, on_look, daemon, error);
 	return status;
 }
 
 static cau_status open_network(cau_daemon *daemon, cau_error *error)
 {
-	cau_status status = cau_service_create(&daemon->service, daemon->config, daemon->auth,
-	                                       daemon->hub, daemon->store, error);
+	cau_service_def of_service = {.config = daemon->config,
+	                              .auth = daemon->auth,
+	                              .hub = daemon->hub,
+	                              .moves = daemon->moves,
+	                              .store = daemon->store};
+	cau_status status = cau_service_create(&daemon->service, &of_service, error);
 	if (status)
 		return status;
 	cau_network_def def = {.config = daemon->config,
@@ -338,6 +355,8 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 	if (daemon->dds)
 		cau_service_add_metrics(daemon->service, cau_dds_write_metrics, daemon->dds);
 	if (!status)
+		status = cau_moves_resume(daemon->moves, error);
+	if (!status)
 		status = cau_hub_resume(daemon->hub, &resumed, error);
 	cau_restart_begin(&daemon->restart, daemon->hub, resumed);
 	if (!status)
@@ -410,6 +429,7 @@ int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_num
 	bool terminal_gone = got == SIGHUP && info.si_code == SI_KERNEL;
 	if (got > 0)
 		*signal_number = terminal_gone ? SIGTERM : got;
+	cau_moves_reap(daemon->moves);
 	cau_hub_reap(daemon->hub);
 	follow_scenes(daemon);
 	cau_restart_tell(&daemon->restart);
@@ -464,8 +484,10 @@ void cau_daemon_stop(cau_daemon *daemon)
 	if (daemon->service)
 		cau_service_drain(daemon->service);
 	cau_dds_stop(daemon->dds);
+	double drained_s = cau_monotonic_s() + daemon->config->drain_s; // at the latest
+	cau_moves_drain(daemon->moves);
 	if (daemon->hub)
-		cau_hub_drain(daemon->hub, daemon->config->drain_s);
+		cau_hub_drain(daemon->hub, drained_s - cau_monotonic_s());
 	if (daemon->network)
 		cau_network_stop(daemon->network, CAU_CLOSE_DRAINING, CLOSING_S);
 	cau_agent_destroy(daemon->agent);
@@ -478,11 +500,13 @@ void cau_daemon_stop(cau_daemon *daemon)
 		cau_service_set_network(daemon->service, NULL);
 	cau_network_destroy(daemon->network);
 	// Answers to what waits go to transports, which may hold sessions, which know the hub.
+	cau_moves_stop(daemon->moves);
 	cau_hub_stop(daemon->hub);
 	cau_builder_destroy(daemon->builder);
 	cau_builder_destroy(daemon->mover);
 	cau_dds_destroy(daemon->dds);
 	cau_service_destroy(daemon->service);
+	cau_moves_destroy(daemon->moves);
 	cau_hub_destroy(daemon->hub);
 	cau_worker_pool_destroy(daemon->pool);
 	cau_store_close(daemon->store);

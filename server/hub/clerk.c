@@ -87,7 +87,7 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
 	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_moved(hub, id, &to))
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` has moved and is `%s` now",
 		                id, to.session);
-	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_arrivals_have(hub, id))
+	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_arrives(hub, id))
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
 		                "`%s` is moving here from another daemon", id);
 	if (cau_hub_count(hub) >= hub->def.config->max_sessions)

@@ -80,7 +80,6 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	hub->around_ephemeral.ephemeral = true;
 	pthread_mutex_init(&hub->mutex, NULL);
 	pthread_mutex_init(&hub->clerk_mutex, NULL);
-	pthread_mutex_init(&hub->moves_mutex, NULL);
 	hub->clerk.run = cau_clerk_run;
 	cau_worker_pool_add(def->pool, &hub->clerk);
 	*made = hub;
@@ -92,8 +91,6 @@ void cau_hub_stop(cau_hub *hub)
 	if (!hub)
 		return;
 	cau_worker_pool_remove(hub->def.pool, &hub->clerk);
-	cau_departures_let_go(hub, 0, true);
-	cau_arrivals_reap(hub, true);
 	for (int32_t i = 0; i < hub->session_count; i++)
 		cau_hosted_stop(hub->sessions[i]);
 	cau_store_flush(hub->def.store); // commits on their way know their sessions
@@ -117,10 +114,6 @@ void cau_hub_destroy(cau_hub *hub)
 	}
 	pthread_mutex_destroy(&hub->mutex);
 	pthread_mutex_destroy(&hub->clerk_mutex);
-	pthread_mutex_destroy(&hub->moves_mutex);
-	cau_departures_free(hub);
-	cau_arrivals_free(hub);
-	free(hub->tombstones);
 	cau_beginnings_finish(&hub->beginnings);
 	cau_quota_destroy(hub->quota);
 	free(hub->sessions);
@@ -176,8 +169,6 @@ static void forget(void *user, cau_hosted *hosted)
 
 void cau_hub_reap(cau_hub *hub)
 {
-	cau_departures_let_go(hub, cau_monotonic_s(), false);
-	cau_arrivals_reap(hub, false);
 	for (cau_hosted *ended; (ended = take_ended(hub));) {
 		cau_hosted_stop(ended);
 		cau_hosted_release(ended);
@@ -253,7 +244,6 @@ void cau_hub_drain(cau_hub *hub, double seconds)
 {
 	double until_s = cau_monotonic_s() + seconds;
 	int32_t left = 1;
-	cau_departures_let_go(hub, 0, true);
 	cau_hub_each(hub, drain_one, NULL);
 	while (left && cau_monotonic_s() < until_s) {
 		left = 0;

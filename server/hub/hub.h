@@ -93,6 +93,9 @@ int64_t cau_hub_memory(cau_hub *hub);
 // The share of its speed that the running session furthest behind reaches, 0 to 1; 1 where none is.
 double cau_hub_pace_share_min(cau_hub *hub);
 
+// Whether a session that is not here has moved to another daemon, and where to.
+bool cau_hub_moved(cau_hub *hub, const char *id, cau_moved_to *to);
+
 // A session to be made. Answered through `reply`, on failure too.
 typedef struct cau_creation {
 	struct cau_creation *next;
@@ -120,43 +123,6 @@ void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
 // could not be brought up. Answered through `reply` if true; false: there is nothing to look for.
 bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker,
                             int64_t client_sequence, const cau_reply *reply);
-
-// ---- sessions that move (protocol/README.md, "Moving a session")
-
-enum { CAU_PROOF_BYTES = 65 };
-
-typedef enum {
-	CAU_MOVE_BEGIN,
-	CAU_MOVE_READ,
-	CAU_MOVE_HOLD,
-	CAU_MOVE_COMMIT,
-	CAU_MOVE_CANCEL,
-	CAU_MOVE_RECEIVE,
-	CAU_MOVE_READY,
-	CAU_MOVE_ACCEPT,
-	CAU_MOVE_FORGET,
-	CAU_MOVE_LIST,
-} cau_move_what;
-
-typedef struct cau_move_asked {
-	cau_move_what what;
-	char session[CAU_NAME_BYTES], move[CAU_NAME_BYTES];
-	cau_moved_to to;            // BEGIN
-	char label[CAU_NAME_BYTES]; // BEGIN
-	char key[CAU_PROOF_BYTES];  // ACCEPT: proof, COMMIT: receipt, FORGET: release or ""
-	bool source_lost;           // FORGET
-	unsigned char *piece;       // RECEIVE: malloc'ed, taken
-	size_t piece_bytes;
-} cau_move_asked;
-
-// Does it, on the mover, and answers through `reply`. Takes the piece, on failure too.
-cau_status cau_hub_move(cau_hub *hub, const cau_move_asked *asked, const cau_reply *reply,
-                        cau_error *error);
-// Whether the session has moved away, and where to.
-bool cau_hub_moved(cau_hub *hub, const char *id, cau_moved_to *to);
-// Registers a lost client that may come back by its token, as another daemon told it; its number.
-// 0: too many clients.
-uint32_t cau_hub_expect(cau_hub *hub, const cau_client *client);
 
 // Packs the bytes of a scene's uploaded meshes into one allocation and points the scene there;
 // *meshes is NULL if it has none. And back, after reading both from the store.

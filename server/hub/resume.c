@@ -92,7 +92,7 @@ cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *rep
 static bool resume_one(cau_hub *hub, const char *id)
 {
 	cau_error error = {0};
-	if (cau_arrivals_have(hub, id))
+	if (cau_hub_arrives(hub, id))
 		return false;
 	cau_status status = cau_hub_resume_one(hub, id, &(cau_reply){0}, &error);
 	if (status)
@@ -154,11 +154,7 @@ cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error)
 {
 	ids list = {0};
 	*resumed = 0;
-	cau_status status = cau_tombstones_read(hub, error);
-	if (!status)
-		status = cau_arrivals_read(hub, error);
-	if (!status)
-		status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
+	cau_status status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
 	for (int32_t i = 0; !status && i < list.count; i++)
 		*resumed += resume_one(hub, list.id[i]);
 	hub->last_resumed = hub->last_session;

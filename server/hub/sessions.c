@@ -36,6 +36,53 @@ void cau_hub_each(cau_hub *hub, void (*visit)(void *user, cau_hosted *hosted), v
 	pthread_mutex_unlock(&hub->mutex);
 }
 
+// ---- moves
+void cau_hub_set_elsewhere(cau_hub *hub, const cau_elsewhere *elsewhere)
+{
+	hub->elsewhere = *elsewhere;
+}
+
+bool cau_hub_moved(cau_hub *hub, const char *id, cau_moved_to *to)
+{
+	return hub->elsewhere.moved && hub->elsewhere.moved(hub->elsewhere.user, id, to);
+}
+
+bool cau_hub_arrives(cau_hub *hub, const char *id)
+{
+	return hub->elsewhere.arrives && hub->elsewhere.arrives(hub->elsewhere.user, id);
+}
+
+cau_status cau_hub_make_incoming(cau_hub *hub, cau_creation *creation, const char *id,
+                                 const cau_reply *reply, cau_hosted **hosted, cau_error *error)
+{
+	cau_hosted_def def = {.id = id,
+	                      .number = ++hub->last_session,
+	                      .scene = creation->scene,
+	                      .meshes = creation->meshes,
+	                      .mesh_bytes = creation->mesh_bytes,
+	                      .paused = creation->paused,
+	                      .incoming = true,
+	                      .origin = creation->origin,
+	                      .reply = *reply};
+	cau_status status = cau_hosted_create(hosted, &hub->around, &def, error);
+	if (!status) {
+		creation->scene = NULL;
+		creation->meshes = NULL;
+	}
+	return status;
+}
+
+bool cau_hub_place(cau_hub *hub, cau_hosted *hosted)
+{
+	pthread_mutex_lock(&hub->mutex);
+	bool free_place = (size_t)hub->session_count < SLOTS(hub->def.config);
+	if (free_place)
+		hub->sessions[hub->session_count++] = hosted;
+	pthread_mutex_unlock(&hub->mutex);
+	return free_place;
+}
+
+// ---- counts
 static void count_one(void *user, cau_hosted *hosted)
 {
 	(void)hosted;

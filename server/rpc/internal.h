@@ -77,6 +77,7 @@ struct cau_service {
 	const cau_config *config;
 	const cau_auth *auth;
 	cau_hub *hub;
+	cau_moves *moves;
 	cau_store *store;
 	cau_network *network;
 	atomic_bool draining, frames_waiting, tokens_changed;

@@ -16,7 +16,7 @@ static void submit(cau_call *call, cau_move_asked *asked)
 		cau_call_may_use(call, "");
 		return;
 	}
-	if (cau_hub_move(call->peer->service->hub, asked, &reply, &error))
+	if (cau_moves_ask(call->peer->service->moves, asked, &reply, &error))
 		cau_call_fail(call, &error, 0);
 	else
 		call->peer->files_asked += file;

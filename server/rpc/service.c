@@ -240,21 +240,21 @@ static void on_tick(void *user)
 }
 
 // ---- life
-cau_status cau_service_create(cau_service **made, const cau_config *config, const cau_auth *auth,
-                              cau_hub *hub, cau_store *store, cau_error *error)
+cau_status cau_service_create(cau_service **made, const cau_service_def *def, cau_error *error)
 {
 	cau_service *service = calloc(1, sizeof *service);
 	*made = service;
 	if (!service)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the service");
-	service->config = config;
-	service->auth = auth;
-	service->hub = hub;
-	service->store = store;
+	service->config = def->config;
+	service->auth = def->auth;
+	service->hub = def->hub;
+	service->moves = def->moves;
+	service->store = def->store;
 	pthread_mutex_init(&service->mutex, NULL);
 	if (!cau_scene_answers_make(service))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the scenes");
-	cau_hub_add_sink(hub, &(cau_sink){service, cau_service_notify, cau_service_frames, NULL});
+	cau_hub_add_sink(def->hub, &(cau_sink){service, cau_service_notify, cau_service_frames, NULL});
 	return CAU_OK;
 }
 

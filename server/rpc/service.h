@@ -6,13 +6,21 @@
 #include "auth/auth.h"
 #include "hub/hub.h"
 #include "metrics/exposition.h"
+#include "move/move.h"
 #include "transport_ws/network.h"
 
 typedef struct cau_service cau_service;
 
+typedef struct cau_service_def {
+	const cau_config *config; // borrowed, like all here
+	const cau_auth *auth;
+	cau_hub *hub;
+	cau_moves *moves;
+	cau_store *store;
+} cau_service_def;
+
 // Registers its sink with the hub.
-cau_status cau_service_create(cau_service **service, const cau_config *config, const cau_auth *auth,
-                              cau_hub *hub, cau_store *store, cau_error *error);
+cau_status cau_service_create(cau_service **service, const cau_service_def *def, cau_error *error);
 // After the network has ended and the hub's sessions are gone. Takes NULL.
 void cau_service_destroy(cau_service *service);
 

@@ -5,7 +5,7 @@
 // A piece is a head of 16 bytes (magic "CAUM", u32 version, u32 index, u32 flags) and then rows to
 // its end. A row is u8 table, u8 column count, and its columns: u8 type, then an i64 of 8 bytes, or
 // u32 length and so many bytes of text or blob, or nothing. All numbers are little-endian. On its
-// way a piece has a seal of 64 hex digits after its end (server/hub/move_seals.h).
+// way a piece has a seal of 64 hex digits after its end (server/move/courier.h).
 #pragma once
 
 #include <stdbool.h>

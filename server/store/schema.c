@@ -100,7 +100,7 @@ static const char sixth_step[] =
 							"old.") ") WHERE name = 'answers'; END;";
 
 // secrets: random texts of this store. arrivals.unlock is the hash of the release that lets the
-// move be forgotten; arrivals.seal is the seal of the pieces so far (server/hub/move_seals.h).
+// move be forgotten; arrivals.seal is the seal of the pieces so far (server/move/courier.h).
 static const char seventh_step[] =
 	"CREATE TABLE secrets(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
 	"INSERT INTO secrets VALUES('move', lower(hex(randomblob(32))));"

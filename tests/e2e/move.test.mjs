@@ -209,7 +209,7 @@ test('a courier that dies before the target has a piece leaves nothing that stan
 		await dead.begin();
 	await one.file('move.read', dead.ofSource());
 	assert.equal((await rejection(new Courier(one, two, session, 'd2-knee').begin())).data.status, 'bad_state');
-	await setTimeout(10_500); // FIRST_PIECE_MOST_S of server/hub/departures.c, and a little
+	await setTimeout(10_500); // FIRST_PIECE_MOST_S of server/move/departures.c, and a little
 	await new Courier(one, two, session, 'd2-knee').walk('part');
 	// The command line also ends a move that only the source knows.
 	assert.equal(await settled(d1, d2), false);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hub/fault_point.h"
+#include "move/courier.h"
 
 void cau_fault_point(const char *name)
 {

@@ -1,53 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that come from another daemon: their rows are written as they come (arrival_pieces.c),
-// their core is built beforehand, and they are served once the proof is seen that they are served
-// nowhere else.
+// How a session's coming ends: its core is built beforehand, and it is served once the proof is
+// seen that it is served nowhere else; or it is forgotten.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/name.h"
-#include "hub/fault_point.h"
-#include "hub/internal.h"
-#include "session/handover.h"
-#include "store/rows.h"
+#include "move/internal.h"
 
 typedef cau_arrival arrival;
 typedef cau_arrival_hand hand;
 
-// ---- the list: with the lock --------------------------------------------------------------------
-
-static arrival *find_own(cau_hub *hub, const cau_move_asked *asked)
+// With the lock.
+static arrival *find_own(cau_moves *moves, const cau_move_asked *asked)
 {
-	arrival *a = cau_arrival_find(hub, asked->session);
+	arrival *a = cau_arrival_find(moves, asked->session);
 	return a && strcmp(a->move, asked->move) == 0 ? a : NULL;
-}
-
-void cau_arrival_take_out(cau_hub *hub, arrival *a)
-{
-	arrival **link = &hub->arrivals;
-	while (*link != a)
-		link = &(*link)->next;
-	*link = a->next;
-	free(a);
-}
-
-cau_store_arrival cau_arrival_row(const arrival *a, int64_t pieces, cau_store_arrival_state state)
-{
-	return (cau_store_arrival){.id = a->id,
-	                           .move = a->move,
-	                           .lock = a->lock,
-	                           .unlock = a->unlock,
-	                           .seal = a->seal,
-	                           .source = a->source,
-	                           .label = a->label,
-	                           .pieces = pieces,
-	                           .state = state};
 }
 
 // ---- ready --------------------------------------------------------------------------------------
 
 typedef struct making {
-	cau_hub *hub;
+	cau_moves *moves;
 	arrival *arrival; // stays in the list while it has a core
 	cau_reply reply;
 } making;
@@ -58,14 +31,14 @@ static void built(void *user, const cau_reply *reply, const cau_outcome *outcome
 	cau_rpc_message answer;
 	cau_rpc_fault fault;
 	(void)reply;
-	pthread_mutex_lock(&made->hub->moves_mutex);
+	pthread_mutex_lock(&made->moves->mutex);
 	if (!outcome->error &&
 	    !cau_rpc_read(outcome->text, outcome->text_bytes, outcome->text_bytes, &answer, &fault)) {
 		made->arrival->ready =
 			!cau_rpc_result(&answer, CAU_METHOD_MOVE_READY, &made->arrival->stands, NULL);
 		cau_rpc_finish(&answer);
 	}
-	pthread_mutex_unlock(&made->hub->moves_mutex);
+	pthread_mutex_unlock(&made->moves->mutex);
 	cau_reply_answer(&made->reply, outcome);
 	free(made);
 }
@@ -73,37 +46,25 @@ static void built(void *user, const cau_reply *reply, const cau_outcome *outcome
 // With the lock.
 static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, cau_error *error)
 {
-	cau_hub *hub = job->hub;
+	cau_moves *moves = job->moves;
 	making *made = malloc(sizeof *made);
 	if (!made)
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a session");
-	*made = (making){hub, a, job->reply};
-	cau_hosted_def def = {
-		.id = a->id,
-		.number = ++hub->last_session,
-		.scene = creation->scene,
-		.meshes = creation->meshes,
-		.mesh_bytes = creation->mesh_bytes,
-		.paused = creation->paused,
-		.incoming = true,
-		.origin = creation->origin,
-		.reply = {.answer = built, .user = made, .method = CAU_METHOD_MOVE_READY}};
-	cau_status status = cau_hosted_create(&a->hosted, &hub->around, &def, error);
-	if (status) {
+	*made = (making){moves, a, job->reply};
+	cau_reply reply = {.answer = built, .user = made, .method = CAU_METHOD_MOVE_READY};
+	cau_status status =
+		cau_hub_make_incoming(moves->def.hub, creation, a->id, &reply, &a->hosted, error);
+	if (status)
 		free(made);
-		return status;
-	}
-	creation->scene = NULL;
-	creation->meshes = NULL;
-	return CAU_OK;
+	return status;
 }
 
 // The arrival that is to be built, marked as writing; NULL: *status says why not, or it was built
 // before, and that is answered.
 static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *error)
 {
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	arrival *a = find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	arrival *a = find_own(job->moves, &job->asked);
 	cau_coming_state state = a ? a->coming.state : CAU_COMING_NOT;
 	bool waits = state == CAU_COMING_INCOMING || state == CAU_COMING_WHOLE;
 	if (!waits || a->writing)
@@ -116,7 +77,7 @@ static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *er
 	bool begins = waits && !*status && !a->hosted;
 	if (begins)
 		a->writing = true;
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 	return begins ? a : NULL;
 }
 
@@ -127,13 +88,13 @@ void cau_arrival_ready(cau_move_job *job)
 	cau_creation *creation = NULL;
 	arrival *a = begin_build(job, &status, &error);
 	if (a)
-		status = cau_hub_read_session(job->hub, a->id, &creation, &error);
+		status = cau_hub_read_session(job->moves->def.hub, a->id, &creation, &error);
 	if (a) {
-		pthread_mutex_lock(&job->hub->moves_mutex);
+		pthread_mutex_lock(&job->moves->mutex);
 		if (!status)
 			status = build(job, a, creation, &error);
 		a->writing = false;
-		pthread_mutex_unlock(&job->hub->moves_mutex);
+		pthread_mutex_unlock(&job->moves->mutex);
 	}
 	if (creation)
 		cau_creation_free(creation);
@@ -145,7 +106,7 @@ void cau_arrival_ready(cau_move_job *job)
 
 typedef struct accepting {
 	cau_job job; // first; on the mover, once it is on the disk
-	cau_hub *hub;
+	cau_moves *moves;
 	arrival *arrival;
 	cau_reply reply;
 } accepting;
@@ -161,11 +122,11 @@ static void submit_plain(cau_hosted *hosted, cau_order *order)
 
 // Whoever drove a tool has it here, dark, and may come back to it for as long as after a lost
 // connection.
-static void give_hands(cau_hub *hub, const arrival *a, cau_hosted *hosted)
+static void give_hands(cau_moves *moves, const arrival *a, cau_hosted *hosted)
 {
 	for (int32_t i = 0; i < a->hand_count; i++) {
 		cau_order *order = calloc(1, sizeof *order);
-		uint32_t number = order ? cau_hub_expect(hub, &a->hands[i].client) : 0;
+		uint32_t number = order ? cau_hub_expect(moves->def.hub, &a->hands[i].client) : 0;
 		if (!number) {
 			free(order);
 			continue;
@@ -186,41 +147,42 @@ static void give_hands(cau_hub *hub, const arrival *a, cau_hosted *hosted)
 	}
 }
 
-// The core that was built beforehand, among the sessions; NULL: there is none, or no place.
-static cau_hosted *take_built(cau_hub *hub, arrival *a)
+// The core that was built beforehand, among the hub's sessions, shared; NULL: there is none, or no
+// place. Without a place the arrival keeps it.
+static cau_hosted *place_built(cau_moves *moves, arrival *a)
 {
-	pthread_mutex_lock(&hub->mutex);
-	pthread_mutex_lock(&hub->moves_mutex);
-	bool takes = a->hosted && a->ready && !cau_hosted_ended(a->hosted) &&
-	             (size_t)hub->session_count < SLOTS(hub->def.config);
-	cau_hosted *hosted = takes ? a->hosted : NULL;
-	if (takes) {
-		hub->sessions[hub->session_count++] = hosted;
-		cau_hosted_share(hosted);
+	pthread_mutex_lock(&moves->mutex);
+	bool takes = a->hosted && a->ready && !cau_hosted_ended(a->hosted);
+	cau_hosted *hosted = takes ? cau_hosted_share(a->hosted) : NULL;
+	if (takes)
 		a->hosted = NULL;
-	}
-	pthread_mutex_unlock(&hub->moves_mutex);
-	pthread_mutex_unlock(&hub->mutex);
-	return hosted;
+	pthread_mutex_unlock(&moves->mutex);
+	if (!hosted || cau_hub_place(moves->def.hub, hosted))
+		return hosted;
+	pthread_mutex_lock(&moves->mutex);
+	a->hosted = hosted;
+	pthread_mutex_unlock(&moves->mutex);
+	cau_hosted_release(hosted);
+	return NULL;
 }
 
 static cau_status serve(accepting *what, cau_error *error)
 {
-	cau_hub *hub = what->hub;
+	cau_moves *moves = what->moves;
 	arrival *a = what->arrival;
 	cau_creation *row = NULL;
-	cau_status status = cau_hub_read_session(hub, a->id, &row, error);
+	cau_status status = cau_hub_read_session(moves->def.hub, a->id, &row, error);
 	if (status)
 		return status;
-	cau_hosted *hosted = take_built(hub, a);
+	cau_hosted *hosted = place_built(moves, a);
 	if (hosted) {
-		give_hands(hub, a, hosted);
+		give_hands(moves, a, hosted);
 		cau_hosted_come(hosted, row->origin.branch, row->paused, &what->reply);
 	} else {
-		status = cau_hub_resume_one(hub, a->id, &what->reply, error);
-		hosted = status ? NULL : cau_hub_find(hub, a->id);
+		status = cau_hub_resume_one(moves->def.hub, a->id, &what->reply, error);
+		hosted = status ? NULL : cau_hub_find(moves->def.hub, a->id);
 		if (hosted)
-			give_hands(hub, a, hosted);
+			give_hands(moves, a, hosted);
 	}
 	cau_hosted_release(hosted);
 	cau_creation_free(row);
@@ -251,17 +213,17 @@ static void drop(cau_job *job)
 static void accepted(void *user, cau_status status, const char *reason)
 {
 	accepting *what = user;
-	cau_hub *hub = what->hub;
+	cau_moves *moves = what->moves;
 	cau_fault_point("move_accepted");
-	pthread_mutex_lock(&hub->moves_mutex);
+	pthread_mutex_lock(&moves->mutex);
 	cau_coming_take(&what->arrival->coming, status ? CAU_COMING_REFUSED : CAU_COMING_WRITTEN, true);
 	if (!status)
-		cau_tombstone_drop(hub, what->arrival->id);
-	pthread_mutex_unlock(&hub->moves_mutex);
+		cau_tombstone_drop(moves, what->arrival->id);
+	pthread_mutex_unlock(&moves->mutex);
 	if (!status) {
 		cau_log(CAU_LOG_NOTICE, what->arrival->id, "came", "move=%s from=%s", what->arrival->move,
 		        what->arrival->source);
-		cau_builder_submit(hub->around.mover, &what->job);
+		cau_builder_submit(moves->def.mover, &what->job);
 		return;
 	}
 	cau_move_fail(&what->reply, status, cau_hosted_commit_code(status), "", reason);
@@ -278,9 +240,11 @@ static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error
 	                        ? cau_store_put_arrival(batch, &row, error)
 	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to accept it");
 	if (!status) {
-		*what = (accepting){
-			.job = {.run = run, .drop = drop}, .hub = job->hub, .arrival = a, .reply = job->reply};
-		status = cau_store_submit(job->hub->def.store, batch, accepted, what, error);
+		*what = (accepting){.job = {.run = run, .drop = drop},
+		                    .moves = job->moves,
+		                    .arrival = a,
+		                    .reply = job->reply};
+		status = cau_store_submit(job->moves->def.store, batch, accepted, what, error);
 	}
 	if (!status)
 		return CAU_OK;
@@ -294,7 +258,7 @@ static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error
 static void describe(cau_move_job *job)
 {
 	cau_error error = {0};
-	cau_hosted *hosted = cau_hub_find(job->hub, job->asked.session);
+	cau_hosted *hosted = cau_hub_find(job->moves->def.hub, job->asked.session);
 	cau_order *order = hosted ? calloc(1, sizeof *order) : NULL;
 	cau_status status = CAU_NOT_FOUND;
 	if (order) {
@@ -315,11 +279,11 @@ void cau_arrival_accept(cau_move_job *job)
 	cau_error error = {0};
 	cau_status status = CAU_OK;
 	cau_coming_act act = CAU_COMING_REFUSE;
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	arrival *a = find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	arrival *a = find_own(job->moves, &job->asked);
 	if (!a)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
-	else if (job->hub->moves_end)
+	else if (job->moves->ends)
 		status = cau_fail(&error, CAU_BAD_STATE, "",
 		                  "the daemon is shutting down: ask again when it is back");
 	else if (!cau_move_opens(job->asked.key, a->lock))
@@ -333,7 +297,7 @@ void cau_arrival_accept(cau_move_job *job)
 		                  "not all pieces have come, or the session is being accepted");
 	if (!status && act == CAU_COMING_DO_WRITE)
 		status = write_accepted(job, a, &error);
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 	if (status)
 		cau_reply_fail(&job->reply, &error, cau_hosted_commit_code(status));
 	else if (act == CAU_COMING_SAY_HERE)
@@ -344,7 +308,7 @@ void cau_arrival_accept(cau_move_job *job)
 
 // On its way to the disk.
 typedef struct forgetting {
-	cau_hub *hub;
+	cau_moves *moves;
 	arrival *arrival;
 	cau_reply reply;
 	bool whole; // all of it had come
@@ -354,7 +318,7 @@ static void forgotten(void *user, cau_status status, const char *reason)
 {
 	forgetting *done = user;
 	arrival *a = done->arrival;
-	pthread_mutex_lock(&done->hub->moves_mutex);
+	pthread_mutex_lock(&done->moves->mutex);
 	a->writing = false;
 	if (status)
 		a->coming = cau_coming_after_restart(true, done->whole, false);
@@ -362,7 +326,7 @@ static void forgotten(void *user, cau_status status, const char *reason)
 		a->forgotten = true;
 	if (!status && a->hosted && a->ready)
 		cau_hosted_give_up(a->hosted);
-	pthread_mutex_unlock(&done->hub->moves_mutex);
+	pthread_mutex_unlock(&done->moves->mutex);
 	if (status)
 		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
 	else
@@ -380,8 +344,8 @@ static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau
 	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to forget it");
 	if (!status) {
 		*travelling =
-			(forgetting){.hub = job->hub, .arrival = a, .reply = job->reply, .whole = whole};
-		status = cau_store_submit(job->hub->def.store, batch, forgotten, travelling, error);
+			(forgetting){.moves = job->moves, .arrival = a, .reply = job->reply, .whole = whole};
+		status = cau_store_submit(job->moves->def.store, batch, forgotten, travelling, error);
 	}
 	if (!status) {
 		a->writing = true;
@@ -409,8 +373,8 @@ void cau_arrival_forget(cau_move_job *job)
 {
 	cau_error error = {0};
 	cau_status status = CAU_OK;
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	arrival *a = find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	arrival *a = find_own(job->moves, &job->asked);
 	bool whole = a && a->coming.state == CAU_COMING_WHOLE;
 	bool busy = a && (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)));
 	if (busy)
@@ -424,66 +388,7 @@ void cau_arrival_forget(cau_move_job *job)
 		                  "no such move is known here, or the session is this daemon's");
 	else
 		status = write_forgotten(job, a, whole, &error);
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 	if (status)
 		cau_reply_fail(&job->reply, &error, cau_hosted_commit_code(status));
-}
-
-// ---- all of them --------------------------------------------------------------------------------
-
-void cau_arrivals_list(cau_hub *hub, cau_wire_list *list)
-{
-	cau_wire_move_entry *entries = list->items;
-	for (const arrival *a = hub->arrivals; a && list->count < list->capacity; a = a->next) {
-		if (a->forgotten || cau_coming_serves(&a->coming))
-			continue;
-		cau_wire_move_entry *entry = &entries[list->count++];
-		cau_coming_state state = a->coming.state;
-		*entry = (cau_wire_move_entry){0};
-		memcpy(entry->session, a->id, sizeof entry->session);
-		memcpy(entry->move, a->move, sizeof entry->move);
-		memcpy(entry->other, a->source, sizeof entry->other);
-		snprintf(entry->state, sizeof entry->state, "%s",
-		         state == CAU_COMING_WHOLE       ? "doubt"
-		         : state == CAU_COMING_ACCEPTING ? "accepting"
-		                                         : "incoming");
-	}
-}
-
-// The next core that has ended, whose place is then free; shared.
-static cau_hosted *take_ended(cau_hub *hub, bool all)
-{
-	cau_hosted *ended = NULL;
-	pthread_mutex_lock(&hub->moves_mutex);
-	for (arrival *a = hub->arrivals, *next; a && !ended; a = next) {
-		next = a->next;
-		if (a->hosted && all && a->ready && !cau_hosted_ended(a->hosted))
-			cau_hosted_give_up(a->hosted); // the builder has stopped: it is done at once
-		if (a->hosted && cau_hosted_ended(a->hosted)) {
-			ended = a->hosted;
-			a->hosted = NULL;
-			a->ready = false;
-		}
-		if (!a->hosted && a->forgotten)
-			cau_arrival_take_out(hub, a);
-	}
-	pthread_mutex_unlock(&hub->moves_mutex);
-	return ended;
-}
-
-void cau_arrivals_reap(cau_hub *hub, bool all)
-{
-	for (cau_hosted *ended; (ended = take_ended(hub, all));) {
-		cau_hosted_stop(ended);
-		cau_hosted_release(ended);
-	}
-}
-
-void cau_arrivals_free(cau_hub *hub)
-{
-	for (arrival *a = hub->arrivals, *next; a; a = next) {
-		next = a->next;
-		free(a);
-	}
-	hub->arrivals = NULL;
 }

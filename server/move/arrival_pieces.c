@@ -5,9 +5,7 @@
 #include <string.h>
 
 #include "cautery/name.h"
-#include "hub/fault_point.h"
-#include "hub/internal.h"
-#include "session/handover.h"
+#include "move/internal.h"
 #include "store/rows.h"
 
 enum { ARRIVALS_MOST = 64 }; // that are not served yet
@@ -89,34 +87,34 @@ static cau_status read_contents(const cau_move_asked *asked, contents *found, ca
 	return CAU_OK;
 }
 
-static cau_status check_id(const cau_hub *hub, const char *id, cau_error *error)
+static cau_status check_id(const cau_moves *moves, const char *id, cau_error *error)
 {
-	size_t bytes = strlen(hub->def.config->label);
-	if (strncmp(id, hub->def.config->label, bytes) == 0 && id[bytes] == '-')
+	size_t bytes = strlen(moves->def.config->label);
+	if (strncmp(id, moves->def.config->label, bytes) == 0 && id[bytes] == '-')
 		return CAU_OK;
 	return cau_fail(error, CAU_BAD_VALUE, "params.session",
-	                "this daemon's sessions begin with `%s-`", hub->def.config->label);
+	                "this daemon's sessions begin with `%s-`", moves->def.config->label);
 }
 
-static cau_status check_room(cau_hub *hub, const char *id, cau_error *error)
+static cau_status check_room(cau_moves *moves, const char *id, cau_error *error)
 {
-	cau_hosted *other = cau_hub_find(hub, id);
+	cau_hosted *other = cau_hub_find(moves->def.hub, id);
 	cau_hosted_release(other);
 	if (other)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.session", "`%s` exists", id);
-	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
+	if (cau_hub_count(moves->def.hub) >= moves->def.config->max_sessions)
 		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
-		                (long long)hub->def.config->max_sessions);
-	return check_id(hub, id, error);
+		                (long long)moves->def.config->max_sessions);
+	return check_id(moves, id, error);
 }
 
 // With the lock. A session that came by this id before and is gone leaves its place.
-static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents *found,
+static arrival *enlist(cau_moves *moves, const cau_move_asked *asked, const contents *found,
                        cau_error *error)
 {
 	int32_t waiting = 0;
-	arrival *old = cau_arrival_find(hub, asked->session);
-	for (const arrival *a = hub->arrivals; a; a = a->next)
+	arrival *old = cau_arrival_find(moves, asked->session);
+	for (const arrival *a = moves->arrivals; a; a = a->next)
 		waiting += !cau_coming_serves(&a->coming);
 	if (waiting >= ARRIVALS_MOST) {
 		cau_fail(error, CAU_LIMIT, "", "%d sessions are already moving here: try again later",
@@ -129,7 +127,7 @@ static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents
 		return NULL;
 	}
 	if (old)
-		cau_arrival_take_out(hub, old);
+		cau_arrival_take_out(moves, old);
 	memcpy(a->id, asked->session, sizeof a->id);
 	memcpy(a->move, asked->move, sizeof a->move);
 	memcpy(a->lock, found->lock, sizeof a->lock);
@@ -137,8 +135,8 @@ static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents
 	memcpy(a->source, found->source, sizeof a->source);
 	memcpy(a->label, found->label, sizeof a->label);
 	a->speed = 1;
-	a->next = hub->arrivals;
-	hub->arrivals = a;
+	a->next = moves->arrivals;
+	moves->arrivals = a;
 	return a;
 }
 
@@ -191,9 +189,9 @@ static void answer_received(const arrival *a, const cau_reply *reply)
 // piece was here before, and that is answered.
 static arrival *begin_piece(cau_move_job *job, const contents *found, cau_error *error)
 {
-	cau_hub *hub = job->hub;
-	pthread_mutex_lock(&hub->moves_mutex);
-	arrival *a = cau_arrival_find(hub, job->asked.session);
+	cau_moves *moves = job->moves;
+	pthread_mutex_lock(&moves->mutex);
+	arrival *a = cau_arrival_find(moves, job->asked.session);
 	if (a && cau_coming_serves(&a->coming))
 		a = NULL; // of an earlier move that was accepted
 	if (is_repeated(a, &job->asked, found)) {
@@ -203,16 +201,16 @@ static arrival *begin_piece(cau_move_job *job, const contents *found, cau_error 
 	           check_seal(&job->asked, a ? a->seal : "", found, error)) {
 		a = NULL;
 	} else {
-		a = a ? a : enlist(hub, &job->asked, found, error);
+		a = a ? a : enlist(moves, &job->asked, found, error);
 	}
 	if (a)
 		a->writing = true;
-	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&moves->mutex);
 	return a;
 }
 
 typedef struct at_disk {
-	cau_hub *hub;
+	cau_moves *moves;
 	arrival *arrival;
 	cau_reply reply;
 	contents found;
@@ -233,7 +231,7 @@ static void piece_written(void *user, cau_status status, const char *reason)
 	arrival *a = done->arrival;
 	bool last = done->found.flags & CAU_ROWS_ENDS;
 	cau_fault_point(last ? "move_last_piece" : "move_piece");
-	pthread_mutex_lock(&done->hub->moves_mutex);
+	pthread_mutex_lock(&done->moves->mutex);
 	a->writing = false;
 	if (!status) {
 		cau_coming_take(&a->coming, last ? CAU_COMING_LAST : CAU_COMING_PIECE, true);
@@ -243,10 +241,10 @@ static void piece_written(void *user, cau_status status, const char *reason)
 		answer_received(a, &done->reply);
 	} else {
 		if (a->pieces == 0)
-			cau_arrival_take_out(done->hub, a);
+			cau_arrival_take_out(done->moves, a);
 		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
 	}
-	pthread_mutex_unlock(&done->hub->moves_mutex);
+	pthread_mutex_unlock(&done->moves->mutex);
 	free(done);
 }
 
@@ -266,7 +264,7 @@ static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error 
 	if (!status)
 		job->asked.piece = NULL; // the batch's
 	if (!status)
-		status = cau_store_submit(job->hub->def.store, batch, piece_written, travelling, error);
+		status = cau_store_submit(job->moves->def.store, batch, piece_written, travelling, error);
 	if (status)
 		cau_store_batch_destroy(batch);
 	return status;
@@ -281,10 +279,10 @@ void cau_arrival_receive(cau_move_job *job)
 	if (!status)
 		status = read_contents(&job->asked, &travelling->found, &error);
 	if (!status && travelling->found.index == 0)
-		status = check_room(job->hub, job->asked.session, &error);
+		status = check_room(job->moves, job->asked.session, &error);
 	arrival *a = status ? NULL : begin_piece(job, &travelling->found, &error);
 	if (a) {
-		travelling->hub = job->hub;
+		travelling->moves = job->moves;
 		travelling->arrival = a;
 		travelling->reply = job->reply;
 		status = write_piece(job, travelling, &error);

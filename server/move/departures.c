@@ -6,10 +6,7 @@
 #include <sys/random.h>
 
 #include "cautery/sha256.h"
-#include "hub/departure.h"
-#include "hub/fault_point.h"
-#include "session/handover.h"
-#include "store/dump.h"
+#include "move/internal.h"
 
 enum {
 	PIECE_BYTES = 4 << 20, // and at most a row more: one commit of the other daemon's store
@@ -20,7 +17,7 @@ enum {
 // PIECE_BYTES go through a line of 4 Mbit/s in 8.4 s.
 #define FIRST_PIECE_MOST_S 10.
 
-typedef struct cau_departure departure;
+typedef cau_departure departure;
 
 static void destroy(departure *d)
 {
@@ -30,23 +27,23 @@ static void destroy(departure *d)
 }
 
 // With the lock.
-static departure *find(cau_hub *hub, const char *id)
+static departure *find(cau_moves *moves, const char *id)
 {
-	departure *d = hub->departures;
+	departure *d = moves->departures;
 	while (d && strcmp(d->id, id) != 0)
 		d = d->next;
 	return d;
 }
 
-departure *cau_departure_find_own(cau_hub *hub, const cau_move_asked *asked)
+departure *cau_departure_find_own(cau_moves *moves, const cau_move_asked *asked)
 {
-	departure *d = find(hub, asked->session);
+	departure *d = find(moves, asked->session);
 	return d && strcmp(d->becomes.move, asked->move) == 0 ? d : NULL;
 }
 
-void cau_departure_take_out(cau_hub *hub, departure *d)
+void cau_departure_take_out(cau_moves *moves, departure *d)
 {
-	departure **link = &hub->departures;
+	departure **link = &moves->departures;
 	while (*link != d)
 		link = &(*link)->next;
 	*link = d->next;
@@ -73,7 +70,7 @@ static bool make_hex(char *hex, size_t bytes)
 	return true;
 }
 
-static cau_status fill(const cau_hub *hub, departure *d, const cau_move_asked *asked,
+static cau_status fill(const cau_moves *moves, departure *d, const cau_move_asked *asked,
                        cau_error *error)
 {
 	size_t label_bytes = strlen(asked->label);
@@ -92,7 +89,7 @@ static cau_status fill(const cau_hub *hub, departure *d, const cau_move_asked *a
 	if (!make_hex(d->becomes.move + 1, 16) || !make_hex(d->becomes.proof, 32))
 		return cau_fail(error, CAU_UNSUPPORTED, "", "the system has no random bytes");
 	if (!cau_sha256(d->becomes.proof, strlen(d->becomes.proof), d->lock) ||
-	    !cau_move_release(hub->move_secret, d->becomes.move, d->release) ||
+	    !cau_move_release(moves->secret, d->becomes.move, d->release) ||
 	    !cau_sha256(d->release, strlen(d->release), d->unlock))
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a move");
 	return CAU_OK;
@@ -102,7 +99,7 @@ static cau_status fill(const cau_hub *hub, departure *d, const cau_move_asked *a
 static cau_hosted *find_hosted(cau_move_job *job)
 {
 	cau_moved_to to;
-	cau_hosted *hosted = cau_hub_find(job->hub, job->asked.session);
+	cau_hosted *hosted = cau_hub_find(job->moves->def.hub, job->asked.session);
 	bool ephemeral = hosted && cau_hosted_is_ephemeral(hosted);
 	if (hosted && !cau_hosted_starting(hosted) && !ephemeral)
 		return hosted;
@@ -111,7 +108,7 @@ static cau_hosted *find_hosted(cau_move_job *job)
 		              "it is ephemeral: it is not stored, and cannot move");
 	else if (hosted)
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "params.session", "it is being built");
-	else if (cau_hub_moved(job->hub, job->asked.session, &to))
+	else if (cau_tombstones_have(job->moves, job->asked.session, &to))
 		cau_reply_moved(&job->reply, &to);
 	else
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
@@ -129,36 +126,36 @@ static bool is_left(const departure *d, double now_s)
 }
 
 // With the lock.
-static void give_way(cau_hub *hub, const char *id)
+static void give_way(cau_moves *moves, const char *id)
 {
-	departure *d = find(hub, id);
+	departure *d = find(moves, id);
 	if (!d || !is_left(d, cau_monotonic_s()))
 		return;
 	cau_leaving_take(&d->leaving, CAU_LEAVING_LATE, true);
 	cau_log(CAU_LOG_NOTICE, d->id, "move_ended", "move=%s reason=\"its courier has gone\"",
 	        d->becomes.move);
-	cau_departure_take_out(hub, d);
+	cau_departure_take_out(moves, d);
 }
 
-static cau_status enlist(cau_hub *hub, departure *d, cau_error *error)
+static cau_status enlist(cau_moves *moves, departure *d, cau_error *error)
 {
 	cau_status status = CAU_OK;
-	pthread_mutex_lock(&hub->moves_mutex);
-	give_way(hub, d->id);
-	if (find(hub, d->id))
+	pthread_mutex_lock(&moves->mutex);
+	give_way(moves, d->id);
+	if (find(moves, d->id))
 		status = cau_fail(
 			error, CAU_BAD_STATE, "params.session",
 			"the session is being moved already: cancel that with `cautery move --cancel`");
-	else if (hub->tombstone_count >= TOMBSTONES_MOST)
+	else if (moves->tombstone_count >= TOMBSTONES_MOST)
 		status = cau_fail(error, CAU_LIMIT, "", "%d sessions have moved away from this daemon",
 		                  TOMBSTONES_MOST);
 	else {
 		cau_leaving_take(&d->leaving, CAU_LEAVING_BEGIN, true);
 		d->touched_s = cau_monotonic_s();
-		d->next = hub->departures;
-		hub->departures = d;
+		d->next = moves->departures;
+		moves->departures = d;
 	}
-	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&moves->mutex);
 	return status;
 }
 
@@ -176,13 +173,13 @@ void cau_departure_begin(cau_move_job *job)
 		return;
 	}
 	d->hosted = hosted;
-	cau_status status = fill(job->hub, d, &job->asked, &error);
-	cau_store_flush(job->hub->def.store); // one that was made just now is on its way there
+	cau_status status = fill(job->moves, d, &job->asked, &error);
+	cau_store_flush(job->moves->def.store); // one that was made just now is on its way there
 	if (!status)
-		status = cau_store_dump_open(job->hub->def.store, d->id, &d->dump, &error);
+		status = cau_store_dump_open(job->moves->def.store, d->id, &d->dump, &error);
 	memcpy(result.move, d->becomes.move, sizeof result.move);
 	if (!status)
-		status = enlist(job->hub, d, &error);
+		status = enlist(job->moves, d, &error);
 	if (status) {
 		destroy(d);
 		cau_reply_fail(&job->reply, &error, 0);
@@ -197,7 +194,7 @@ void cau_departure_begin(cau_move_job *job)
 
 // Who holds which tool comes with the rest: it is known to memory alone, as after a lost
 // connection.
-static void write_hands(cau_hub *hub, departure *d, cau_rows_writer *writer)
+static void write_hands(cau_moves *moves, departure *d, cau_rows_writer *writer)
 {
 	cau_drive drives[CAU_MAX_TOOLS];
 	double speed;
@@ -206,21 +203,21 @@ static void write_hands(cau_hub *hub, departure *d, cau_rows_writer *writer)
 	for (int32_t i = 0; i < count; i++) {
 		char token[CAU_RESUME_BYTES];
 		const cau_asker *driver = &drives[i].driver;
-		if (driver->client && cau_hub_resume_token(hub, driver->client, token))
+		if (driver->client && cau_hub_resume_token(moves->def.hub, driver->client, token))
 			cau_rows_put_values(writer, CAU_ROWS_DRIVERS, drives[i].tool, token, driver->client_id,
 			                    driver->name, (int64_t)driver->role,
 			                    (int64_t)(driver->deadline_s * 1e6));
 	}
 }
 
-static cau_status write_part(cau_hub *hub, departure *d, bool held, cau_rows_writer *writer,
+static cau_status write_part(cau_moves *moves, departure *d, bool held, cau_rows_writer *writer,
                              cau_error *error)
 {
 	bool over = false;
 	cau_status status = CAU_OK;
 	if (d->part_sent && !d->rest_begun) {
 		d->rest_begun = true;
-		write_hands(hub, d, writer);
+		write_hands(moves, d, writer);
 		status = cau_store_dump_rest(d->dump, error);
 	}
 	if (!status)
@@ -240,15 +237,15 @@ static bool seal_piece(departure *d, cau_rows_writer *writer)
 	return sealed && !writer->failed;
 }
 
-static cau_status write_piece(cau_hub *hub, departure *d, bool held, cau_rows_writer *writer,
+static cau_status write_piece(cau_moves *moves, departure *d, bool held, cau_rows_writer *writer,
                               cau_error *error)
 {
 	cau_rows_begin(writer, d->pieces);
 	if (d->pieces == 0)
 		cau_rows_put_values(writer, CAU_ROWS_HEADER, d->becomes.move, d->lock, d->id,
-		                    hub->def.config->label, cau_hosted_scene(d->hosted)->name, d->unlock);
+		                    moves->def.config->label, cau_hosted_scene(d->hosted)->name, d->unlock);
 	d->pieces++;
-	cau_status status = write_part(hub, d, held, writer, error);
+	cau_status status = write_part(moves, d, held, writer, error);
 	if (!status && (writer->failed || !seal_piece(d, writer)))
 		status = cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece of the session");
 	return status;
@@ -258,8 +255,8 @@ static cau_status write_piece(cau_hub *hub, departure *d, bool held, cau_rows_wr
 static departure *begin_reading(cau_move_job *job, bool *held)
 {
 	const char *why = NULL;
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	departure *d = cau_departure_find_own(job->moves, &job->asked);
 	*held = d && d->leaving.state == CAU_LEAVING_HELD;
 	if (d && d->reading)
 		why = "another piece is being read";
@@ -271,7 +268,7 @@ static departure *begin_reading(cau_move_job *job, bool *held)
 		d->reading = true;
 		d->touched_s = cau_monotonic_s();
 	}
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 	if (!d)
 		cau_departure_fail_unknown(&job->reply);
 	else if (why)
@@ -279,13 +276,13 @@ static departure *begin_reading(cau_move_job *job, bool *held)
 	return why ? NULL : d;
 }
 
-static void end_reading(cau_hub *hub, departure *d)
+static void end_reading(cau_moves *moves, departure *d)
 {
-	pthread_mutex_lock(&hub->moves_mutex);
+	pthread_mutex_lock(&moves->mutex);
 	d->reading = false;
 	if (d->over)
 		destroy(d);
-	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&moves->mutex);
 }
 
 void cau_departure_read(cau_move_job *job)
@@ -298,8 +295,8 @@ void cau_departure_read(cau_move_job *job)
 		return;
 	char name[2 * CAU_NAME_BYTES];
 	snprintf(name, sizeof name, "%s-%u.caum", d->id, (unsigned)d->pieces);
-	cau_status status = write_piece(job->hub, d, held, &writer, &error);
-	end_reading(job->hub, d);
+	cau_status status = write_piece(job->moves, d, held, &writer, &error);
+	end_reading(job->moves, d);
 	if (status)
 		cau_reply_fail(&job->reply, &error, 0);
 	else
@@ -310,10 +307,10 @@ void cau_departure_read(cau_move_job *job)
 
 // ---- all of them --------------------------------------------------------------------------------
 
-void cau_departures_list(cau_hub *hub, cau_wire_list *list)
+void cau_departures_list(const cau_moves *moves, cau_wire_list *list)
 {
 	cau_wire_move_entry *entries = list->items;
-	for (const departure *d = hub->departures; d && list->count < list->capacity; d = d->next) {
+	for (const departure *d = moves->departures; d && list->count < list->capacity; d = d->next) {
 		cau_wire_move_entry *entry = &entries[list->count++];
 		*entry = (cau_wire_move_entry){0};
 		memcpy(entry->session, d->id, sizeof entry->session);
@@ -327,11 +324,11 @@ void cau_departures_list(cau_hub *hub, cau_wire_list *list)
 	}
 }
 
-void cau_departures_free(cau_hub *hub)
+void cau_departures_free(cau_moves *moves)
 {
-	for (departure *d = hub->departures, *next; d; d = next) {
+	for (departure *d = moves->departures, *next; d; d = next) {
 		next = d->next;
 		destroy(d);
 	}
-	hub->departures = NULL;
+	moves->departures = NULL;
 }

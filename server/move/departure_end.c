@@ -4,23 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hub/departure.h"
-#include "hub/fault_point.h"
+#include "move/internal.h"
 
 #define HELD_MOST_S 30.  // a session that stands still for longer goes on
 #define SENDS_MOST_S 60. // a courier that asks for nothing for so long has gone
 
-typedef struct cau_departure departure;
+typedef cau_departure departure;
 
 // ---- going on -----------------------------------------------------------------------------------
 
-static void clear(cau_hub *hub, departure *d);
+static void clear(cau_moves *moves, departure *d);
 
 // Does what a machine answered to a cancel or to time. With the lock; may take the departure out.
-static void let_go(cau_hub *hub, departure *d, cau_leaving_state from, cau_leaving_act act)
+static void let_go(cau_moves *moves, departure *d, cau_leaving_state from, cau_leaving_act act)
 {
 	if (act == CAU_LEAVING_DO_CLEAR) {
-		clear(hub, d);
+		clear(moves, d);
 		return;
 	}
 	if (act != CAU_LEAVING_DO_GO_ON)
@@ -30,11 +29,11 @@ static void let_go(cau_hub *hub, departure *d, cau_leaving_state from, cau_leavi
 	if (from != CAU_LEAVING_SENDS)
 		cau_hosted_go_on(d->hosted);
 	cau_move_kept(&d->waiting, d->release);
-	cau_departure_take_out(hub, d);
+	cau_departure_take_out(moves, d);
 }
 
 typedef struct at_disk {
-	cau_hub *hub;
+	cau_moves *moves;
 	departure *departure;
 } at_disk;
 
@@ -42,10 +41,10 @@ typedef struct at_disk {
 static void cleared(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;
-	cau_hub *hub = done->hub;
+	cau_moves *moves = done->moves;
 	departure *d = done->departure;
 	(void)reason;
-	pthread_mutex_lock(&hub->moves_mutex);
+	pthread_mutex_lock(&moves->mutex);
 	cau_leaving_act act =
 		cau_leaving_take(&d->leaving, status ? CAU_LEAVING_REFUSED : CAU_LEAVING_WRITTEN, true);
 	if (status) {
@@ -53,27 +52,27 @@ static void cleared(void *user, cau_status status, const char *reason)
 		d->waiting = (cau_reply){0};
 		d->held_s = cau_monotonic_s(); // asked again later
 	} else {
-		let_go(hub, d, CAU_LEAVING_CLEARING, act);
+		let_go(moves, d, CAU_LEAVING_CLEARING, act);
 	}
-	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&moves->mutex);
 	free(done);
 }
 
-static cau_status submit(cau_hub *hub, departure *d, cau_store_batch *batch,
+static cau_status submit(cau_moves *moves, departure *d, cau_store_batch *batch,
                          cau_store_callback callback, cau_error *error)
 {
 	at_disk *travelling = malloc(sizeof *travelling);
 	if (!travelling)
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a commit");
-	*travelling = (at_disk){hub, d};
-	cau_status status = cau_store_submit(hub->def.store, batch, callback, travelling, error);
+	*travelling = (at_disk){moves, d};
+	cau_status status = cau_store_submit(moves->def.store, batch, callback, travelling, error);
 	if (status)
 		free(travelling);
 	return status;
 }
 
 // Any commit that follows makes sure that one which the disk refused does not come to light.
-static void clear(cau_hub *hub, departure *d)
+static void clear(cau_moves *moves, departure *d)
 {
 	cau_error error = {0};
 	cau_store_batch *batch = cau_store_batch_create();
@@ -81,7 +80,7 @@ static void clear(cau_hub *hub, departure *d)
 	cau_status status = batch ? cau_store_put_event(batch, &event, &error)
 	                          : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a commit");
 	if (!status)
-		status = submit(hub, d, batch, cleared, &error);
+		status = submit(moves, d, batch, cleared, &error);
 	if (!status)
 		return;
 	cau_store_batch_destroy(batch);
@@ -99,29 +98,29 @@ static bool is_late(const departure *d, double now_s)
 	return state == CAU_LEAVING_SENDS && now_s - d->touched_s > SENDS_MOST_S;
 }
 
-void cau_departures_let_go(cau_hub *hub, double now_s, bool all)
+void cau_departures_let_go(cau_moves *moves, double now_s, bool all)
 {
 	if (all) { // nothing is given to the disk any more, and what was is decided
-		pthread_mutex_lock(&hub->moves_mutex);
-		hub->moves_end = true;
-		pthread_mutex_unlock(&hub->moves_mutex);
-		cau_store_flush(hub->def.store);
+		pthread_mutex_lock(&moves->mutex);
+		moves->ends = true;
+		pthread_mutex_unlock(&moves->mutex);
+		cau_store_flush(moves->def.store);
 	}
-	pthread_mutex_lock(&hub->moves_mutex);
-	for (departure *d = hub->departures, *next; d; d = next) {
+	pthread_mutex_lock(&moves->mutex);
+	for (departure *d = moves->departures, *next; d; d = next) {
 		next = d->next;
 		cau_leaving_state from = d->leaving.state;
 		if (all || is_late(d, now_s))
-			let_go(hub, d, from, cau_leaving_take(&d->leaving, CAU_LEAVING_LATE, true));
+			let_go(moves, d, from, cau_leaving_take(&d->leaving, CAU_LEAVING_LATE, true));
 	}
-	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&moves->mutex);
 }
 
 // ---- hold ---------------------------------------------------------------------------------------
 
 // Whom to answer once the session stands still, or cannot.
 typedef struct holding {
-	cau_hub *hub;
+	cau_moves *moves;
 	cau_move_asked asked;
 	cau_reply reply;
 } holding;
@@ -129,19 +128,19 @@ typedef struct holding {
 static void held(void *user, const cau_reply *reply, const cau_outcome *outcome)
 {
 	holding *asked = user;
-	cau_hub *hub = asked->hub;
+	cau_moves *moves = asked->moves;
 	(void)reply;
 	cau_fault_point("move_stopped");
-	pthread_mutex_lock(&hub->moves_mutex);
-	departure *d = cau_departure_find_own(hub, &asked->asked);
+	pthread_mutex_lock(&moves->mutex);
+	departure *d = cau_departure_find_own(moves, &asked->asked);
 	cau_leaving_act act = cau_leaving_take(
 		&d->leaving, outcome->error ? CAU_LEAVING_NOT_STOPPED : CAU_LEAVING_STOPPED, true);
 	d->held_s = cau_monotonic_s();
 	if (outcome->error) // the session has gone on by itself
-		cau_departure_take_out(hub, d);
+		cau_departure_take_out(moves, d);
 	else
-		let_go(hub, d, CAU_LEAVING_STOPS, act);
-	pthread_mutex_unlock(&hub->moves_mutex);
+		let_go(moves, d, CAU_LEAVING_STOPS, act);
+	pthread_mutex_unlock(&moves->mutex);
 	if (outcome->error || act == CAU_LEAVING_SAY_HELD)
 		cau_reply_answer(&asked->reply, outcome);
 	else
@@ -158,11 +157,11 @@ static void ask_to_hold(cau_move_job *job, cau_hosted *hosted)
 	if (!asked || !order) {
 		free(asked);
 		free(order);
-		cau_departures_let_go(job->hub, cau_monotonic_s(), false);
+		cau_departures_let_go(job->moves, cau_monotonic_s(), false);
 		cau_move_fail(&job->reply, CAU_NO_MEMORY, 0, "", "no memory for the request");
 		return;
 	}
-	*asked = (holding){.hub = job->hub, .asked = job->asked, .reply = job->reply};
+	*asked = (holding){.moves = job->moves, .asked = job->asked, .reply = job->reply};
 	order->kind = CAU_ORDER_HOLD;
 	order->asker = (cau_asker){.name = "a move", .role = CAU_ROLE_ADMIN};
 	order->reply = reply;
@@ -174,13 +173,13 @@ static void ask_to_hold(cau_move_job *job, cau_hosted *hosted)
 
 void cau_departure_hold(cau_move_job *job)
 {
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	departure *d = cau_departure_find_own(job->moves, &job->asked);
 	bool known = d != NULL;
 	bool stops = known && d->part_sent && !d->reading &&
 	             cau_leaving_take(&d->leaving, CAU_LEAVING_HOLD, true) == CAU_LEAVING_DO_STOP;
 	cau_hosted *hosted = stops ? cau_hosted_share(d->hosted) : NULL;
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 	if (!known)
 		cau_departure_fail_unknown(&job->reply);
 	else if (!stops)
@@ -200,38 +199,38 @@ static bool is_own_fault(cau_status status)
 }
 
 // With the lock.
-static void go_away(cau_hub *hub, departure *d)
+static void go_away(cau_moves *moves, departure *d)
 {
-	cau_tombstone_put(hub, &d->becomes);
+	cau_tombstone_put(moves, &d->becomes);
 	cau_hosted_go_away(d->hosted, &d->becomes.to);
 	cau_move_decided(&d->waiting, &d->becomes);
-	cau_departure_take_out(hub, d);
+	cau_departure_take_out(moves, d);
 }
 
 static void decided(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;
-	cau_hub *hub = done->hub;
+	cau_moves *moves = done->moves;
 	departure *d = done->departure;
 	cau_leaving_event event = !status                ? CAU_LEAVING_WRITTEN
 	                          : is_own_fault(status) ? CAU_LEAVING_UNSENT
 	                                                 : CAU_LEAVING_REFUSED;
 	cau_fault_point("move_decided");
-	pthread_mutex_lock(&hub->moves_mutex);
+	pthread_mutex_lock(&moves->mutex);
 	cau_leaving_act act = cau_leaving_take(&d->leaving, event, true);
 	if (act == CAU_LEAVING_DO_END) {
-		go_away(hub, d);
+		go_away(moves, d);
 	} else {
 		cau_move_fail(&d->waiting, status, cau_hosted_commit_code(status), "", reason);
 		d->waiting = (cau_reply){0};
-		let_go(hub, d, CAU_LEAVING_HELD, act);
+		let_go(moves, d, CAU_LEAVING_HELD, act);
 	}
-	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&moves->mutex);
 	free(done);
 }
 
 // With the lock.
-static void write_tombstone(cau_hub *hub, departure *d, const cau_reply *reply)
+static void write_tombstone(cau_moves *moves, departure *d, const cau_reply *reply)
 {
 	cau_error error = {0};
 	const cau_tombstone *row = &d->becomes;
@@ -242,12 +241,12 @@ static void write_tombstone(cau_hub *hub, departure *d, const cau_reply *reply)
 	                         .url = row->to.url,
 	                         .proof = row->proof};
 	cau_store_batch *batch = cau_store_batch_create();
-	cau_status status = batch && cau_tombstones_reserve(hub)
+	cau_status status = batch && cau_tombstones_reserve(moves)
 	                        ? cau_store_put_moved(batch, &moved, &error)
 	                        : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a commit");
 	d->waiting = *reply;
 	if (!status)
-		status = submit(hub, d, batch, decided, &error);
+		status = submit(moves, d, batch, decided, &error);
 	if (!status)
 		return;
 	cau_store_batch_destroy(batch);
@@ -255,13 +254,13 @@ static void write_tombstone(cau_hub *hub, departure *d, const cau_reply *reply)
 	cau_leaving_act act = cau_leaving_take(&d->leaving, CAU_LEAVING_UNSENT, true);
 	cau_reply_fail(reply, &error, cau_hosted_commit_code(status));
 	d->waiting = (cau_reply){0};
-	let_go(hub, d, from, act);
+	let_go(moves, d, from, act);
 }
 
 // What the tombstone says, if it is of this move. With the lock.
 static bool show(cau_move_job *job)
 {
-	const cau_tombstone *found = cau_tombstone_find(job->hub, job->asked.session);
+	const cau_tombstone *found = cau_tombstone_find(job->moves, job->asked.session);
 	bool own = found && strcmp(found->move, job->asked.move) == 0;
 	if (own)
 		cau_move_decided(&job->reply, found);
@@ -277,12 +276,12 @@ static bool is_received(const departure *d, const char *receipt)
 
 void cau_departure_commit(cau_move_job *job)
 {
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	departure *d = cau_departure_find_own(job->moves, &job->asked);
 	if (!d) {
 		if (!show(job))
 			cau_departure_fail_unknown(&job->reply);
-	} else if (job->hub->moves_end) {
+	} else if (job->moves->ends) {
 		cau_move_fail(&job->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "",
 		              "the server is shutting down");
 	} else if (!d->all_sent) {
@@ -292,21 +291,21 @@ void cau_departure_commit(cau_move_job *job)
 			&job->reply, CAU_BAD_VALUE, 0, "params.receipt",
 			"it is not the one that the other daemon gives for the last piece of this move");
 	} else if (cau_leaving_take(&d->leaving, CAU_LEAVING_COMMIT, true) == CAU_LEAVING_DO_WRITE) {
-		write_tombstone(job->hub, d, &job->reply);
+		write_tombstone(job->moves, d, &job->reply);
 	} else {
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "the move is being decided: ask again");
 	}
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 }
 
 // ---- cancel -------------------------------------------------------------------------------------
 
 // Who asks another daemon than the one that the session came from must not hear that it stays
 // there.
-static bool is_of_this_daemon(const cau_hub *hub, const char *id)
+static bool is_of_this_daemon(const cau_moves *moves, const char *id)
 {
-	size_t bytes = strlen(hub->def.config->label);
-	return strncmp(id, hub->def.config->label, bytes) == 0 && id[bytes] == '-';
+	size_t bytes = strlen(moves->def.config->label);
+	return strncmp(id, moves->def.config->label, bytes) == 0 && id[bytes] == '-';
 }
 
 static void cancel(cau_move_job *job, departure *d)
@@ -318,14 +317,14 @@ static void cancel(cau_move_job *job, departure *d)
 		return;
 	}
 	d->waiting = job->reply;
-	let_go(job->hub, d, from, act);
+	let_go(job->moves, d, from, act);
 }
 
 // No such move is under way or was decided, so it never will be: its proof was in memory alone.
 static void keep(cau_move_job *job)
 {
 	cau_move_hash release;
-	if (cau_move_release(job->hub->move_secret, job->asked.move, release))
+	if (cau_move_release(job->moves->secret, job->asked.move, release))
 		cau_move_kept(&job->reply, release);
 	else
 		cau_move_fail(&job->reply, CAU_NO_MEMORY, 0, "", "no memory for the answer");
@@ -333,14 +332,14 @@ static void keep(cau_move_job *job)
 
 void cau_departure_cancel(cau_move_job *job)
 {
-	pthread_mutex_lock(&job->hub->moves_mutex);
-	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	pthread_mutex_lock(&job->moves->mutex);
+	departure *d = cau_departure_find_own(job->moves, &job->asked);
 	if (d)
 		cancel(job, d);
-	else if (!is_of_this_daemon(job->hub, job->asked.session))
+	else if (!is_of_this_daemon(job->moves, job->asked.session))
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
 		              "the session's label is not this daemon's");
 	else if (!show(job))
 		keep(job);
-	pthread_mutex_unlock(&job->hub->moves_mutex);
+	pthread_mutex_unlock(&job->moves->mutex);
 }
