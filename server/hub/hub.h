@@ -13,7 +13,7 @@
 #include "hosted_session/hosted.h"
 #include "hosted_session/mesh_reading.h"
 #include "hub/quota.h"
-#include "hub/scenes.h"
+#include "scenes/scenes.h"
 
 typedef struct cau_hub cau_hub;
 
@@ -123,12 +123,6 @@ void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
 // could not be brought up. Answered through `reply` if true; false: there is nothing to look for.
 bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker,
                             int64_t client_sequence, const cau_reply *reply);
-
-// Packs the bytes of a scene's uploaded meshes into one allocation and points the scene there;
-// *meshes is NULL if it has none. And back, after reading both from the store.
-cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, cau_error *error);
-cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
-                             cau_error *error);
 
 // Has an upload read as a mesh, on the builder. Takes bytes and filling, on failure too.
 cau_status cau_hub_read_mesh(cau_hub *hub, const cau_mesh_asked *asked, const cau_reply *reply,

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "hub/hub.h"
+#include "scenes/scenes.h"
 
 static cau_scene_def *scene_with(const char *first, const char *second)
 {

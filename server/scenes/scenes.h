@@ -27,3 +27,11 @@ void cau_scenes_each(cau_scenes *scenes, void (*visit)(void *user, const cau_sce
                      void *user);
 // False: there is no such scene.
 bool cau_scenes_copy(cau_scenes *scenes, const char *name, cau_scene_def *copy);
+
+// ---- uploaded meshes of a scene
+
+// Packs the bytes of a scene's uploaded meshes into one allocation and points the scene there;
+// *meshes is NULL if it has none. And back, after reading both from the store.
+cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, cau_error *error);
+cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
+                             cau_error *error);

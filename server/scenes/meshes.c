@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hub/hub.h"
+#include "scenes/scenes.h"
 
 static bool is_uploaded(const cau_mesh_def *mesh)
 {

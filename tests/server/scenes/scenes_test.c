@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hub/scenes.h"
+#include "scenes/scenes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
