@@ -263,7 +263,8 @@ static cau_status open_network(cau_daemon *daemon, cau_error *error)
 	                              .auth = daemon->auth,
 	                              .hub = daemon->hub,
 	                              .moves = daemon->moves,
-	                              .store = daemon->store};
+	                              .store = daemon->store,
+	                              .builder = daemon->builder};
 	cau_status status = cau_service_create(&daemon->service, &of_service, error);
 	if (status)
 		return status;

@@ -49,15 +49,9 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 {
 	*made = NULL;
 	cau_hub *hub = calloc(1, sizeof *hub);
-	if (hub) {
+	if (hub)
 		hub->sessions = calloc(SLOTS(def->config), sizeof(cau_hosted *));
-		hub->quota = cau_quota_create(def->config);
-	}
-	if (!hub || !hub->sessions || !hub->quota) {
-		if (hub) {
-			cau_quota_destroy(hub->quota);
-			free(hub->sessions);
-		}
+	if (!hub || !hub->sessions) {
 		free(hub);
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the hub");
 	}
@@ -115,7 +109,6 @@ void cau_hub_destroy(cau_hub *hub)
 	pthread_mutex_destroy(&hub->mutex);
 	pthread_mutex_destroy(&hub->clerk_mutex);
 	cau_beginnings_finish(&hub->beginnings);
-	cau_quota_destroy(hub->quota);
 	free(hub->sessions);
 	free(hub->clients);
 	free(hub);
@@ -124,11 +117,6 @@ void cau_hub_destroy(cau_hub *hub)
 cau_scenes *cau_hub_scenes(const cau_hub *hub)
 {
 	return hub->def.scenes;
-}
-
-cau_quota *cau_hub_quota(cau_hub *hub)
-{
-	return hub->quota;
 }
 
 // ---- sessions

@@ -11,8 +11,6 @@
 #include "cautery/messages.h"
 #include "config/config.h"
 #include "hosted_session/hosted.h"
-#include "hosted_session/mesh_reading.h"
-#include "hub/quota.h"
 #include "scenes/scenes.h"
 
 typedef struct cau_hub cau_hub;
@@ -44,8 +42,6 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
 // settings want one.
 cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error);
 cau_scenes *cau_hub_scenes(const cau_hub *hub);
-// What transports ask before they pass on a request that costs much.
-cau_quota *cau_hub_quota(cau_hub *hub);
 
 // ---- clients
 enum { CAU_RESUME_BYTES = 33, CAU_OWNER_BYTES = 80 };
@@ -123,16 +119,6 @@ void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
 // could not be brought up. Answered through `reply` if true; false: there is nothing to look for.
 bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker,
                             int64_t client_sequence, const cau_reply *reply);
-
-// Has an upload read as a mesh, on the builder. Takes bytes and filling, on failure too.
-cau_status cau_hub_read_mesh(cau_hub *hub, const cau_mesh_asked *asked, const cau_reply *reply,
-                             cau_error *error);
-
-// Has a copy of the store made, under a name ("": the time), in the folder of the settings. On
-// CAU_OK it is answered through `reply`, with store_copy or why not. CAU_BAD_STATE: one is being
-// made.
-cau_status cau_hub_back_up(cau_hub *hub, const char *name, const cau_reply *reply,
-                           cau_error *error);
 
 // ---- for the daemon
 

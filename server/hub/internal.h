@@ -17,7 +17,6 @@ enum { MOST_SINKS = 4 };
 
 struct cau_hub {
 	cau_hub_def def;
-	cau_quota *quota;
 	_Atomic int64_t memory_held; // by all sessions, bytes, about
 	cau_beginnings beginnings;
 	cau_surroundings around;
@@ -41,8 +40,6 @@ struct cau_hub {
 	pthread_mutex_t clerk_mutex;
 	cau_creation *first, *last;
 	uint32_t last_name;
-
-	atomic_bool copying; // a copy of the store is being made
 };
 
 // ---- clerk.c

@@ -5,11 +5,13 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "backup/backup.h"
 #include "cautery/chunk_codec.h"
 #include "clock/clock.h"
 #include "hub/sign_of_life.h"
 #include "log/log.h"
 #include "metrics/exposition.h"
+#include "quota/quota.h"
 #include "rpc/service.h"
 #include "rpc/uploads.h"
 
@@ -79,6 +81,9 @@ struct cau_service {
 	cau_hub *hub;
 	cau_moves *moves;
 	cau_store *store;
+	cau_builder *builder;
+	cau_quota *quota;
+	cau_backups backups;
 	cau_network *network;
 	atomic_bool draining, frames_waiting, tokens_changed;
 	atomic_ulong ticks;

@@ -61,9 +61,8 @@ static bool afford(const cau_call *call)
 		return false;
 	}
 	const cau_quota_token token = {peer->grant, peer->bounds.quota};
-	if (!cau_quota_take(cau_hub_quota(peer->service->hub), &peer->allowance, &token,
-	                    peer->connection->address, peer->client.asker.role, cau_monotonic_s(),
-	                    &error))
+	if (!cau_quota_take(peer->service->quota, &peer->allowance, &token, peer->connection->address,
+	                    peer->client.asker.role, cau_monotonic_s(), &error))
 		return true;
 	cau_call_fail(call, &error, CAU_RPC_RATE);
 	return false;
@@ -251,7 +250,13 @@ cau_status cau_service_create(cau_service **made, const cau_service_def *def, ca
 	service->hub = def->hub;
 	service->moves = def->moves;
 	service->store = def->store;
+	service->builder = def->builder;
+	service->quota = cau_quota_create(def->config);
+	service->backups =
+		(cau_backups){.config = def->config, .store = def->store, .builder = def->builder};
 	pthread_mutex_init(&service->mutex, NULL);
+	if (!service->quota)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for quotas");
 	if (!cau_scene_answers_make(service))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the scenes");
 	cau_hub_add_sink(def->hub, &(cau_sink){service, cau_service_notify, cau_service_frames, NULL});
@@ -271,6 +276,7 @@ void cau_service_destroy(cau_service *service)
 	}
 	pthread_mutex_destroy(&service->mutex);
 	cau_scene_answers_free(service);
+	cau_quota_destroy(service->quota);
 	free(service);
 }
 

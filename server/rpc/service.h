@@ -4,6 +4,7 @@
 #pragma once
 
 #include "auth/auth.h"
+#include "builder/builder.h"
 #include "hub/hub.h"
 #include "metrics/exposition.h"
 #include "move/move.h"
@@ -17,11 +18,12 @@ typedef struct cau_service_def {
 	cau_hub *hub;
 	cau_moves *moves;
 	cau_store *store;
+	cau_builder *builder; // reads uploads and copies the store
 } cau_service_def;
 
 // Registers its sink with the hub.
 cau_status cau_service_create(cau_service **service, const cau_service_def *def, cau_error *error);
-// After the network has ended and the hub's sessions are gone. Takes NULL.
+// After the network and the builder have ended, and the hub's sessions are gone. Takes NULL.
 void cau_service_destroy(cau_service *service);
 
 // What the network calls.

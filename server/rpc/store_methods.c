@@ -12,7 +12,7 @@ void cau_call_store_backup(cau_call *call)
 		return;
 	}
 	if (cau_rpc_params(call->message, &params, &error) ||
-	    cau_hub_back_up(call->peer->service->hub, params.has_name ? params.name : "", &reply,
-	                    &error))
+	    cau_backups_make(&call->peer->service->backups, params.has_name ? params.name : "", &reply,
+	                     &error))
 		cau_call_fail(call, &error, 0);
 }

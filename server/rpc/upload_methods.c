@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/mesh_reading.h"
 #include "rpc/internal.h"
 
 enum { READINGS_OF_PEER = 2 };
@@ -157,7 +158,7 @@ static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params,
 	memcpy(asked.bytes, upload->bytes, upload->byte_count); // the upload may be discarded meanwhile
 	asked.byte_count = upload->byte_count;
 	cau_upload_refill(upload, cau_filling_share(asked.filling));
-	return cau_hub_read_mesh(peer->service->hub, &asked, &reply, error);
+	return cau_mesh_ask(peer->service->builder, &asked, &reply, error);
 }
 
 void cau_call_mesh_read(cau_call *call)

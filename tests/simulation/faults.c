@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "hub/hub.h"
+#include "quota/quota.h"
 #include "rpc/internal.h"
 #include "server/double/fake_session.h"
 #include "session/internal.h"

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// store.backup: a copy of the store, made by the builder while everybody goes on. One at a time.
+#include "backup/backup.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 
-#include "builder/builder.h"
-#include "hub/internal.h"
+#include "hosted_session/hosted.h"
+#include "log/log.h"
 #include "store/backup.h"
 
 #define COPY_BYTES_PER_S 50e6 // about, read, written, synced and checked: for the builder's order
 
 typedef struct copying {
 	cau_job job; // first
-	cau_hub *hub;
+	cau_backups *backups;
 	cau_reply reply;
 	char folder[CAU_CONFIG_TEXT_BYTES + 16];
 	char file[CAU_CONFIG_TEXT_BYTES + 16 + CAU_NAME_BYTES + 8];
@@ -22,7 +23,7 @@ typedef struct copying {
 
 static void finish(copying *what, const cau_error *error, const cau_outcome *done)
 {
-	what->hub->copying = false;
+	what->backups->copying = false;
 	if (error)
 		cau_reply_fail(&what->reply, error, 0);
 	else
@@ -40,7 +41,7 @@ static void drop(cau_job *job)
 // made when it is first needed.
 static cau_status make_folder(const copying *what, cau_error *error)
 {
-	bool named = *what->hub->def.config->backups;
+	bool named = *what->backups->config->backups;
 	if (named || mkdir(what->folder, 0700) == 0 || errno == EEXIST)
 		return CAU_OK;
 	return cau_fail(error, CAU_IO, "", "cannot make the folder %.150s: %s", what->folder,
@@ -53,7 +54,7 @@ static cau_status copy(const copying *what, cau_outcome *done, cau_error *error)
 	cau_wire_store_copy result = {0};
 	cau_status status = make_folder(what, error);
 	if (!status)
-		status = cau_store_backup(what->hub->def.config->store, what->file, error);
+		status = cau_store_backup(what->backups->config->store, what->file, error);
 	if (status)
 		return status;
 	if (stat(what->file, &made) == 0)
@@ -75,14 +76,14 @@ static void run(cau_job *job)
 		        what->file, cau_status_name(status), error.reason);
 	else
 		cau_log(CAU_LOG_NOTICE, NULL, "backed_up", "store=\"%s\" file=\"%s\"",
-		        what->hub->def.config->store, what->file);
+		        what->backups->config->store, what->file);
 	finish(what, status ? &error : NULL, &done);
 	free(text);
 }
 
 static void name_copy(copying *what, const char *name)
 {
-	const cau_config *config = what->hub->def.config;
+	const cau_config *config = what->backups->config;
 	char made_up[CAU_NAME_BYTES];
 	time_t now = time(NULL);
 	struct tm utc;
@@ -100,27 +101,28 @@ static void name_copy(copying *what, const char *name)
 	snprintf(what->file, sizeof what->file, "%s/%s.db", what->folder, name);
 }
 
-static double expected_s(cau_hub *hub)
+static double expected_s(const cau_backups *backups)
 {
 	cau_store_metrics metrics;
-	cau_store_get_metrics(hub->def.store, &metrics);
+	cau_store_get_metrics(backups->store, &metrics);
 	return (double)metrics.database_bytes / COPY_BYTES_PER_S;
 }
 
-cau_status cau_hub_back_up(cau_hub *hub, const char *name, const cau_reply *reply, cau_error *error)
+cau_status cau_backups_make(cau_backups *backups, const char *name, const cau_reply *reply,
+                            cau_error *error)
 {
-	if (atomic_exchange(&hub->copying, true))
+	if (atomic_exchange(&backups->copying, true))
 		return cau_fail(error, CAU_BAD_STATE, "",
 		                "a copy is being made: try again when it is done");
 	copying *what = calloc(1, sizeof *what);
 	if (!what) {
-		hub->copying = false;
+		backups->copying = false;
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for the copy");
 	}
-	what->job = (cau_job){.run = run, .drop = drop, .expected_s = expected_s(hub)};
-	what->hub = hub;
+	what->job = (cau_job){.run = run, .drop = drop, .expected_s = expected_s(backups)};
+	what->backups = backups;
 	what->reply = *reply;
 	name_copy(what, name);
-	cau_builder_submit(hub->def.builder, &what->job);
+	cau_builder_submit(backups->builder, &what->job);
 	return CAU_OK;
 }

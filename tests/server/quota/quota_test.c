@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hub/quota.h"
+#include "quota/quota.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
