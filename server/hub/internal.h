@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the files of this room share.
+//
+// Locks are taken in this order: the hub's, a session's, the pool's. No other is taken inside the
+// clerk's. The functions of cau_elsewhere take a lock of their own; they are called with none held.
 #pragma once
 
 #include <pthread.h>

@@ -3,6 +3,7 @@
 // them. Who may be killed when: tests/e2e/move.test.mjs.
 #include "move/move.h"
 
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
