@@ -235,7 +235,7 @@ static bool carry_piece(cau_wire_move_received *received)
 static void carry_part(void)
 {
 	int pieces = 0;
-	cau_wire_move_received received;
+	cau_wire_move_received received = {0};
 	while (pieces < PIECES_MOST && carry_piece(&received))
 		pieces++;
 	assert_int_equal(t.answer.status, CAU_BAD_STATE); // the rest, once it is suspended
