@@ -3,7 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
+#include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 // ---- commands -----------------------------------------------------------------------------------
 
@@ -12,8 +15,8 @@ static cau_status check(cau_hosted *h, const cau_advance *advance, cau_error *er
 {
 	int32_t index;
 	char path[sizeof error->path];
-	cau_status status =
-		cau_session_may_submit(h->core, advance->commands, advance->command_count, &index, error);
+	cau_status status = cau_session_may_submit(h->core.session, advance->commands,
+	                                           advance->command_count, &index, error);
 	if (status) {
 		snprintf(path, sizeof path, "params.commands[%d].%.100s", index, error->path);
 		memcpy(error->path, path, sizeof error->path);
@@ -30,7 +33,7 @@ static bool holds_already(cau_hosted *h, const cau_command *command, const cau_d
 	             !command->as.ticks && !command->sequence;
 	if (!plain || !drive->enabled || drive->limit_tick)
 		return false;
-	cau_session_frame(h->core, &frame);
+	cau_session_frame(h->core.session, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++)
 		if (strcmp(frame.tools[i].name, command->tool) == 0)
 			return frame.tools[i].energized;
@@ -41,16 +44,19 @@ static void apply(cau_hosted *h, const cau_order *order, cau_command *command)
 {
 	cau_error error = {0};
 	cau_drive drive = {0};
-	cau_decide_find(h, command->tool, &drive);
+	cau_decisions_find(&h->decisions, command->tool, &drive);
 	if (holds_already(h, command, &drive))
 		return;
-	command->tick = h->tick;
-	if (!cau_drive_does(h, command) && cau_session_submit(h->core, command, &error))
-		cau_log(CAU_LOG_ERROR, h->id, "advance_lost", "tool=%s reason=\"%s\"", command->tool,
+	command->tick = h->core.tick;
+	if (!cau_energy_off_or_hold(&h->identity, &h->core, command) &&
+	    cau_session_submit(h->core.session, command, &error))
+		cau_log(CAU_LOG_ERROR, h->identity.id, "advance_lost", "tool=%s reason=\"%s\"",
+		        command->tool,
 		        error.reason); // it was checked, and nothing came between
-	cau_record_command(h, command, NULL, NULL, 0);
+	cau_record_command(&h->record, command, NULL, NULL, 0);
 	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE && command->as.energized && !drive.lit)
-		cau_event_add(h, CAU_EVENT_ENERGY_ON, command->tool, order->asker.name, 0, NULL);
+		cau_timeline_add(&h->timeline, CAU_EVENT_ENERGY_ON, command->tool, order->asker.name, 0,
+		                 NULL);
 }
 
 cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_action *action)
@@ -58,20 +64,20 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 	(void)action;
 	cau_error error = {0};
 	cau_advance *advance = order->as.advance;
-	if (cau_advance_check(h, advance, &error) || check(h, advance, &error)) {
+	if (cau_advance_check(&h->core.info, advance, &error) || check(h, advance, &error)) {
 		cau_answer_fail(order, &error, 0);
 		return CAU_NOT_DONE;
 	}
-	if (advance->command_count && cau_record_check(h, &error)) {
+	if (advance->command_count && cau_record_check(&h->record, &error)) {
 		cau_answer_fail(order, &error, CAU_RPC_STORE_FULL);
 		return CAU_NOT_DONE;
 	}
-	advance->began_tick = h->tick;
+	advance->began_tick = h->core.tick;
 	for (int32_t i = 0; i < advance->command_count; i++)
 		apply(h, order, &advance->commands[i]);
-	pthread_mutex_lock(&h->mutex);
-	h->counts.commands += (uint64_t)advance->command_count;
-	pthread_mutex_unlock(&h->mutex);
+	pthread_mutex_lock(&h->published.lock);
+	h->published.counts.commands += (uint64_t)advance->command_count;
+	pthread_mutex_unlock(&h->published.lock);
 	return CAU_DONE;
 }
 
@@ -81,10 +87,10 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 // each: it is never brought up again.
 static void record(cau_hosted *h, const cau_advance *advance)
 {
-	if (h->tick != advance->began_tick && !h->around->ephemeral)
-		cau_record_reached(h);
-	else if (h->tick != advance->began_tick)
-		cau_record_far(h);
+	if (h->core.tick != advance->began_tick && !h->identity.around->ephemeral)
+		cau_record_reached(&h->record);
+	else if (h->core.tick != advance->began_tick)
+		cau_record_far(&h->record);
 }
 
 void cau_advance_answer(cau_hosted *h, cau_order *order)
@@ -93,15 +99,15 @@ void cau_advance_answer(cau_hosted *h, cau_order *order)
 	size_t bytes = 0;
 	const cau_advance *advance = order->as.advance;
 	record(h, advance);
-	h->dirty = true; // the last state is shown, whatever the streams' rates
+	h->frames.dirty = true; // the last state is shown, whatever the streams' rates
 	char *text = cau_advance_text(h, order, &bytes, &error);
 	cau_outcome outcome = {.text = text, .text_bytes = bytes, .error = text ? NULL : &error};
-	if (!text || h->around->ephemeral) {
+	if (!text || h->identity.around->ephemeral) {
 		cau_reply_answer(&order->reply, &outcome);
 		free(text);
 	} else {
-		cau_record_batch(h); // so that there is a commit to wait for
-		cau_record_reply(h, &order->reply, text, bytes);
+		cau_record_batch(&h->record); // so that there is a commit to wait for
+		cau_record_reply(&h->record, &order->reply, text, bytes);
 	}
 	free(order);
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results and notifications as text, to those whom they are for.
+#include "hosted_session/answer.h"
+
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
 enum { FIRST_BYTES = 4096 };
@@ -38,7 +40,17 @@ void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code)
 	free(order);
 }
 
-void cau_answer_notify(cau_hosted *h, cau_audience audience, cau_method method, const void *params)
+cau_outcome_kind cau_answer_refuse(cau_order *order, cau_status status, const char *path,
+                                   const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, status, path, "%s", reason);
+	cau_answer_fail(order, &error, 0);
+	return CAU_NOT_DONE;
+}
+
+void cau_answer_notify(const cau_hosted_identity *identity, cau_audience audience,
+                       cau_method method, const void *params)
 {
 	cau_rpc_buffer out = {.capacity = FIRST_BYTES};
 	cau_buffer *buffer = cau_buffer_create(FIRST_BYTES, false);
@@ -47,11 +59,11 @@ void cau_answer_notify(cau_hosted *h, cau_audience audience, cau_method method, 
 		return;
 	out.buffer = (char *)cau_buffer_bytes(buffer);
 	if (cau_rpc_write_notification(&out, method, params, &error)) {
-		cau_log(CAU_LOG_ERROR, h->id, "notification_lost", "path=%s reason=\"%s\"", error.path,
-		        error.reason);
+		cau_log(CAU_LOG_ERROR, identity->id, "notification_lost", "path=%s reason=\"%s\"",
+		        error.path, error.reason);
 		cau_buffer_release(buffer);
 		return;
 	}
 	buffer->byte_count = out.bytes;
-	h->around->sink.notify(h->around->sink.user, audience, buffer);
+	identity->around->sink.notify(identity->around->sink.user, audience, buffer);
 }

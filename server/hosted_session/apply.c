@@ -4,14 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
+#include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
+
+#define READS_SLICE_S                                                                              \
+	0.002 // requests that only read are served in one slice; the last may go beyond
 
 static void note_energy(cau_hosted *h, const cau_order *order, const cau_action *action)
 {
 	bool on = order->as.command.as.energized;
 	if (action->was_lit != on)
-		cau_event_add(h, on ? CAU_EVENT_ENERGY_ON : CAU_EVENT_ENERGY_OFF, order->as.command.tool,
-		              order->asker.name, 0, NULL);
+		cau_timeline_add(&h->timeline, on ? CAU_EVENT_ENERGY_ON : CAU_EVENT_ENERGY_OFF,
+		                 order->as.command.tool, order->asker.name, 0, NULL);
 }
 
 // What the daemon itself notes of a command that the core has taken.
@@ -20,12 +26,13 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 	const cau_command *command = &order->as.command;
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_ADD:
-		cau_event_add(h, CAU_EVENT_TOOL_ADDED, command->as.definition.name, order->asker.name, 0,
-		              NULL);
+		cau_timeline_add(&h->timeline, CAU_EVENT_TOOL_ADDED, command->as.definition.name,
+		                 order->asker.name, 0, NULL);
 		cau_answer_changed(h, CAU_CHANGE_TOOLS, order->asker.name);
 		break;
 	case CAU_COMMAND_TOOL_REMOVE:
-		cau_event_add(h, CAU_EVENT_TOOL_REMOVED, command->tool, order->asker.name, 0, NULL);
+		cau_timeline_add(&h->timeline, CAU_EVENT_TOOL_REMOVED, command->tool, order->asker.name, 0,
+		                 NULL);
 		cau_answer_changed(h, CAU_CHANGE_TOOLS, order->asker.name);
 		break;
 	case CAU_COMMAND_TOOL_CONFIGURE:
@@ -46,7 +53,7 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 // The log of a faulted session ends with the fault; its core goes dark all the same.
 static bool is_off_of_faulted(cau_hosted *h, const cau_command *command)
 {
-	return cau_decided_state(h) == CAU_SESSION_FAULTED &&
+	return cau_decisions_state(&h->decisions) == CAU_SESSION_FAULTED &&
 	       command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;
 }
 
@@ -61,11 +68,11 @@ static void answer_command(cau_hosted *h, cau_order *order)
 	if (order->reply.answer)
 		text = cau_answer_text(order->reply.method, &result, &bytes, &error);
 	if (is_off_of_faulted(h, command))
-		cau_record_answer(h, order, text, bytes);
+		cau_record_answer(&h->record, order, text, bytes);
 	else
-		cau_record_command(h, command, order, text, bytes);
+		cau_record_command(&h->record, command, order, text, bytes);
 	if (text)
-		cau_record_reply(h, &order->reply, text, bytes);
+		cau_record_reply(&h->record, &order->reply, text, bytes);
 }
 
 // Energy off acts although it cannot be logged. Every other command is refused: a restart would
@@ -77,29 +84,39 @@ static cau_outcome_kind apply_unstored(cau_hosted *h, cau_order *order, const ca
 		cau_hosted_refuse_order(h, order, error, CAU_RPC_STORE_FULL);
 		return CAU_NOT_DONE;
 	}
-	cau_drive_does(h, command);
+	cau_energy_off_or_hold(&h->identity, &h->core, command);
 	cau_hosted_answer_unstored(h, order);
 	return CAU_DONE;
+}
+
+// Only a command of the tick that begins now has a frame to wait for. While the session is paused
+// no tick begins by itself.
+static void await_frame(cau_hosted *h, const cau_order *order)
+{
+	bool next = order->as.command.tick <= h->core.tick;
+	if (next && cau_decisions_state(&h->decisions) == CAU_SESSION_RUNNING)
+		cau_pace_await_frame(&h->pace, order->came_s);
 }
 
 cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	cau_error error = {0};
 	cau_command *command = &order->as.command;
-	if (command->tick < h->tick)
-		command->tick = h->tick;
-	if (!is_off_of_faulted(h, command) && cau_record_check(h, &error))
+	if (command->tick < h->core.tick)
+		command->tick = h->core.tick;
+	if (!is_off_of_faulted(h, command) && cau_record_check(&h->record, &error))
 		return apply_unstored(h, order, &error);
-	if (!cau_drive_does(h, command) && cau_session_submit(h->core, command, &error)) {
+	if (!cau_energy_off_or_hold(&h->identity, &h->core, command) &&
+	    cau_session_submit(h->core.session, command, &error)) {
 		cau_hosted_refuse_order(h, order, &error, 0);
 		return CAU_NOT_DONE;
 	}
 	answer_command(h, order);
-	pthread_mutex_lock(&h->mutex);
-	h->counts.commands++;
-	h->counts.motions += command->kind == CAU_COMMAND_TOOL_MOVE;
-	pthread_mutex_unlock(&h->mutex);
-	cau_times_applied(h, order);
+	pthread_mutex_lock(&h->published.lock);
+	h->published.counts.commands++;
+	h->published.counts.motions += command->kind == CAU_COMMAND_TOOL_MOVE;
+	pthread_mutex_unlock(&h->published.lock);
+	await_frame(h, order);
 	note(h, order, action);
 	free(order);
 	return CAU_DONE;
@@ -113,4 +130,19 @@ cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_act
 #undef CHANGE
 #undef READ
 	return handlers[order->kind](h, order, action);
+}
+
+void cau_reads_serve(cau_hosted *h, int32_t noted)
+{
+#define CHANGE(...)
+#define READ(kind, apply) [CAU_ORDER_##kind] = (apply),
+	static cau_served *const handlers[CAU_ORDER_COUNT] = {CAU_ORDER_TABLE(CHANGE, READ)};
+#undef CHANGE
+#undef READ
+	double end_s = cau_monotonic_s() + READS_SLICE_S;
+	for (cau_order *order; (order = cau_reads_take(&h->reads, &noted));) {
+		handlers[order->kind](h, order);
+		if (cau_monotonic_s() >= end_s)
+			return;
+	}
 }

@@ -4,12 +4,13 @@
 #include <string.h>
 
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 // The store tells of changes only.
 static void note_store(cau_hosted *h)
 {
 	cau_store_health health;
-	cau_store_get_health(h->around->store, &health);
+	cau_store_get_health(h->identity.around->store, &health);
 	if (health.state != CAU_STORE_READY)
 		cau_hosted_store_takes(h, false, health.reason);
 }
@@ -20,16 +21,16 @@ static cau_hosted *allocate(int32_t orders)
 	cau_hosted *h = calloc(1, sizeof *h);
 	if (!h)
 		return NULL;
-	h->present = malloc(sizeof *h->present);
-	h->logic = malloc(cau_logic_bytes(orders));
-	h->snapshot_shelf = cau_shelf_create();
-	h->copy_shelf = cau_shelf_create();
-	if (h->present && h->logic && h->snapshot_shelf && h->copy_shelf)
+	h->core.described = malloc(sizeof *h->core.described);
+	h->decisions.logic = malloc(cau_logic_bytes(orders));
+	h->record.shelf = cau_shelf_create();
+	h->reads.copies = cau_shelf_create();
+	if (h->core.described && h->decisions.logic && h->record.shelf && h->reads.copies)
 		return h;
-	cau_shelf_release(h->snapshot_shelf);
-	cau_shelf_release(h->copy_shelf);
-	free(h->present);
-	free(h->logic);
+	cau_shelf_release(h->record.shelf);
+	cau_shelf_release(h->reads.copies);
+	free(h->core.described);
+	free(h->decisions.logic);
 	free(h);
 	return NULL;
 }
@@ -39,31 +40,36 @@ static void init(cau_hosted *h, const cau_surroundings *around, const cau_hosted
 {
 	h->task.run = cau_hosted_run;
 	h->references = 1;
-	h->around = around;
-	snprintf(h->id, sizeof h->id, "%s", def->id);
-	h->number = def->number;
-	h->scene = def->scene;
-	h->meshes = def->meshes;
-	h->mesh_bytes = def->mesh_bytes;
-	h->origin = def->origin;
-	h->creator = def->creator;
-	h->creator_sequence = def->client_sequence;
-	h->creator_reply = def->reply;
-	h->pause_at_start = def->paused;
-	h->incoming = def->incoming;
-	h->next_branch = 1;
-	h->lost_from = h->batch_lost = UINT64_MAX;
-	h->starting = h->unanswered = h->away = h->creator_waits = true;
-	pthread_mutex_init(&h->mutex, NULL);
-	pthread_mutex_init(&h->deciding, NULL);
-	h->streams = (cau_streams){.id = h->id,
-	                           .session = h->number,
-	                           .subscribers_most = around->config->max_subscribers,
-	                           .in_flight_most = (size_t)around->config->subscriber_bytes};
-	cau_streams_init(&h->streams);
-	cau_logic_init(h->logic, (int32_t)around->config->queue_commands);
-	h->logic->step_s = h->scene->step_s;
-	cau_decide_trace(h);
+	h->identity.around = around;
+	snprintf(h->identity.id, sizeof h->identity.id, "%s", def->id);
+	h->identity.number = def->number;
+	h->identity.scene = def->scene;
+	h->identity.meshes = def->meshes;
+	h->identity.mesh_bytes = def->mesh_bytes;
+	h->creation.origin = def->origin;
+	h->identity.creator = def->creator;
+	h->identity.creator_sequence = def->client_sequence;
+	h->creation.reply = def->reply;
+	h->creation.pause_at_start = def->paused;
+	h->creation.incoming = def->incoming;
+	h->history.next_branch = 1;
+	h->creation.starting = h->creation.unanswered = h->suspension.active = h->creation.waits = true;
+	pthread_mutex_init(&h->suspension.lock, NULL);
+	pthread_mutex_init(&h->published.lock, NULL);
+	pthread_mutex_init(&h->refusals.lock, NULL);
+	pthread_mutex_init(&h->reads.lock, NULL);
+	cau_past_views_init(&h->past, h);
+	cau_record_init(&h->record, &h->identity, &h->core, &h->history, &h->commits);
+	h->timeline.core = &h->core;
+	h->timeline.record = &h->record;
+	h->frames.streams = (cau_streams){.id = h->identity.id,
+	                                  .session = h->identity.number,
+	                                  .subscribers_most = around->config->max_subscribers,
+	                                  .in_flight_most = (size_t)around->config->subscriber_bytes};
+	cau_streams_init(&h->frames.streams);
+	cau_decisions_init(&h->decisions, (int32_t)around->config->queue_commands,
+	                   h->identity.scene->step_s);
+	cau_decisions_open_trace(&h->decisions, &h->identity);
 	cau_hosted_publish_summary(h);
 }
 
@@ -90,16 +96,16 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	}
 	cau_worker_pool_remove(around->pool, &h->task);
 give_up:
-	h->scene = NULL; // stays the caller's
-	h->meshes = NULL;
+	h->identity.scene = NULL; // stays the caller's
+	h->identity.meshes = NULL;
 	cau_hosted_release(h);
 	return status;
 }
 
 void cau_hosted_stop(cau_hosted *h)
 {
-	cau_worker_pool_remove(h->around->pool, &h->task);
-	if (h->away) // the builder has it, and refuses what waits as it gives it back
+	cau_worker_pool_remove(h->identity.around->pool, &h->task);
+	if (h->suspension.active) // the builder has it, and refuses what waits as it gives it back
 		return;
 	cau_hosted_end(h);
 	cau_hosted_refuse_rest(h);
@@ -107,13 +113,13 @@ void cau_hosted_stop(cau_hosted *h)
 
 void cau_hosted_want_checkpoint(cau_hosted *h)
 {
-	h->checkpoint_wanted = true;
-	cau_worker_pool_wake(h->around->pool, &h->task);
+	h->commits.checkpoint_wanted = true;
+	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 }
 
 void cau_hosted_drain(cau_hosted *h)
 {
-	h->drain_wanted = true;
+	h->life.drain_wanted = true;
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_DRAIN, .time_s = cau_monotonic_s()});
-	cau_worker_pool_wake(h->around->pool, &h->task);
+	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
 static cau_order *order_of(uint64_t ticket)
@@ -19,7 +20,7 @@ static void tell(cau_hosted *h, const cau_effects *effects)
 {
 	for (int32_t i = 0; i < effects->count; i++)
 		if (effects->list[i].kind == CAU_EFFECT_TELL)
-			cau_drive_tell(h, &effects->list[i].drive);
+			cau_driver_notify(h, &effects->list[i].drive);
 }
 
 void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order)
@@ -43,7 +44,7 @@ void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order)
 	outcome.text = text;
 	outcome.error = text ? NULL : &error;
 	cau_reply_answer(&order->reply, &outcome);
-	cau_log(CAU_LOG_WARNING, h->id, "not_stored", "order=%s tool=%s client=\"%s\"",
+	cau_log(CAU_LOG_WARNING, h->identity.id, "not_stored", "order=%s tool=%s client=\"%s\"",
 	        pause ? "pause" : "energy_off", pause ? "" : order->as.command.tool, order->asker.name);
 	free(text);
 	free(order);
@@ -69,10 +70,10 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 			cau_hosted_answer_unstored(h, order_of(effect->ticket));
 			break;
 		case CAU_EFFECT_WAKE:
-			cau_worker_pool_wake(h->around->pool, &h->task);
+			cau_worker_pool_wake(h->identity.around->pool, &h->task);
 			break;
 		case CAU_EFFECT_ARMED:
-			h->around->armed(h->around->user);
+			h->identity.around->armed(h->identity.around->user);
 			break;
 		case CAU_EFFECT_TELL:
 			break;
@@ -84,18 +85,18 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 // lock: it is the order of both that counts.
 static void apply(cau_hosted *h, const cau_logic_event *event, cau_effects *effects)
 {
-	cau_trace_take(h->trace, event);
-	cau_logic_take(h->logic, event, effects);
-	cau_trace_effects(h->trace, effects);
+	cau_trace_take(h->decisions.trace, event);
+	cau_logic_take(h->decisions.logic, event, effects);
+	cau_trace_effects(h->decisions.trace, effects);
 	tell(h, effects);
 }
 
 static void take(cau_hosted *h, const cau_logic_event *event, const cau_order *submitted,
                  cau_effects *effects, const cau_effect **own)
 {
-	pthread_mutex_lock(&h->deciding);
+	pthread_mutex_lock(&h->decisions.lock);
 	apply(h, event, effects);
-	pthread_mutex_unlock(&h->deciding);
+	pthread_mutex_unlock(&h->decisions.lock);
 	perform(h, effects, submitted, own);
 }
 
@@ -139,11 +140,11 @@ static void describe_later(const cau_waiting *waiting, cau_wire_waiting_command 
 int32_t cau_hosted_waiting(cau_hosted *h, cau_wire_waiting_command *list, int32_t capacity)
 {
 	int32_t count = 0, place = 0;
-	pthread_mutex_lock(&h->deciding);
-	for (const cau_waiting *waiting; (waiting = cau_logic_later(h->logic, &place));)
+	pthread_mutex_lock(&h->decisions.lock);
+	for (const cau_waiting *waiting; (waiting = cau_logic_later(h->decisions.logic, &place));)
 		if (count < capacity)
 			describe_later(waiting, &list[count++]);
-	pthread_mutex_unlock(&h->deciding);
+	pthread_mutex_unlock(&h->decisions.lock);
 	return count;
 }
 
@@ -160,11 +161,11 @@ int32_t cau_hosted_cancel(cau_hosted *h, uint32_t client, uint64_t number)
 	cau_effects effects;
 	cau_logic_event event = {
 		.kind = CAU_LOGIC_CANCEL, .time_s = cau_monotonic_s(), .client = client, .number = number};
-	pthread_mutex_lock(&h->deciding);
-	int32_t before = count_later(h->logic);
+	pthread_mutex_lock(&h->decisions.lock);
+	int32_t before = count_later(h->decisions.logic);
 	apply(h, &event, &effects);
-	int32_t cancelled = before - count_later(h->logic);
-	pthread_mutex_unlock(&h->deciding);
+	int32_t cancelled = before - count_later(h->decisions.logic);
+	pthread_mutex_unlock(&h->decisions.lock);
 	perform(h, &effects, NULL, NULL);
 	return cancelled;
 }
@@ -177,65 +178,55 @@ static void compare(cau_hosted *h)
 {
 	const char *allowed[CAU_MAX_TOOLS];
 	int32_t count = 0;
-	for (int32_t i = 0; i < h->logic->drive_count; i++) {
-		const cau_drive *drive = &h->logic->drives[i];
+	for (int32_t i = 0; i < h->decisions.logic->drive_count; i++) {
+		const cau_drive *drive = &h->decisions.logic->drives[i];
 		if (drive->enabled && drive->lit && !drive->freeze)
 			allowed[count++] = drive->tool;
 	}
-	const char *odd = cau_session_heats_beyond(h->core, allowed, count);
-	snprintf(h->odd_tool, sizeof h->odd_tool, "%s", odd ? odd : "");
-}
-
-bool cau_decide_broken(cau_hosted *h, char *reason, size_t bytes)
-{
-	pthread_mutex_lock(&h->deciding);
-	bool broken = *h->logic->broken, first = broken && !h->rule_reported;
-	snprintf(reason, bytes, "%s", h->logic->fault);
-	h->rule_reported = broken;
-	pthread_mutex_unlock(&h->deciding);
-	return first;
+	const char *odd = cau_session_heats_beyond(h->core.session, allowed, count);
+	snprintf(h->decisions.odd_tool, sizeof h->decisions.odd_tool, "%s", odd ? odd : "");
 }
 
 void cau_decide_next(cau_hosted *h, cau_action *action)
 {
 	cau_effects effects;
-	pthread_mutex_lock(&h->deciding);
-	double now_s = cau_monotonic_s(), due_s = h->logic->next_step_s;
-	cau_trace_next(h->trace, now_s);
-	cau_logic_next(h->logic, now_s, action, &effects);
-	h->late_s = h->logic->state == CAU_SESSION_RUNNING ? now_s - due_s : -1;
-	cau_trace_action(h->trace, action);
+	pthread_mutex_lock(&h->decisions.lock);
+	double now_s = cau_monotonic_s(), due_s = h->decisions.logic->next_step_s;
+	cau_trace_next(h->decisions.trace, now_s);
+	cau_logic_next(h->decisions.logic, now_s, action, &effects);
+	h->pace.late_s = h->decisions.logic->state == CAU_SESSION_RUNNING ? now_s - due_s : -1;
+	cau_trace_action(h->decisions.trace, action);
 	if (action->act == CAU_ACT_STEP)
 		compare(h);
-	cau_trace_effects(h->trace, &effects);
+	cau_trace_effects(h->decisions.trace, &effects);
 	tell(h, &effects);
-	pthread_mutex_unlock(&h->deciding);
+	pthread_mutex_unlock(&h->decisions.lock);
 	perform(h, &effects, NULL, NULL);
 }
 
 void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome)
 {
 	cau_effects effects;
-	pthread_mutex_lock(&h->deciding);
+	pthread_mutex_lock(&h->decisions.lock);
 	double now_s = cau_monotonic_s();
-	cau_trace_done(h->trace, now_s, outcome);
-	cau_logic_done(h->logic, now_s, outcome, &effects);
-	cau_trace_effects(h->trace, &effects);
+	cau_trace_done(h->decisions.trace, now_s, outcome);
+	cau_logic_done(h->decisions.logic, now_s, outcome, &effects);
+	cau_trace_effects(h->decisions.trace, &effects);
 	tell(h, &effects);
-	pthread_mutex_unlock(&h->deciding);
+	pthread_mutex_unlock(&h->decisions.lock);
 	perform(h, &effects, NULL, NULL);
 }
 
 void cau_decide_stepped(cau_hosted *h, const char *fault)
 {
 	cau_effects effects;
-	pthread_mutex_lock(&h->deciding);
+	pthread_mutex_lock(&h->decisions.lock);
 	double now_s = cau_monotonic_s();
-	cau_trace_stepped(h->trace, now_s, fault);
-	cau_logic_stepped(h->logic, now_s, fault, &effects);
-	cau_trace_effects(h->trace, &effects);
+	cau_trace_stepped(h->decisions.trace, now_s, fault);
+	cau_logic_stepped(h->decisions.logic, now_s, fault, &effects);
+	cau_trace_effects(h->decisions.trace, &effects);
 	tell(h, &effects);
-	pthread_mutex_unlock(&h->deciding);
+	pthread_mutex_unlock(&h->decisions.lock);
 	perform(h, &effects, NULL, NULL);
 }
 
@@ -243,84 +234,19 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 {
 	cau_frame frame;
 	cau_arrived_tool tools[CAU_MAX_TOOLS];
-	cau_session_frame(h->core, &frame);
+	cau_session_frame(h->core.session, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++) {
 		memcpy(tools[i].name, frame.tools[i].name, sizeof tools[i].name);
 		// what waits in a core of an older build's store may light or move it yet: that goes too
-		tools[i].lit =
-			frame.tools[i].energized || cau_session_waiting(h->core, frame.tools[i].name) > 0;
+		tools[i].lit = frame.tools[i].energized ||
+		               cau_session_waiting(h->core.session, frame.tools[i].name) > 0;
 	}
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
 	                                 .time_s = cau_monotonic_s(),
 	                                 .cause = cause,
 	                                 .state = state,
-	                                 .tick = h->tick,
-	                                 .step_s = h->info.step_s,
+	                                 .tick = h->core.tick,
+	                                 .step_s = h->core.info.step_s,
 	                                 .tools = tools,
 	                                 .tool_count = frame.tool_count});
-}
-
-// ---- the trace ----------------------------------------------------------------------------------
-
-enum { TRACES_MOST = 1000 }; // of one session in one folder
-
-void cau_decide_trace(cau_hosted *h)
-{
-	const char *folder = h->around->config->trace_session;
-	char path[CAU_CONFIG_TEXT_BYTES + 100];
-	if (!*folder)
-		return;
-	for (int i = 1; i <= TRACES_MOST && !h->trace; i++) {
-		snprintf(path, sizeof path, "%s/%s.%d.trace", folder, h->id, i);
-		h->trace = fopen(path, "wxe");
-		if (!h->trace && errno != EEXIST)
-			break;
-	}
-	if (!h->trace) {
-		cau_log(CAU_LOG_WARNING, h->id, "not_traced", "file=\"%s\" reason=\"%s\"", path,
-		        strerror(errno));
-		return;
-	}
-	cau_trace_init(h->trace, h->logic->capacity, h->logic->step_s);
-	cau_log(CAU_LOG_INFO, h->id, "traced", "file=\"%s\"", path);
-}
-
-// After a slice, so that little is lost with a daemon that is killed. What could not be written
-// ends the trace: one with a gap could not be played again.
-void cau_decide_flush_trace(cau_hosted *h)
-{
-	if (!h->trace)
-		return;
-	pthread_mutex_lock(&h->deciding);
-	bool failed = fflush(h->trace) || ferror(h->trace);
-	int reason = errno;
-	FILE *ended = failed ? h->trace : NULL;
-	if (failed)
-		h->trace = NULL;
-	pthread_mutex_unlock(&h->deciding);
-	if (!failed)
-		return;
-	fclose(ended);
-	cau_log(CAU_LOG_WARNING, h->id, "trace_ended", "reason=\"%s\"", strerror(reason));
-}
-
-// ---- from any thread ----------------------------------------------------------------------------
-
-bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive)
-{
-	pthread_mutex_lock(&h->deciding);
-	const cau_drive *found = cau_logic_drive(h->logic, tool);
-	if (found)
-		*drive = *found;
-	pthread_mutex_unlock(&h->deciding);
-	return found != NULL;
-}
-
-int32_t cau_decide_drives(cau_hosted *h, cau_drive *drives)
-{
-	pthread_mutex_lock(&h->deciding);
-	int32_t count = h->logic->drive_count;
-	memcpy(drives, h->logic->drives, (size_t)count * sizeof *drives);
-	pthread_mutex_unlock(&h->deciding);
-	return count;
 }

@@ -109,17 +109,17 @@ cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
 {
 	cau_asked asked;
 	bool motion = order->motion;
-	if (h->ended)
+	if (h->life.ended)
 		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
 	order->came_s = cau_monotonic_s();
-	if (cau_building_cancel(h, order))
+	if (cau_suspension_cancel(&h->suspension, h->identity.id, order))
 		return CAU_OK;
 	if (cau_reads_are(order))
 		return cau_reads_submit(h, order, error);
 	describe(order, &asked);
 	cau_status status = cau_decide_order(h, order, &asked, error);
 	if (status && motion)
-		cau_drive_refuse(h, order, error);
+		cau_refusals_note(&h->refusals, order, error);
 	return status;
 }
 
@@ -147,7 +147,7 @@ void cau_hosted_cut(cau_hosted *h, uint32_t client, const char *cause)
 
 void cau_hosted_forget_client(cau_hosted *h, uint32_t client)
 {
-	cau_looks_give_up(h, client);
+	cau_past_views_give_up(&h->past, client);
 	cau_decide(h, &(cau_logic_event){
 					  .kind = CAU_LOGIC_FORGET, .time_s = cau_monotonic_s(), .client = client});
 }
@@ -155,10 +155,7 @@ void cau_hosted_forget_client(cau_hosted *h, uint32_t client)
 double cau_hosted_watch(cau_hosted *h, double now_s)
 {
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = now_s});
-	pthread_mutex_lock(&h->deciding);
-	double look_s = cau_logic_look_s(h->logic);
-	pthread_mutex_unlock(&h->deciding);
-	return look_s;
+	return cau_decisions_look_s(&h->decisions);
 }
 
 void cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason)
@@ -176,7 +173,7 @@ static void destroy_for(cau_hosted *h)
 	cau_order *order = calloc(1, sizeof *order);
 	if (order) {
 		order->kind = CAU_ORDER_DESTROY;
-		order->asker = h->creator;
+		order->asker = h->identity.creator;
 	}
 	if (!order || cau_hosted_submit(h, order, &error)) {
 		free(order);
@@ -186,28 +183,26 @@ static void destroy_for(cau_hosted *h)
 
 void cau_hosted_abandon(cau_hosted *h, uint32_t client)
 {
-	if (h->origin.kind == CAU_ORIGIN_STORE || h->creator.client != client || !client)
+	if (h->creation.origin.kind == CAU_ORIGIN_STORE || h->identity.creator.client != client ||
+	    !client)
 		return;
-	if (h->starting)
-		h->abandoned = true;
-	else if (h->around->ephemeral)
+	if (h->creation.starting)
+		h->creation.abandoned = true;
+	else if (h->identity.around->ephemeral)
 		destroy_for(h);
 }
 
 bool cau_hosted_is_ephemeral(const cau_hosted *h)
 {
-	return h->around->ephemeral;
+	return h->identity.around->ephemeral;
 }
 
 bool cau_hosted_is_advanced_by(cau_hosted *h, uint32_t client)
 {
-	pthread_mutex_lock(&h->deciding);
-	bool advanced = client && h->logic->lockstep == client;
-	pthread_mutex_unlock(&h->deciding);
-	return advanced;
+	return client && cau_decisions_lockstep(&h->decisions) == client;
 }
 
 bool cau_hosted_is_own_ephemeral(const cau_hosted *h, uint32_t client)
 {
-	return h->around->ephemeral && h->creator.client == client;
+	return h->identity.around->ephemeral && h->identity.creator.client == client;
 }

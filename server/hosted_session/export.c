@@ -8,6 +8,7 @@
 #include "cautery/command_json.h"
 #include "cautery/sha256.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 #define LINE_S 1e-6        // what a line of such a file takes, about
 #define LOG_EXPECTED_S 0.1 // nobody knows how long a log is before it is read
@@ -46,8 +47,8 @@ static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_
                         const char *ending, const char *media_type)
 {
 	char name[CAU_NAME_BYTES + 40];
-	snprintf(name, sizeof name, "%s-%llu.%s", job->hosted->id, (unsigned long long)job->tick,
-	         ending);
+	snprintf(name, sizeof name, "%s-%llu.%s", job->hosted->identity.id,
+	         (unsigned long long)job->tick, ending);
 	cau_hosted_answer_file(&job->order->reply, name, media_type, bytes, byte_count);
 }
 
@@ -99,14 +100,14 @@ static void *copy_to(unsigned char **at, const void *source, size_t bytes)
 static tissue_copy *copy_tissue(const cau_hosted *h)
 {
 	const uint8_t *tetrahedron, *triangle, *link;
-	copy_sizes sizes = sizes_of(&h->info);
+	copy_sizes sizes = sizes_of(&h->core.info);
 	cau_frame frame;
-	tissue_copy *copy = cau_shelf_take(h->copy_shelf, cau_export_copy_bytes(&h->info));
+	tissue_copy *copy = cau_shelf_take(h->reads.copies, cau_export_copy_bytes(&h->core.info));
 	if (!copy)
 		return NULL;
 	unsigned char *at = (unsigned char *)(copy + 1);
-	cau_session_frame(h->core, &frame);
-	cau_session_alive(h->core, &tetrahedron, &triangle, &link);
+	cau_session_frame(h->core.session, &frame);
+	cau_session_alive(h->core.session, &tetrahedron, &triangle, &link);
 	copy->position = copy_to(&at, frame.position, sizes.position);
 	copy->exposure = copy_to(&at, frame.exposure, sizes.exposure);
 	copy->mask = copy_to(&at, frame.face_mask, sizes.mask);
@@ -122,9 +123,10 @@ static bool is_drawn(const tissue_copy *copy, int32_t face)
 
 static void write_obj(const cau_read_job *job, FILE *stream)
 {
-	const cau_session_info *info = &job->hosted->info;
+	const cau_session_info *info = &job->hosted->core.info;
 	const tissue_copy *copy = job->copy;
-	fprintf(stream, "# %s at tick %llu, metres\n", job->hosted->id, (unsigned long long)job->tick);
+	fprintf(stream, "# %s at tick %llu, metres\n", job->hosted->identity.id,
+	        (unsigned long long)job->tick);
 	for (int32_t v = 0; v < info->vertex_count; v++)
 		fprintf(stream, "v %.9g %.9g %.9g\n", copy->position[3 * v], copy->position[3 * v + 1],
 		        copy->position[3 * v + 2]);
@@ -152,7 +154,7 @@ static bool is_sheet_face(const cau_session_info *info, int32_t face)
 
 static bool collect_cells(const cau_read_job *job, cells *out)
 {
-	const cau_session_info *info = &job->hosted->info;
+	const cau_session_info *info = &job->hosted->core.info;
 	const tissue_copy *copy = job->copy;
 	size_t most = (size_t)info->tetrahedron_count + (size_t)info->face_count + 1;
 	out->vertex = malloc(most * 4 * sizeof *out->vertex);
@@ -179,7 +181,7 @@ static void write_array(FILE *stream, const char *type, const char *name, int co
 
 static void write_points(const cau_read_job *job, FILE *stream)
 {
-	const cau_session_info *info = &job->hosted->info;
+	const cau_session_info *info = &job->hosted->core.info;
 	const tissue_copy *copy = job->copy;
 	fputs("<Points>\n", stream);
 	write_array(stream, "Float64", "position_m", 3);
@@ -219,7 +221,7 @@ static void write_vtu(const cau_read_job *job, const cells *list, FILE *stream)
 	        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
 	        "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"%d\" "
 	        "NumberOfCells=\"%d\">\n",
-	        job->hosted->info.vertex_count, list->count);
+	        job->hosted->core.info.vertex_count, list->count);
 	write_points(job, stream);
 	write_cells(list, stream);
 	fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", stream);
@@ -255,7 +257,8 @@ void cau_apply_export(cau_hosted *h, cau_order *order)
 		free(order);
 		return;
 	}
-	double lines = (double)h->info.vertex_count + h->info.face_count + h->info.tetrahedron_count;
+	double lines = (double)h->core.info.vertex_count + h->core.info.face_count +
+	               h->core.info.tetrahedron_count;
 	cau_reads_hand_over(h, order, make_tissue_file, copy, cau_shelf_give_back, LINE_S * lines);
 }
 
@@ -284,11 +287,11 @@ static void make_log_file(cau_read_job *job)
 	char *bytes = NULL;
 	size_t count = 0;
 	cau_error error = {.reason = "no memory for the log"};
-	cau_store *store = job->hosted->around->store;
+	cau_store *store = job->hosted->identity.around->store;
 	uint64_t to = job->order->as.log.to_tick < job->tick ? job->order->as.log.to_tick : job->tick;
 	FILE *stream = open_memstream(&bytes, &count);
 	cau_store_flush(store);
-	cau_status status = stream ? cau_store_read_log(store, job->hosted->id, job->branch,
+	cau_status status = stream ? cau_store_read_log(store, job->hosted->identity.id, job->branch,
 	                                                job->order->as.log.from_tick, to + 1,
 	                                                write_line, stream, &error)
 	                           : CAU_NO_MEMORY;

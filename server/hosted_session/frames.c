@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 typedef struct published {
 	cau_hosted *hosted;
@@ -15,7 +17,7 @@ static void add_drives(cau_hosted *h, cau_stream_tool *tools, int32_t count)
 {
 	for (int32_t i = 0; i < count; i++) {
 		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-		cau_decide_find(h, tools[i].name, &drive);
+		cau_decisions_find(&h->decisions, tools[i].name, &drive);
 		tools[i].driver = drive.driver.client;
 		tools[i].frozen = drive.frozen;
 		tools[i].energy_off = (uint8_t)drive.energy_off;
@@ -27,12 +29,12 @@ static const cau_stream_sample *fill_sample(void *user)
 	published *p = user;
 	cau_hosted *h = p->hosted;
 	cau_shown *shown = &p->shown;
-	int state = cau_decided_state(h);
-	cau_show(h->core, shown);
+	int state = cau_decisions_state(&h->decisions);
+	cau_show(h->core.session, shown);
 	add_drives(h, shown->tools, shown->frame.tool_count);
-	shown->statistics.realtime_factor = (float)h->realtime_factor;
-	shown->statistics.step_cost_s = (float)h->step_cost_s;
-	shown->statistics.refused_commands = h->refused_commands;
+	shown->statistics.realtime_factor = (float)h->pace.realtime_factor;
+	shown->statistics.step_cost_s = (float)h->pace.step_cost_s;
+	shown->statistics.refused_commands = h->findings.refused_commands;
 	shown->sample.flags = (uint16_t)((state == CAU_SESSION_PAUSED ? CAU_FRAME_PAUSED : 0) |
 	                                 (state == CAU_SESSION_FAULTED ? CAU_FRAME_FAULTED : 0));
 	return &shown->sample;
@@ -41,7 +43,15 @@ static const cau_stream_sample *fill_sample(void *user)
 // What costs the core work of its own is made as long as somebody watches it.
 static void follow_channels(cau_hosted *h)
 {
-	cau_session_watch(h->core, cau_streams_watched(&h->streams));
+	cau_session_watch(h->core.session, cau_streams_watched(&h->frames.streams));
+}
+
+// Without subscribers, or ticks, no frame shows what waits for one.
+static bool frame_is_near(cau_hosted *h)
+{
+	cau_stream_counts streams;
+	cau_streams_count(&h->frames.streams, &streams);
+	return streams.subscribers && cau_decisions_state(&h->decisions) == CAU_SESSION_RUNNING;
 }
 
 void cau_frames_publish(cau_hosted *h, double now_s)
@@ -51,26 +61,30 @@ void cau_frames_publish(cau_hosted *h, double now_s)
 	bool made = false;
 	p.hosted = h;
 	follow_channels(h);
-	cau_decided decided = cau_decided_now(h);
+	cau_decided decided = cau_decisions_now(&h->decisions);
 	cau_stream_moment moment = {
 		.now_s = now_s,
-		.all = atomic_exchange(&h->dirty, false), // what changes from here on is shown next time
+		.all = atomic_exchange(&h->frames.dirty,
+	                           false), // what changes from here on is shown next time
 		.moving = decided.state == CAU_SESSION_RUNNING || decided.steps_left,
 		.sample = fill_sample,
 		.user = &p,
 	};
-	if (cau_streams_publish(&h->streams, &moment, &made, &error) &&
-	    cau_decided_state(h) != CAU_SESSION_FAULTED)
+	if (cau_streams_publish(&h->frames.streams, &moment, &made, &error) &&
+	    cau_decisions_state(&h->decisions) != CAU_SESSION_FAULTED)
 		cau_hosted_fault(h, &error);
-	cau_times_published(h, made);
-	if (made)
-		h->around->sink.frames(h->around->sink.user);
+	if (made) {
+		cau_pace_framed(&h->pace, h->identity.around->times);
+		h->identity.around->sink.frames(h->identity.around->sink.user);
+	} else if (h->pace.waiting_count && !frame_is_near(h)) {
+		h->pace.waiting_count = 0;
+	}
 }
 
-void cau_frames_restart(cau_hosted *h)
+void cau_frames_restart(cau_hosted_frames *frames)
 {
-	h->epoch = cau_streams_restart(&h->streams);
-	h->dirty = true;
+	frames->epoch = cau_streams_restart(&frames->streams);
+	frames->dirty = true;
 }
 
 // ---- subscribers
@@ -92,10 +106,10 @@ static cau_status join(cau_hosted *h, const cau_order *order, const cau_stream *
 	                        .step_m = order->as.join.step_m,
 	                        .plain = order->as.join.plain,
 	                        .channels = order->as.join.channels};
-	cau_stream_shape shape = cau_frames_shape(&h->info);
-	cau_status status = cau_streams_join(&h->streams, &wish, &shape, stream, &woken, error);
+	cau_stream_shape shape = cau_frames_shape(&h->core.info);
+	cau_status status = cau_streams_join(&h->frames.streams, &wish, &shape, stream, &woken, error);
 	if (woken)
-		h->dirty = true;
+		h->frames.dirty = true;
 	return status;
 }
 
@@ -107,9 +121,9 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 		cau_answer_fail(order, &error, 0);
 		return;
 	}
-	cau_wire_stream_description result = {.session_number = h->number,
+	cau_wire_stream_description result = {.session_number = h->identity.number,
 	                                      .profile = stream->def.profile,
-	                                      .epoch = h->epoch,
+	                                      .epoch = h->frames.epoch,
 	                                      .rate_hz = stream->rate_hz,
 	                                      .channels = stream->def.channels,
 	                                      .vertex_count = stream->def.vertex_count,
@@ -118,7 +132,7 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 	                                      .stress_step_pa = stream->def.stress_step_pa,
 	                                      .has_plain = true,
 	                                      .plain = stream->def.plain};
-	memcpy(result.session, h->id, sizeof result.session);
+	memcpy(result.session, h->identity.id, sizeof result.session);
 	memcpy(result.origin_m, stream->def.origin_m, sizeof result.origin_m);
 	cau_outcome outcome = {.joined = h, .stream = stream->def.profile};
 	char *text = cau_answer_text(order->reply.method, &result, &outcome.text_bytes, &error);
@@ -134,18 +148,18 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 cau_buffer *cau_hosted_next_frame(cau_hosted *h, cau_subscriber *sub, double now_s)
 {
 	bool wake;
-	cau_buffer *buffer = cau_streams_next_frame(&h->streams, sub, now_s, &wake);
+	cau_buffer *buffer = cau_streams_next_frame(&h->frames.streams, sub, now_s, &wake);
 	if (wake)
-		cau_worker_pool_wake(h->around->pool, &h->task);
+		cau_worker_pool_wake(h->identity.around->pool, &h->task);
 	return buffer;
 }
 
 bool cau_hosted_has_frame(cau_hosted *h, const cau_subscriber *sub)
 {
-	return cau_streams_has_frame(&h->streams, sub);
+	return cau_streams_has_frame(&h->frames.streams, sub);
 }
 
 void cau_hosted_leave(cau_hosted *h, const cau_subscriber *sub)
 {
-	cau_streams_leave(&h->streams, sub);
+	cau_streams_leave(&h->frames.streams, sub);
 }

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 #define STOPS_EXPECTED_S 0.01 // a commit, for the builder's order
 
@@ -21,8 +23,8 @@ typedef struct cau_holding {
 static void finish(cau_holding *holding)
 {
 	cau_hosted *h = holding->hosted;
-	h->holding = NULL;
-	h->stage[0] = 0;
+	h->suspension.holding = NULL;
+	h->suspension.stage[0] = 0;
 	free(holding);
 	cau_building_over(h);
 	cau_hosted_release(h);
@@ -33,9 +35,8 @@ static void run_on(cau_job *job)
 	cau_holding *holding = (cau_holding *)job;
 	cau_hosted *h = holding->hosted;
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_STAYED, .time_s = cau_monotonic_s()});
-	h->window_s = cau_monotonic_s();
-	h->window_tick = h->tick;
-	h->dirty = true;
+	cau_pace_restart(&h->pace, h->core.tick);
+	h->frames.dirty = true;
 	finish(holding);
 }
 
@@ -47,9 +48,9 @@ static void run_stop(cau_job *job)
 	cau_error error = {0};
 	cau_outcome outcome = {0};
 	cau_order *order = holding->order;
-	cau_wire_move_held result = {.tick = (int64_t)h->tick, .hash = holding->hash};
-	cau_store_flush(h->around->store);
-	bool stored = h->lost_from == UINT64_MAX;
+	cau_wire_move_held result = {.tick = (int64_t)h->core.tick, .hash = holding->hash};
+	cau_store_flush(h->identity.around->store);
+	bool stored = h->commits.lost_from == UINT64_MAX;
 	char *text =
 		stored ? cau_answer_text(order->reply.method, &result, &outcome.text_bytes, &error) : NULL;
 	holding->order = NULL;
@@ -74,40 +75,34 @@ static void drop_stop(cau_job *job)
 	run_on(job);
 }
 
-static cau_outcome_kind refuse(cau_order *order, cau_status status, const char *reason)
-{
-	cau_error error = {0};
-	cau_fail(&error, status, "", "%s", reason);
-	cau_answer_fail(order, &error, 0);
-	return CAU_NOT_DONE;
-}
-
 cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	(void)action;
-	if (cau_decided_state(h) == CAU_SESSION_FAULTED)
-		return refuse(order, CAU_FAULTED, "a faulted session cannot move: rewind or reset it");
+	if (cau_decisions_state(&h->decisions) == CAU_SESSION_FAULTED)
+		return cau_answer_refuse(order, CAU_FAULTED, "",
+		                         "a faulted session cannot move: rewind or reset it");
 	cau_holding *holding = calloc(1, sizeof *holding);
 	if (!holding)
-		return refuse(order, CAU_NO_MEMORY, "no memory to suspend the session");
+		return cau_answer_refuse(order, CAU_NO_MEMORY, "", "no memory to suspend the session");
 	holding->job = (cau_job){.run = run_stop, .drop = drop_stop, .expected_s = STOPS_EXPECTED_S};
 	holding->hosted = cau_hosted_share(h);
 	holding->order = order;
-	cau_event_end_cut(h);
-	cau_record_state(h);
-	cau_record_checkpoint(h, NULL, NULL);
-	holding->hash = cau_session_hash(h->core);
-	h->holding = holding;
-	h->leaving = &holding->job;
-	snprintf(h->stage, sizeof h->stage, "moving");
+	cau_timeline_end_cuts(&h->timeline);
+	cau_record_state(&h->record, cau_decisions_state(&h->decisions));
+	cau_record_checkpoint(&h->record, NULL, NULL);
+	holding->hash = cau_session_hash(h->core.session);
+	h->suspension.holding = holding;
+	h->suspension.job = &holding->job;
+	snprintf(h->suspension.stage, sizeof h->suspension.stage, "moving");
 	cau_hosted_publish_summary(h);
 	return CAU_DONE;
 }
 
 void cau_hosted_go_on(cau_hosted *h)
 {
-	CAU_ASSERT(h->holding && !h->holding->order, "session %s is not suspended", h->id);
-	cau_builder_submit(h->around->mover, &h->holding->job);
+	CAU_ASSERT(h->suspension.holding && !h->suspension.holding->order,
+	           "session %s is not suspended", h->identity.id);
+	cau_builder_submit(h->identity.around->mover, &h->suspension.holding->job);
 }
 
 static void run_away(cau_job *job)
@@ -116,29 +111,28 @@ static void run_away(cau_job *job)
 	cau_hosted *h = holding->hosted;
 	cau_wire_session_changed changed = {.change = CAU_CHANGE_MOVED, .has_moved_to = true};
 	cau_hosted_summary(h, &changed.summary);
-	memcpy(changed.moved_to, h->moved.session, sizeof changed.moved_to);
-	changed.has_target = *h->moved.url;
-	snprintf(changed.target, sizeof changed.target, "%s", h->moved.url);
-	cau_answer_notify(h, (cau_audience){CAU_AUDIENCE_EVERYBODY, h->number},
+	memcpy(changed.moved_to, h->life.moved.session, sizeof changed.moved_to);
+	changed.has_target = *h->life.moved.url;
+	snprintf(changed.target, sizeof changed.target, "%s", h->life.moved.url);
+	cau_answer_notify(&h->identity, (cau_audience){CAU_AUDIENCE_EVERYBODY, h->identity.number},
 	                  CAU_METHOD_SESSION_CHANGED, &changed);
-	cau_log(CAU_LOG_NOTICE, h->id, "moved", "tick=%llu to=%s url=\"%s\"",
-	        (unsigned long long)h->tick, h->moved.session, h->moved.url);
+	cau_log(CAU_LOG_NOTICE, h->identity.id, "moved", "tick=%llu to=%s url=\"%s\"",
+	        (unsigned long long)h->core.tick, h->life.moved.session, h->life.moved.url);
 	cau_hosted_end(h);
 	finish(holding);
 }
 
 void cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to)
 {
-	CAU_ASSERT(h->holding && !h->holding->order, "session %s is not suspended", h->id);
-	h->moved = *to;
-	h->holding->job.run = h->holding->job.drop = run_away;
-	cau_builder_submit(h->around->mover, &h->holding->job);
+	CAU_ASSERT(h->suspension.holding && !h->suspension.holding->order,
+	           "session %s is not suspended", h->identity.id);
+	h->life.moved = *to;
+	h->suspension.holding->job.run = h->suspension.holding->job.drop = run_away;
+	cau_builder_submit(h->identity.around->mover, &h->suspension.holding->job);
 }
 
 int32_t cau_hosted_hands(cau_hosted *h, cau_drive *drives, double *speed)
 {
-	pthread_mutex_lock(&h->deciding);
-	*speed = h->logic->speed;
-	pthread_mutex_unlock(&h->deciding);
-	return cau_decide_drives(h, drives);
+	*speed = cau_decisions_now(&h->decisions).speed;
+	return cau_decisions_drives(&h->decisions, drives);
 }

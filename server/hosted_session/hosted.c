@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "hosted_session/answer.h"
+#include "hosted_session/build_limits.h"
 #include "hosted_session/internal.h"
 
 cau_hosted *cau_hosted_share(cau_hosted *h)
@@ -24,8 +26,8 @@ void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to)
 
 void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order)
 {
-	if (*h->moved.session) {
-		cau_reply_moved(&order->reply, &h->moved);
+	if (*h->life.moved.session) {
+		cau_reply_moved(&order->reply, &h->life.moved);
 		free(order);
 		return;
 	}
@@ -36,22 +38,22 @@ void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order)
 void cau_hosted_end(cau_hosted *h)
 {
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_END, .time_s = cau_monotonic_s()});
-	h->ended = true; // who sees this may refuse what waits, and needs the decision for it
-	cau_worker_pool_wake(h->around->pool, &h->task);
+	h->life.ended = true; // who sees this may refuse what waits, and needs the decision for it
+	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 }
 
-bool cau_hosted_take_creator(cau_hosted *h, cau_reply *reply)
+bool cau_hosted_take_creator(cau_hosted_creation *creation, cau_reply *reply)
 {
-	if (!atomic_exchange(&h->creator_waits, false))
+	if (!atomic_exchange(&creation->waits, false))
 		return false;
-	*reply = h->creator_reply;
+	*reply = creation->reply;
 	return true;
 }
 
-void cau_hosted_fail_creator(cau_hosted *h, const cau_error *error, int32_t code)
+void cau_hosted_fail_creator(cau_hosted_creation *creation, const cau_error *error, int32_t code)
 {
 	cau_reply reply;
-	if (cau_hosted_take_creator(h, &reply))
+	if (cau_hosted_take_creator(creation, &reply))
 		cau_reply_fail(&reply, error, code);
 }
 
@@ -59,60 +61,63 @@ void cau_hosted_release(cau_hosted *h)
 {
 	if (!h || atomic_fetch_sub(&h->references, 1) != 1)
 		return;
-	CAU_ASSERT(h->logic->count == 0 && !h->logic->stepping && !h->reads,
-	           "session %s goes with %d orders unanswered", h->id, h->logic->count);
-	cau_looks_finish(h->looks);
+	CAU_ASSERT(h->decisions.logic->count == 0 && !h->decisions.logic->stepping && !h->reads.first,
+	           "session %s goes with %d orders unanswered", h->identity.id,
+	           h->decisions.logic->count);
+	CAU_ASSERT(!h->past.busy && !h->past.waiting,
+	           "session %s is destroyed while a client views its past", h->identity.id);
+	cau_past_core_finish(&h->past.core);
 	cau_replay_finish(&h->replay);
-	cau_streams_finish(&h->streams);
-	cau_store_batch_destroy(h->batch);
-	cau_shelf_release(h->snapshot_shelf);
-	cau_shelf_release(h->copy_shelf);
-	cau_session_destroy(h->core);
-	if (h->memory_held)
-		atomic_fetch_sub(h->around->memory_held, h->memory_held);
-	pthread_mutex_destroy(&h->mutex);
-	pthread_mutex_destroy(&h->deciding);
-	if (h->trace)
-		fclose(h->trace);
-	free(h->logic);
-	free(h->scene);
-	free(h->present);
-	free(h->meshes);
+	cau_streams_finish(&h->frames.streams);
+	cau_store_batch_destroy(h->record.batch);
+	cau_shelf_release(h->record.shelf);
+	cau_shelf_release(h->reads.copies);
+	cau_session_destroy(h->core.session);
+	cau_building_release(h->identity.around, &h->creation.memory_held);
+	pthread_mutex_destroy(&h->suspension.lock);
+	pthread_mutex_destroy(&h->published.lock);
+	pthread_mutex_destroy(&h->refusals.lock);
+	pthread_mutex_destroy(&h->reads.lock);
+	pthread_mutex_destroy(&h->past.lock);
+	cau_decisions_finish(&h->decisions);
+	free(h->identity.scene);
+	free(h->core.described);
+	free(h->identity.meshes);
 	free(h);
 }
 
 const char *cau_hosted_id(const cau_hosted *h)
 {
-	return h->id;
+	return h->identity.id;
 }
 
 uint32_t cau_hosted_number(const cau_hosted *h)
 {
-	return h->number;
+	return h->identity.number;
 }
 
 const cau_scene_def *cau_hosted_scene(const cau_hosted *h)
 {
-	return h->scene;
+	return h->identity.scene;
 }
 
 bool cau_hosted_ended(cau_hosted *h)
 {
-	return h->ended;
+	return h->life.ended;
 }
 
 bool cau_hosted_starting(cau_hosted *h)
 {
-	return h->unanswered && !h->ended;
+	return h->creation.unanswered && !h->life.ended;
 }
 
 bool cau_hosted_made_by(const cau_hosted *h, const char *client_id, int64_t client_sequence)
 {
-	return client_sequence && h->creator_sequence == client_sequence &&
-	       strcmp(h->creator.client_id, client_id) == 0;
+	return client_sequence && h->identity.creator_sequence == client_sequence &&
+	       strcmp(h->identity.creator.client_id, client_id) == 0;
 }
 
 bool cau_hosted_drained(cau_hosted *h)
 {
-	return h->drained || h->ended;
+	return h->life.drained || h->life.ended;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "builder/builder.h"
+#include "cautery/session.h"
 #include "fill/fill.h"
 #include "hosted_session/sink.h"
 
@@ -26,3 +27,7 @@ typedef struct cau_mesh_asked {
 // Has it read, and answers through `reply`. Takes the bytes and the filling, on failure too.
 cau_status cau_mesh_ask(cau_builder *builder, const cau_mesh_asked *asked, const cau_reply *reply,
                         cau_error *error);
+
+// Logs what became of the mesh files of a scene that was built: one line for each line of a report.
+// report: of each mesh, or NULL.
+void cau_mesh_log(const char *session, const cau_scene_def *scene, const cau_mesh_report *report);

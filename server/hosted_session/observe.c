@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 typedef struct observation {
 	cau_frame frame;
@@ -24,14 +25,15 @@ static int scalar_count(uint32_t channels)
 	return count;
 }
 
-cau_status cau_advance_check(const cau_hosted *h, const cau_advance *advance, cau_error *error)
+cau_status cau_advance_check(const cau_session_info *info, const cau_advance *advance,
+                             cau_error *error)
 {
-	int64_t vertices = advance->chosen ? advance->vertex_count : h->info.vertex_count;
+	int64_t vertices = advance->chosen ? advance->vertex_count : info->vertex_count;
 	int64_t each = scalar_count(advance->channels);
 	each += advance->channels & CAU_CHANNEL_POSITIONS ? 3 : 0;
 	for (int32_t i = 0; i < advance->vertex_count; i++)
-		if (advance->vertices[i] >= h->info.vertex_count) {
-			cau_fail(error, CAU_BAD_VALUE, "", "the session has %d vertices", h->info.vertex_count);
+		if (advance->vertices[i] >= info->vertex_count) {
+			cau_fail(error, CAU_BAD_VALUE, "", "the session has %d vertices", info->vertex_count);
 			snprintf(error->path, sizeof error->path, "params.observe.vertices[%d]", i);
 			return CAU_BAD_VALUE;
 		}
@@ -105,7 +107,7 @@ static bool observe_mask(observation *o, int32_t face_count)
 static void observe_tool(cau_hosted *h, const cau_tool_state *from, cau_wire_observed_tool *to)
 {
 	cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-	cau_decide_find(h, from->name, &drive);
+	cau_decisions_find(&h->decisions, from->name, &drive);
 	*to = (cau_wire_observed_tool){.jaw = from->jaw,
 	                               .energized = from->energized,
 	                               .has_energy_off = !from->energized,
@@ -167,7 +169,7 @@ static void observe_regions(const cau_hosted *h, observation *o)
 	for (int32_t i = 0; i < o->wanted->region_count; i++) {
 		const cau_advance_region *region = &o->wanted->regions[i];
 		cau_damage inside, outside;
-		cau_session_damage(h->core, &region->where, &inside, &outside);
+		cau_session_damage(h->core.session, &region->where, &inside, &outside);
 		memcpy(o->regions[i].name, region->name, sizeof o->regions[i].name);
 		o->regions[i].inside = wire_damage(&inside);
 		o->regions[i].outside = wire_damage(&outside);
@@ -180,29 +182,31 @@ static void observe_energy(const cau_hosted *h, observation *o)
 	o->result.has_energy = o->wanted->energy;
 	if (!o->wanted->energy)
 		return;
-	cau_session_read_ledger(h->core, &ledger);
-	o->result.energy = (cau_wire_observed_energy){.delivered_j = ledger.delivered_j,
-	                                              .blade_j = ledger.blade_j,
-	                                              .far_j = ledger.far_j,
-	                                              .stored_j = ledger.stored_j,
-	                                              .boiled_j = ledger.boiled_j,
-	                                              .perfused_j = ledger.perfused_j,
-	                                              .ambient_j = ledger.ambient_j,
-	                                              .shed_j = ledger.shed_j,
-	                                              .coagulated_m3 = cau_session_coagulated(h->core),
-	                                              .vapour_kg_s = cau_session_vapour(h->core)};
+	cau_session_read_ledger(h->core.session, &ledger);
+	o->result.energy =
+		(cau_wire_observed_energy){.delivered_j = ledger.delivered_j,
+	                               .blade_j = ledger.blade_j,
+	                               .far_j = ledger.far_j,
+	                               .stored_j = ledger.stored_j,
+	                               .boiled_j = ledger.boiled_j,
+	                               .perfused_j = ledger.perfused_j,
+	                               .ambient_j = ledger.ambient_j,
+	                               .shed_j = ledger.shed_j,
+	                               .coagulated_m3 = cau_session_coagulated(h->core.session),
+	                               .vapour_kg_s = cau_session_vapour(h->core.session)};
 }
 
 // What costs the core work of its own is made for this answer, and for the streams that have it.
 static bool observe(cau_hosted *h, observation *o)
 {
-	cau_session_watch(h->core, cau_streams_watched(&h->streams) | o->wanted->channels);
-	cau_session_frame(h->core, &o->frame);
+	cau_session_watch(h->core.session,
+	                  cau_streams_watched(&h->frames.streams) | o->wanted->channels);
+	cau_session_frame(h->core.session, &o->frame);
 	observe_tools(h, o);
 	observe_vessels(o);
 	observe_regions(h, o);
 	observe_energy(h, o);
-	return observe_positions(o) && observe_scalars(o) && observe_mask(o, h->info.face_count);
+	return observe_positions(o) && observe_scalars(o) && observe_mask(o, h->core.info.face_count);
 }
 
 static void finish(observation *o)
@@ -220,11 +224,11 @@ char *cau_advance_text(cau_hosted *h, const cau_order *order, size_t *bytes, cau
 	observation *o = calloc(1, sizeof *o);
 	if (o) {
 		o->wanted = order->as.advance;
-		o->vertex_count = o->wanted->chosen ? o->wanted->vertex_count : h->info.vertex_count;
-		o->result.tick = (int64_t)h->tick;
-		o->result.time_s = (double)h->tick * h->info.step_s;
-		o->result.ticks = (int64_t)(h->tick - o->wanted->began_tick);
-		o->result.stored = !h->around->ephemeral;
+		o->vertex_count = o->wanted->chosen ? o->wanted->vertex_count : h->core.info.vertex_count;
+		o->result.tick = (int64_t)h->core.tick;
+		o->result.time_s = (double)h->core.tick * h->core.info.step_s;
+		o->result.ticks = (int64_t)(h->core.tick - o->wanted->began_tick);
+		o->result.stored = !h->identity.around->ephemeral;
 		if (observe(h, o))
 			text = cau_answer_text(order->reply.method, &o->result, bytes, error);
 		else

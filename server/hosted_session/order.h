@@ -45,6 +45,46 @@
 typedef enum cau_order_kind { CAU_ORDER_TABLE(KIND, KIND) CAU_ORDER_COUNT } cau_order_kind;
 #undef KIND
 
+// ---- what some of them ask for ------------------------------------------------------------------
+
+typedef struct cau_tool_order {
+	char tool[CAU_NAME_BYTES];
+	uint32_t to; // HAND_OVER: this client; 0: nobody
+	char to_name[65];
+	double to_deadline_s;
+	cau_role to_role;
+} cau_tool_order;
+
+typedef struct cau_fork_order {
+	char name[CAU_NAME_BYTES];
+	bool has_tick, paused;
+	uint64_t tick;
+} cau_fork_order;
+
+typedef struct cau_timeline_order {
+	uint64_t from_tick;
+	int32_t count;
+} cau_timeline_order;
+
+typedef struct cau_log_order {
+	uint64_t from_tick, to_tick;
+} cau_log_order;
+
+typedef struct cau_join_order {
+	double rate_hz, step_m;
+	bool plain;
+	uint32_t channels;
+} cau_join_order;
+
+typedef struct cau_frame_at_order {
+	uint64_t tick;
+	double step_m;
+	bool plain;
+	uint32_t channels;
+	int64_t branch; // the rest is filled in when it is served
+	uint64_t epoch;
+} cau_frame_at_order;
+
 typedef struct cau_order {
 	struct cau_order *next;
 	cau_order_kind kind;
@@ -61,38 +101,12 @@ typedef struct cau_order {
 		double speed;
 		uint64_t tick;
 		char name[CAU_NAME_BYTES];
-		struct {
-			char tool[CAU_NAME_BYTES];
-			uint32_t to; // HAND_OVER: this client; 0: nobody
-			char to_name[65];
-			double to_deadline_s;
-			cau_role to_role;
-		} tool;
-		struct {
-			char name[CAU_NAME_BYTES];
-			bool has_tick, paused;
-			uint64_t tick;
-		} fork;
-		struct {
-			uint64_t from_tick;
-			int32_t count;
-		} timeline;
+		cau_tool_order tool;
+		cau_fork_order fork;
+		cau_timeline_order timeline;
 		int32_t format;
-		struct {
-			uint64_t from_tick, to_tick;
-		} log;
-		struct {
-			double rate_hz, step_m;
-			bool plain;
-			uint32_t channels;
-		} join;
-		struct {
-			uint64_t tick;
-			double step_m;
-			bool plain;
-			uint32_t channels;
-			int64_t branch; // the rest is filled in when it is served
-			uint64_t epoch;
-		} frame_at;
+		cau_log_order log;
+		cau_join_order join;
+		cau_frame_at_order frame_at;
 	} as;
 } cau_order;

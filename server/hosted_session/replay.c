@@ -5,18 +5,19 @@
 #include <string.h>
 
 #include "cautery/command_json.h"
-#include "hosted_session/internal.h"
+#include "clock/clock.h"
+#include "hosted_session/replay.h"
 
-cau_status cau_replay_check(cau_hosted *h, int64_t branch, bool present, uint64_t tick,
-                            cau_error *error)
+cau_status cau_replay_check(const cau_hosted_identity *identity, const cau_hosted_commits *commits,
+                            int64_t branch, bool present, uint64_t tick, cau_error *error)
 {
-	cau_store_flush(h->around->store);
-	uint64_t lost_from = h->lost_from;
+	cau_store_flush(identity->around->store);
+	uint64_t lost_from = commits->lost_from;
 	if (present && tick > lost_from)
 		return cau_fail(error, CAU_BAD_VALUE, "params.tick",
 		                "commands from tick %llu on could not be stored",
 		                (unsigned long long)lost_from);
-	return cau_store_check_reach(h->around->store, h->id, branch, tick, error);
+	return cau_store_check_reach(identity->around->store, identity->id, branch, tick, error);
 }
 
 static cau_status take_checkpoint(void *user, const cau_store_checkpoint *checkpoint)

@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/resend.h"
+#include "hosted_session/slice.h"
 
 void cau_answer_order(cau_hosted *h, cau_order *order, const void *result)
 {
@@ -15,8 +18,8 @@ void cau_answer_order(cau_hosted *h, cau_order *order, const void *result)
 	if (!text) {
 		cau_reply_fail(&order->reply, &error, CAU_RPC_INTERNAL);
 	} else if (method->changes) {
-		cau_record_answer(h, order, text, bytes);
-		cau_record_reply(h, &order->reply, text, bytes);
+		cau_record_answer(&h->record, order, text, bytes);
+		cau_record_reply(&h->record, &order->reply, text, bytes);
 	} else {
 		cau_outcome outcome = {.text = text, .text_bytes = bytes};
 		cau_reply_answer(&order->reply, &outcome);
@@ -25,12 +28,31 @@ void cau_answer_order(cau_hosted *h, cau_order *order, const void *result)
 	free(order);
 }
 
-cau_outcome_kind cau_hosted_look(cau_hosted *h, cau_order *order)
+static cau_status send_again(void *user, const cau_store_answer *answer)
+{
+	const cau_order *order = user;
+	cau_resend_answer(&order->reply, answer->result.data, answer->result.bytes);
+	return CAU_OK;
+}
+
+// The stored answer of a resent request: CAU_OK (answered), CAU_NOT_FOUND (act), CAU_BAD_STATE
+// (wait), CAU_ALREADY_EXISTS (acted upon, and the answer is not kept any more).
+static cau_status look_up(const cau_hosted_identity *identity, const cau_order *order,
+                          cau_error *error)
+{
+	if (!order->client_sequence)
+		return CAU_NOT_FOUND;
+	return cau_store_read_answer(identity->around->store, order->asker.client_id,
+	                             (uint64_t)order->client_sequence, send_again, (void *)order,
+	                             error);
+}
+
+cau_outcome_kind cau_answer_resend(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
-	if (h->pending) // its first may be in this very slice's batch
+	if (h->record.pending) // its first may be in this very slice's batch
 		cau_record_commit(h);
-	cau_status status = cau_record_resend(h, order, &error);
+	cau_status status = look_up(&h->identity, order, &error);
 	if (status == CAU_BAD_STATE)
 		return CAU_POSTPONED;
 	if (status == CAU_OK) {
@@ -52,14 +74,15 @@ void cau_answer_changed(cau_hosted *h, int change, const char *client)
 	if (changed.has_client)
 		snprintf(changed.client, sizeof changed.client, "%s", client);
 	bool all = change == CAU_CHANGE_CREATED || change == CAU_CHANGE_DESTROYED;
-	cau_audience audience = {all ? CAU_AUDIENCE_EVERYBODY : CAU_AUDIENCE_SESSION, h->number};
-	cau_answer_notify(h, audience, CAU_METHOD_SESSION_CHANGED, &changed);
+	cau_audience audience = {all ? CAU_AUDIENCE_EVERYBODY : CAU_AUDIENCE_SESSION,
+	                         h->identity.number};
+	cau_answer_notify(&h->identity, audience, CAU_METHOD_SESSION_CHANGED, &changed);
 }
 
-static void describe_layers(const cau_hosted *h, cau_wire_layer_description *layers)
+static void describe_layers(const cau_session_info *info, cau_wire_layer_description *layers)
 {
-	for (int32_t i = 0; i < h->info.layer_count; i++) {
-		const cau_session_layer *from = &h->info.layers[i];
+	for (int32_t i = 0; i < info->layer_count; i++) {
+		const cau_session_layer *from = &info->layers[i];
 		layers[i] = (cau_wire_layer_description){.kind = from->kind,
 		                                         .first_face = from->first_face,
 		                                         .face_count = from->face_count,
@@ -74,23 +97,24 @@ char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, ca
 	cau_drive drives[CAU_MAX_TOOLS];
 	cau_wire_driver drivers[CAU_MAX_TOOLS];
 	cau_wire_session_description result = {
-		.triangle_count = h->info.triangle_count,
-		.tetrahedron_count = h->info.tetrahedron_count,
-		.link_count = h->info.link_count,
-		.layers = {layers, h->info.layer_count, CAU_MAX_LAYERS},
+		.triangle_count = h->core.info.triangle_count,
+		.tetrahedron_count = h->core.info.tetrahedron_count,
+		.link_count = h->core.info.link_count,
+		.layers = {layers, h->core.info.layer_count, CAU_MAX_LAYERS},
 		.drivers = {drivers, 0, CAU_MAX_TOOLS},
-		.definition = h->present,
+		.definition = h->core.described,
 	};
 	cau_hosted_publish_summary(h);
 	cau_hosted_summary(h, &result.summary);
-	snprintf(result.description, sizeof result.description, "%s", h->info.description);
-	snprintf(result.instruction_set, sizeof result.instruction_set, "%s", h->info.instruction_set);
-	describe_layers(h, layers);
-	result.drivers.count = cau_decide_drives(h, drives);
+	snprintf(result.description, sizeof result.description, "%s", h->core.info.description);
+	snprintf(result.instruction_set, sizeof result.instruction_set, "%s",
+	         h->core.info.instruction_set);
+	describe_layers(&h->core.info, layers);
+	result.drivers.count = cau_decisions_drives(&h->decisions, drives);
 	for (int32_t i = 0; i < result.drivers.count; i++)
-		cau_drive_describe(&drives[i], &drivers[i]);
-	*h->present = *h->scene;
-	cau_session_present(h->core, h->present);
+		cau_driver_describe(&drives[i], &drivers[i]);
+	*h->core.described = *h->identity.scene;
+	cau_session_present(h->core.session, h->core.described);
 	return cau_answer_text(method, &result, bytes, error);
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a core knows of its tick, as streams carry it; what else there is of a session is added by
-// who knows it (frames.c).
+#include "hosted_session/shown.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "hosted_session/internal.h"
+#include "clock/clock.h"
 
 // Tools that touch are always behind a little: by less than this nobody sees it.
 static const double behind_m = 1e-5;

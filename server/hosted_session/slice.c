@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a slice ends, whoever has it: a worker or the builder; and what is refused in it.
+#include "hosted_session/slice.h"
 #include "cautery/assert.h"
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
 void cau_hosted_end_slice(cau_hosted *h)
 {
 	cau_record_commit(h);
-	cau_decide_flush_trace(h);
-	if (!h->starting)
-		h->unanswered = false;
+	cau_decisions_flush_trace(&h->decisions, h->identity.id);
+	if (!h->creation.starting)
+		h->creation.unanswered = false;
 	cau_hosted_publish_summary(h);
 	cau_hosted_publish_tools(h);
-	h->around->sink.sliced(h->around->sink.user, h->number);
+	h->identity.around->sink.sliced(h->identity.around->sink.user, h->identity.number);
 }
 
 void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code)
@@ -21,9 +23,9 @@ void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *e
 		return;
 	}
 	if (order->kind == CAU_ORDER_COMMAND) {
-		h->refused_commands++;
+		h->findings.refused_commands++;
 		if (order->motion)
-			cau_drive_refuse(h, order, error);
+			cau_refusals_note(&h->refusals, order, error);
 	}
 	cau_answer_fail(order, error, code);
 }
@@ -31,7 +33,8 @@ void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *e
 void cau_hosted_refuse_rest(cau_hosted *h)
 {
 	cau_action action;
-	CAU_ASSERT(h->logic->ended, "orders of session %s are refused before it ends", h->id);
+	CAU_ASSERT(h->decisions.logic->ended, "orders of session %s are refused before it ends",
+	           h->identity.id);
 	for (cau_decide_next(h, &action); action.act != CAU_ACT_NOTHING; cau_decide_next(h, &action)) {
 		cau_order *order = (cau_order *)(uintptr_t)action.ticket;
 		if (action.act == CAU_ACT_REFUSE)

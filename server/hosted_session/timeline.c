@@ -1,110 +1,139 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// session.timeline: a page of events out of memory, or by the builder out of the store.
-#include <stdlib.h>
+#include "hosted_session/timeline.h"
 
-#include "hosted_session/internal.h"
+#include <stdio.h>
+#include <string.h>
 
-#define READ_EXPECTED_S 0.02 // for a page of the timeline out of the store
+#include "hosted_session/answer.h"
 
-static bool in_memory(const cau_hosted *h, uint64_t from_tick, uint64_t wanted)
+static void tell(const cau_hosted_identity *identity, const cau_wire_timeline_event *what)
 {
-	uint64_t kept = h->event_count < EVENT_COUNT ? h->event_count : EVENT_COUNT;
-	if (wanted <= kept || (!h->events_older && h->event_count <= EVENT_COUNT))
-		return true;
-	const cau_wire_timeline_event *oldest = &h->events[(h->event_count - kept) % EVENT_COUNT];
-	return kept && (uint64_t)oldest->tick < from_tick;
+	cau_wire_event_notice params = {.event = *what};
+	cau_audience audience = {CAU_AUDIENCE_SESSION, identity->number};
+	snprintf(params.session, sizeof params.session, "%s", identity->id);
+	cau_answer_notify(identity, audience, CAU_METHOD_EVENT, &params);
 }
 
-static void copy_newest(const cau_hosted *h, uint64_t from_tick, cau_event_page *taken)
+static void publish(cau_hosted_timeline *timeline, const cau_wire_timeline_event *event)
 {
-	uint64_t wanted = (uint64_t)taken->capacity;
-	uint64_t kept = h->event_count < EVENT_COUNT ? h->event_count : EVENT_COUNT;
-	uint64_t from = h->event_count - (wanted < kept ? wanted : kept);
-	for (uint64_t i = from; i < h->event_count; i++) {
-		const cau_wire_timeline_event *event = &h->events[i % EVENT_COUNT];
-		if ((uint64_t)event->tick >= from_tick)
-			taken->events[taken->count++] = *event;
+	bool trouble = event->kind == CAU_EVENT_WATCHDOG || event->kind == CAU_EVENT_FAULT ||
+	               event->kind == CAU_EVENT_INVERTED || event->kind == CAU_EVENT_ENERGY_GAIN;
+	cau_record_event(timeline->record, event, trouble ? CAU_LOG_WARNING : CAU_LOG_INFO);
+	tell(timeline->record->identity, event);
+}
+
+// ---- cuts and tears -----------------------------------------------------------------------------
+// Those of neighbouring ticks are one event, which is told and stored once it is whole. One of each
+// may grow at a time.
+static cau_wire_timeline_event *event_at(cau_hosted_timeline *timeline, uint64_t open)
+{
+	return &timeline->events[(open - 1) % EVENT_COUNT];
+}
+
+static uint64_t *open_of(cau_hosted_timeline *timeline, int kind)
+{
+	return kind == CAU_EVENT_CUT    ? &timeline->cut_open
+	       : kind == CAU_EVENT_TEAR ? &timeline->tear_open
+	                                : NULL;
+}
+
+static void end_open(cau_hosted_timeline *timeline, uint64_t *open)
+{
+	uint64_t ended = *open;
+	*open = 0;
+	if (ended)
+		publish(timeline, event_at(timeline, ended));
+}
+
+void cau_timeline_end_cuts(cau_hosted_timeline *timeline)
+{
+	bool cut_first = timeline->cut_open < timeline->tear_open;
+	end_open(timeline, cut_first ? &timeline->cut_open : &timeline->tear_open);
+	end_open(timeline, cut_first ? &timeline->tear_open : &timeline->cut_open);
+}
+
+void cau_timeline_settle(cau_hosted_timeline *timeline)
+{
+	uint64_t *const open[] = {&timeline->cut_open, &timeline->tear_open};
+	for (int i = 0; i < 2; i++)
+		if (*open[i] &&
+		    timeline->core->tick > (uint64_t)event_at(timeline, *open[i])->tick + CUT_MERGE_TICKS)
+			end_open(timeline, open[i]);
+}
+
+void cau_timeline_add(cau_hosted_timeline *timeline, int kind, const char *tool, const char *client,
+                      int64_t count, const char *detail)
+{
+	uint64_t *open = open_of(timeline, kind);
+	if (open && *open) {
+		event_at(timeline, *open)->count += count;
+		return;
 	}
-}
-
-// From where on every tick can be reached. What lies in a gap that the store does not know yet is
-// not.
-static uint64_t find_oldest_tick(const cau_read_job *job)
-{
-	cau_hosted *h = job->hosted;
-	cau_error error = {0};
-	uint64_t tick = job->tick;
-	if (h->lost_from == UINT64_MAX &&
-	    cau_store_read_oldest_tick(h->around->store, h->id, job->branch, &tick, &error))
-		cau_log(CAU_LOG_DEBUG, h->id, "no_oldest_tick", "reason=\"%s\"", error.reason);
-	return tick;
-}
-
-static void answer_page(const cau_read_job *job, cau_wire_timeline_event *events, int32_t count)
-{
-	const cau_reply *reply = &job->order->reply;
-	cau_error error = {0};
-	cau_outcome outcome = {0};
-	cau_wire_timeline result = {.tick = (int64_t)job->tick,
-	                            .oldest_tick = (int64_t)find_oldest_tick(job),
-	                            .branch = job->branch,
-	                            .events = {events, count, count}};
-	char *text = cau_answer_text(reply->method, &result, &outcome.text_bytes, &error);
-	outcome.text = text;
-	outcome.error = text ? NULL : &error;
-	cau_reply_answer(reply, &outcome);
-	free(text);
-}
-
-// On the builder: what memory does not hold any more.
-static void answer_from_store(cau_read_job *job)
-{
-	cau_error error = {0};
-	cau_event_page *taken = job->copy;
-	cau_store_flush(job->hosted->around->store);
-	if (cau_events_read(job->hosted, job->branch, job->order->as.timeline.from_tick, job->tick,
-	                    taken, &error))
-		cau_reply_fail(&job->order->reply, &error, 0);
+	if (!open)
+		cau_timeline_end_cuts(timeline);
+	cau_wire_timeline_event *event = &timeline->events[timeline->count++ % EVENT_COUNT];
+	*event = (cau_wire_timeline_event){.tick = (int64_t)timeline->core->tick,
+	                                   .time_s = (double)timeline->core->tick *
+	                                             timeline->core->info.step_s,
+	                                   .kind = kind,
+	                                   .has_tool = tool && *tool,
+	                                   .has_client = client && *client,
+	                                   .has_count = count > 0,
+	                                   .count = count,
+	                                   .has_detail = detail && *detail};
+	if (event->has_tool)
+		snprintf(event->tool, sizeof event->tool, "%s", tool);
+	if (event->has_client)
+		snprintf(event->client, sizeof event->client, "%s", client);
+	if (event->has_detail)
+		snprintf(event->detail, sizeof event->detail, "%s", detail);
+	if (open)
+		*open = timeline->count;
 	else
-		answer_page(job, taken->events, taken->count);
+		publish(timeline, event);
 }
 
-static void free_page(void *pointer)
+// ---- from the store -----------------------------------------------------------------------------
+// The store has the notification's text. What cannot be read is passed over.
+static cau_status take_event(void *user, const cau_store_event *row)
 {
-	cau_event_page *taken = pointer;
-	free(taken->events);
-	free(taken);
+	cau_timeline_page *taken = user;
+	cau_rpc_message message = {0};
+	cau_rpc_fault fault;
+	cau_wire_event_notice params = {0};
+	size_t bytes = strlen(row->text);
+	if (taken->count == taken->capacity || cau_rpc_read(row->text, bytes, bytes, &message, &fault))
+		return CAU_OK;
+	if (message.method == CAU_METHOD_EVENT && !cau_rpc_params(&message, &params, NULL))
+		taken->events[taken->count++] = params.event;
+	cau_rpc_finish(&message);
+	return CAU_OK;
 }
 
-static cau_event_page *make_page(int32_t capacity)
+cau_status cau_timeline_read(const cau_hosted_identity *identity, int64_t branch,
+                             uint64_t from_tick, uint64_t to_tick, cau_timeline_page *taken,
+                             cau_error *error)
 {
-	cau_event_page *made = malloc(sizeof *made);
-	if (made)
-		*made = (cau_event_page){calloc((size_t)capacity, sizeof *made->events), 0, capacity};
-	if (made && made->events)
-		return made;
-	free(made);
-	return NULL;
+	cau_status status =
+		cau_store_read_timeline(identity->around->store, identity->id, branch, from_tick, to_tick,
+	                            taken->capacity, take_event, taken, error);
+	for (int32_t i = 0; i < taken->count / 2; i++) {
+		cau_wire_timeline_event swapped = taken->events[i];
+		taken->events[i] = taken->events[taken->count - 1 - i];
+		taken->events[taken->count - 1 - i] = swapped;
+	}
+	return status;
 }
 
-void cau_apply_timeline(cau_hosted *h, cau_order *order)
+void cau_timeline_load(cau_hosted_timeline *timeline)
 {
 	cau_error error = {0};
-	uint64_t from_tick = order->as.timeline.from_tick;
-	cau_event_page *taken = make_page(order->as.timeline.count);
-	if (!taken) {
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the timeline");
-		cau_answer_fail(order, &error, 0);
-		return;
-	}
-	if (!in_memory(h, from_tick, (uint64_t)taken->capacity)) {
-		cau_event_end_cut(h);
-		cau_reads_hand_over(h, order, answer_from_store, taken, free_page, READ_EXPECTED_S);
-		return;
-	}
-	copy_newest(h, from_tick, taken);
-	cau_read_job now = {.hosted = h, .order = order, .tick = h->tick, .branch = h->branch};
-	answer_page(&now, taken->events, taken->count);
-	free_page(taken);
-	free(order);
+	cau_timeline_page taken = {timeline->events, 0, EVENT_COUNT};
+	timeline->cut_open = timeline->tear_open = 0;
+	if (cau_timeline_read(timeline->record->identity, timeline->record->history->branch, 0,
+	                      timeline->core->tick, &taken, &error))
+		cau_log(CAU_LOG_ERROR, timeline->record->identity->id, "events_not_read", "reason=\"%s\"",
+		        error.reason);
+	timeline->count = (uint64_t)taken.count;
+	timeline->older = taken.count == EVENT_COUNT;
 }

@@ -202,10 +202,10 @@ WRAPPED void __wrap_cau_decide_next(cau_hosted *h, cau_action *action)
 static void compare(const cau_hosted *h, const cau_logic *logic, int place)
 {
 	session_book *book = &sim_books[place];
-	if (!book->restarted || !h->core || logic->draining || logic->ended ||
+	if (!book->restarted || !h->core.session || logic->draining || logic->ended ||
 	    logic->state == CAU_SESSION_STARTING)
 		return;
-	books_compare(book, place, books_number(cau_fake_gravity(h->core)[2]));
+	books_compare(book, place, books_number(cau_fake_gravity(h->core.session)[2]));
 	book->restarted = false;
 }
 
@@ -243,12 +243,12 @@ WRAPPED void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *a
 	if (place < 0)
 		return;
 	compare(work->deciding, logic, place);
-	core_book *core = work->deciding->core ? book_of(work->deciding->core) : NULL;
+	core_book *core = work->deciding->core.session ? book_of(work->deciding->core.session) : NULL;
 	if (core)
 		note_decision(core, logic, action);
 	if (action->act != CAU_ACT_STEP)
 		return;
-	work->begun = work->deciding->core;
+	work->begun = work->deciding->core.session;
 	see_server(place, cau_hosted_id(work->deciding));
 	for (int t = 0; t < TOOLS; t++) {
 		work->allowed[t] = promises_energy(place, t, sim_now());

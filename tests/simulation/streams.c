@@ -73,8 +73,8 @@ WRAPPED void __wrap_cau_frames_publish(cau_hosted *h, double now_s)
 {
 	cau_frame frame;
 	int place = sim_session_of(cau_hosted_id(h));
-	if (place >= 0 && h->core) {
-		cau_session_frame(h->core, &frame);
+	if (place >= 0 && h->core.session) {
+		cau_session_frame(h->core.session, &frame);
 		seen_state *state = &seen.states[place][seen.at[place]++ % SEEN];
 		*state = (seen_state){true, frame.tick, frame.position[2], 0};
 		for (int32_t i = 0; i < frame.tool_count; i++)

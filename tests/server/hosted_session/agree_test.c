@@ -62,14 +62,14 @@ static void no_tick_begins_with_energy_that_nobody_turned_on(void **state)
 	is_broken = true;
 	assert_int_equal(energize(OFF, false)->status, CAU_OK);
 	assert_int_not_equal(step(FAULTED, 5)->status, CAU_OK);
-	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_FAULTED);
-	assert_int_equal(t.h->tick, 3);
+	assert_int_equal(cau_decisions_state(&t.h->decisions), CAU_SESSION_FAULTED);
+	assert_int_equal(t.h->core.tick, 3);
 	// whoever goes back has a sound session again
 	is_broken = false;
 	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
 	assert_int_equal(ask(RESET, order)->status, CAU_OK);
-	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_PAUSED);
-	assert_int_equal(t.h->tick, 0);
+	assert_int_equal(cau_decisions_state(&t.h->decisions), CAU_SESSION_PAUSED);
+	assert_int_equal(t.h->core.tick, 0);
 }
 
 // A broken safety rule ends no daemon: in every build this session alone is faulted, its tool is
@@ -78,9 +78,9 @@ static void a_broken_rule_faults_the_session(void **state)
 {
 	(void)state;
 	turn_on_and_step();
-	pthread_mutex_lock(&t.h->deciding);
-	t.h->logic->steps_left = -7;
-	pthread_mutex_unlock(&t.h->deciding);
+	pthread_mutex_lock(&t.h->decisions.lock);
+	t.h->decisions.logic->steps_left = -7;
+	pthread_mutex_unlock(&t.h->decisions.lock);
 	cau_error error = {0};
 	cau_order *finder = hosted_new_order(OFF, CAU_ORDER_PAUSE, CAU_METHOD_SESSION_PAUSE);
 	cau_status found = cau_hosted_submit(t.h, finder, &error);
@@ -94,16 +94,16 @@ static void a_broken_rule_faults_the_session(void **state)
 	const hosted_answer *answer = step(FAULTED, 5);
 	assert_int_equal(answer->status, CAU_FAULTED);
 	assert_non_null(strstr(answer->reason, "safety rule"));
-	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_FAULTED);
-	assert_int_equal(t.h->tick, 3);
+	assert_int_equal(cau_decisions_state(&t.h->decisions), CAU_SESSION_FAULTED);
+	assert_int_equal(t.h->core.tick, 3);
 	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
 	assert_int_equal(ask(RESET, order)->status, CAU_OK);
-	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_PAUSED);
+	assert_int_equal(cau_decisions_state(&t.h->decisions), CAU_SESSION_PAUSED);
 	// the worker's next act forgets the report, so that another broken rule is reported
 	assert_int_equal(step(AGAIN, 1)->status, CAU_OK);
-	pthread_mutex_lock(&t.h->deciding);
-	bool reported = t.h->rule_reported;
-	pthread_mutex_unlock(&t.h->deciding);
+	pthread_mutex_lock(&t.h->decisions.lock);
+	bool reported = t.h->decisions.rule_reported;
+	pthread_mutex_unlock(&t.h->decisions.lock);
 	assert_false(reported);
 }
 
@@ -113,7 +113,7 @@ static void what_is_on_is_stepped(void **state)
 	turn_on_and_step();
 	assert_int_equal(energize(OFF, false)->status, CAU_OK);
 	assert_int_equal(step(FAULTED, 5)->status, CAU_OK);
-	assert_int_equal(t.h->tick, 8);
+	assert_int_equal(t.h->core.tick, 8);
 }
 
 static void nobody_watches(void *user)

@@ -56,15 +56,15 @@ static cau_status take_hash(void *user, const cau_store_checkpoint *checkpoint)
 static void assert_as_it_was(void)
 {
 	uint64_t hash = 0;
-	while (t.h->away)
+	while (t.h->suspension.active)
 		sched_yield();
 	cau_hosted_stop(t.h);
 	cau_store_flush(t.around.store);
 	assert_int_equal(
 		cau_store_read_checkpoint(t.around.store, "d1-building", 0, TICKS, take_hash, &hash, NULL),
 		CAU_OK);
-	assert_int_equal(t.h->tick, TICKS);
-	assert_true(cau_session_hash(t.h->core) == hash);
+	assert_int_equal(t.h->core.tick, TICKS);
+	assert_true(cau_session_hash(t.h->core.session) == hash);
 	cau_hosted_release(t.h);
 	t.h = NULL;
 }

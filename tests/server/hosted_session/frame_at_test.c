@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "hosted_session/looks.h"
+#include "hosted_session/past_views.h"
 #include "server/hosted_session/hosted_fixture.h"
 
 enum { CREATED, STEPPED, FIRST, SECOND, THIRD, OTHER };
@@ -205,11 +205,11 @@ static void a_core_that_nobody_needs_goes(void **state)
 	double due_s = INFINITY;
 	while (due_s == INFINITY) { // it is put away after the answer
 		sched_yield();
-		due_s = cau_looks_due_s(t.h);
+		due_s = cau_past_views_due_s(&t.h->past);
 	}
-	cau_looks_tire(t.h, due_s - 1);
+	cau_past_views_tire(&t.h->past, due_s - 1);
 	assert_true(t.memory_held > alone);
-	cau_looks_tire(t.h, due_s);
+	cau_past_views_tire(&t.h->past, due_s);
 	while (t.memory_held > alone)
 		sched_yield();
 	look(SECOND, ANYBODY, 6);

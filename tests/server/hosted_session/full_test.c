@@ -75,9 +75,9 @@ static int logged(void)
 {
 	int count = 0;
 	cau_store_flush(t.around.store);
-	assert_int_equal(
-		cau_store_read_log(t.around.store, t.h->id, 0, 0, 1000, count_command, &count, NULL),
-		CAU_OK);
+	assert_int_equal(cau_store_read_log(t.around.store, t.h->identity.id, 0, 0, 1000, count_command,
+	                                    &count, NULL),
+	                 CAU_OK);
 	return count;
 }
 

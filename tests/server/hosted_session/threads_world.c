@@ -87,7 +87,7 @@ static void see_step(const cau_session *session)
 // The first tick that has not begun. Under the session's lock.
 static uint64_t next_tick(const cau_hosted *h)
 {
-	return h->logic->tick + (h->logic->acting == CAU_ACT_STEP);
+	return h->decisions.logic->tick + (h->decisions.logic->acting == CAU_ACT_STEP);
 }
 
 // Told under the session's lock: what is decided is what is told.
@@ -95,7 +95,7 @@ static void see_drives(const cau_hosted *h)
 {
 	pthread_mutex_lock(&threads.lock);
 	for (int i = 0; i < TOOLS; i++) {
-		const cau_drive *drive = cau_logic_drive(h->logic, tool_names[i]);
+		const cau_drive *drive = cau_logic_drive(h->decisions.logic, tool_names[i]);
 		tool_book *book = &threads.tools[i];
 		if (!drive || drive->enabled == book->on)
 			continue;
@@ -261,11 +261,11 @@ void threads_await_steps(uint64_t count)
 static void mark_loss(int client, uint64_t asked)
 {
 	cau_hosted *h = threads.h;
-	pthread_mutex_lock(&h->deciding);
+	pthread_mutex_lock(&h->decisions.lock);
 	pthread_mutex_lock(&threads.lock);
 	threads.marks[client] = (loss_mark){asked, next_tick(h)};
 	pthread_mutex_unlock(&threads.lock);
-	pthread_mutex_unlock(&h->deciding);
+	pthread_mutex_unlock(&h->decisions.lock);
 }
 
 void threads_lose(loss kind, int client)

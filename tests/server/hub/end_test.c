@@ -185,14 +185,14 @@ static void as_time_stops_energy_goes_off_within_the_call(void **state)
 	on->as.command.as.energized = true;
 	assert_int_equal(cau_hosted_submit(held, on, &error), CAU_OK);
 	assert_int_equal(await(ON)->status, CAU_OK);
-	pthread_mutex_lock(&held->deciding);
-	assert_true(cau_logic_drive(held->logic, "hook")->enabled);
-	pthread_mutex_unlock(&held->deciding);
+	pthread_mutex_lock(&held->decisions.lock);
+	assert_true(cau_logic_drive(held->decisions.logic, "hook")->enabled);
+	pthread_mutex_unlock(&held->decisions.lock);
 	cau_hub_stop_time(t.hub);
-	pthread_mutex_lock(&held->deciding);
-	assert_false(cau_logic_drive(held->logic, "hook")->enabled);
-	assert_true(held->logic->draining);
-	pthread_mutex_unlock(&held->deciding);
+	pthread_mutex_lock(&held->decisions.lock);
+	assert_false(cau_logic_drive(held->decisions.logic, "hook")->enabled);
+	assert_true(held->decisions.logic->draining);
+	pthread_mutex_unlock(&held->decisions.lock);
 	cau_hosted_release(held);
 }
 

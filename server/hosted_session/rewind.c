@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 // What the stages take, for the builder's order: a sheet of 250,000 vertices is restored in 1.5 s.
 #define READ_EXPECTED_S 0.02
@@ -35,17 +37,8 @@ static const char *const stage_names[STAGE_COUNT] = {"reading", "restoring", "re
 // What the store lacks is told to it by the checkpoint that ends it; until then nobody goes there.
 static void end_gap(cau_hosted *h)
 {
-	if (h->lost_from != UINT64_MAX)
-		cau_record_checkpoint(h, NULL, NULL);
-}
-
-static cau_outcome_kind fail(cau_order *order, cau_status status, const char *path,
-                             const char *reason)
-{
-	cau_error error = {0};
-	cau_fail(&error, status, path, "%s", reason);
-	cau_answer_fail(order, &error, 0);
-	return CAU_NOT_DONE;
+	if (h->commits.lost_from != UINT64_MAX)
+		cau_record_checkpoint(&h->record, NULL, NULL);
 }
 
 // ---- arriving -----------------------------------------------------------------------------------
@@ -63,37 +56,40 @@ static int change_of(cau_order_kind kind, int *event)
 static void open_branch(cau_hosted *h)
 {
 	cau_error error = {0};
-	cau_store_batch *batch = cau_record_batch(h);
-	cau_store_branch row = {
-		.session = h->id, .branch = h->next_branch, .parent = h->branch, .fork_tick = h->tick};
+	cau_store_batch *batch = cau_record_batch(&h->record);
+	cau_store_branch row = {.session = h->identity.id,
+	                        .branch = h->history.next_branch,
+	                        .parent = h->history.branch,
+	                        .fork_tick = h->core.tick};
 	cau_status status = batch ? cau_store_put_branch(batch, &row, &error) : CAU_NO_MEMORY;
 	if (status)
-		cau_log(CAU_LOG_ERROR, h->id, "branch_lost", "reason=\"%s\"", error.reason);
-	h->branch = h->next_branch++;
-	h->logged_order = 0;
-	h->logged_tick = UINT64_MAX;
+		cau_log(CAU_LOG_ERROR, h->identity.id, "branch_lost", "reason=\"%s\"", error.reason);
+	h->history.branch = h->history.next_branch++;
+	h->record.logged_order = 0;
+	h->record.logged_tick = UINT64_MAX;
 }
 
 static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 {
 	int event;
 	int change = change_of(order->kind, &event);
-	int state = cau_decided_state(h);
-	cau_event_know_tissue(h);
-	h->branch = branch;
-	h->stage[0] = 0;
-	cau_events_load(h);
+	int state = cau_decisions_state(&h->decisions);
+	cau_findings_know(&h->findings, h->core.session);
+	h->history.branch = branch;
+	h->suspension.stage[0] = 0;
+	cau_timeline_load(&h->timeline);
 	open_branch(h);
-	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
-	cau_record_checkpoint(h, NULL, NULL);
+	cau_timeline_add(&h->timeline, event, NULL, order->asker.name, 0, NULL);
+	cau_record_checkpoint(&h->record, NULL, NULL);
 	cau_decide_arrived(h, state == CAU_SESSION_FAULTED ? CAU_SESSION_PAUSED : state,
 	                   "the session was rewound");
-	cau_frames_restart(h);
-	cau_record_state(h);
-	h->window_s = cau_monotonic_s();
-	h->window_tick = h->tick;
-	cau_wire_restored result = {
-		.tick = (int64_t)h->tick, .epoch = h->epoch, .branch = h->branch, .exact = h->replay.exact};
+	cau_frames_restart(&h->frames);
+	cau_record_state(&h->record, cau_decisions_state(&h->decisions));
+	cau_pace_restart(&h->pace, h->core.tick);
+	cau_wire_restored result = {.tick = (int64_t)h->core.tick,
+	                            .epoch = h->frames.epoch,
+	                            .branch = h->history.branch,
+	                            .exact = h->replay.exact};
 	cau_answer_changed(h, change, order->asker.name);
 	cau_answer_order(h, order, &result);
 }
@@ -105,10 +101,11 @@ static cau_status return_to_present(going *g, cau_error *error)
 	bool exact;
 	if (!g->left)
 		return CAU_OK;
-	g->hosted->tick = g->present_tick;
+	g->hosted->core.tick = g->present_tick;
 	if (!g->present)
 		return cau_fail(error, CAU_FAULTED, "", "the session was faulted before, and still is");
-	return cau_session_restore(g->hosted->core, g->present, g->present_bytes, &exact, error);
+	return cau_session_restore(g->hosted->core.session, g->present, g->present_bytes, &exact,
+	                           error);
 }
 
 // It goes on where it was, dark, as if nobody had asked.
@@ -120,9 +117,8 @@ static void stay(going *g)
 		cau_hosted_fault(h, &error);
 	else
 		cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_STAYED, .time_s = cau_monotonic_s()});
-	h->window_s = cau_monotonic_s();
-	h->window_tick = h->tick;
-	h->dirty = true;
+	cau_pace_restart(&h->pace, h->core.tick);
+	h->frames.dirty = true;
 }
 
 // ---- the stages ---------------------------------------------------------------------------------
@@ -132,25 +128,28 @@ static cau_status read_past(going *g, cau_error *error)
 	cau_hosted *h = g->hosted;
 	end_gap(h);
 	cau_record_commit(h);
-	cau_status status = cau_replay_check(h, g->branch, g->branch == h->branch, g->tick, error);
+	cau_status status = cau_replay_check(&h->identity, &h->commits, g->branch,
+	                                     g->branch == h->history.branch, g->tick, error);
 	return status ? status
-	              : cau_replay_read(&h->replay, h->around->store, h->id, g->branch, g->tick, error);
+	              : cau_replay_read(&h->replay, h->identity.around->store, h->identity.id,
+	                                g->branch, g->tick, error);
 }
 
 // A session that is faulted has nothing that must be kept.
 static cau_status keep_present(going *g, cau_error *error)
 {
 	cau_hosted *h = g->hosted;
-	size_t capacity = cau_session_snapshot_bytes(h->core);
+	size_t capacity = cau_session_snapshot_bytes(h->core.session);
 	g->present = malloc(capacity);
 	cau_status status =
-		g->present ? cau_session_snapshot(h->core, g->present, capacity, &g->present_bytes, error)
-				   : cau_fail(error, CAU_NO_MEMORY, "", "no memory to keep the present state");
+		g->present
+			? cau_session_snapshot(h->core.session, g->present, capacity, &g->present_bytes, error)
+			: cau_fail(error, CAU_NO_MEMORY, "", "no memory to keep the present state");
 	if (!status)
 		return CAU_OK;
 	free(g->present);
 	g->present = NULL;
-	return cau_decided_state(h) == CAU_SESSION_FAULTED ? CAU_OK : status;
+	return cau_decisions_state(&h->decisions) == CAU_SESSION_FAULTED ? CAU_OK : status;
 }
 
 static cau_status leave_present(going *g, cau_error *error)
@@ -160,16 +159,16 @@ static cau_status leave_present(going *g, cau_error *error)
 	if (status)
 		return status;
 	g->left = true;
-	status = cau_replay_restore(&h->replay, h->core, error);
+	status = cau_replay_restore(&h->replay, h->core.session, error);
 	if (!status)
-		h->tick = h->replay.tick;
+		h->core.tick = h->replay.tick;
 	return status;
 }
 
 static cau_status replay_slice(cau_hosted *h, bool *over, cau_error *error)
 {
-	cau_status status = cau_replay_slice(&h->replay, h->core, SLICE_S, over, error);
-	h->tick = h->replay.tick;
+	cau_status status = cau_replay_slice(&h->replay, h->core.session, SLICE_S, over, error);
+	h->core.tick = h->replay.tick;
 	return status;
 }
 
@@ -179,15 +178,15 @@ static double expected_s(const going *g)
 	if (g->stage == READING)
 		return READ_EXPECTED_S;
 	if (g->stage == RESTORING)
-		return RESTORED_VERTEX_S * h->info.vertex_count;
-	return h->piece_s > SLICE_S ? h->piece_s : SLICE_S;
+		return RESTORED_VERTEX_S * h->core.info.vertex_count;
+	return h->pace.piece_s > SLICE_S ? h->pace.piece_s : SLICE_S;
 }
 
 // Leaves it for its next turn; another thread may have it at once.
 static void go_on(going *g)
 {
 	g->job.expected_s = expected_s(g);
-	cau_builder_submit(g->hosted->around->builder, &g->job);
+	cau_builder_submit(g->hosted->identity.around->builder, &g->job);
 }
 
 static void end(going *g)
@@ -196,7 +195,7 @@ static void end(going *g)
 	cau_replay_finish(&h->replay);
 	free(g->present);
 	free(g);
-	h->stage[0] = 0;
+	h->suspension.stage[0] = 0;
 	cau_building_over(h);
 	cau_hosted_release(h);
 }
@@ -204,17 +203,17 @@ static void end(going *g)
 static void give_up(going *g, const cau_error *error)
 {
 	cau_hosted *h = g->hosted;
-	if (h->destroyers)
+	if (h->suspension.destroyers)
 		cau_hosted_end(h);
-	if (!h->ended)
+	if (!h->life.ended)
 		stay(g);
-	cau_answer_fail(g->order, error, h->drain_wanted ? CAU_RPC_DRAINING : 0);
+	cau_answer_fail(g->order, error, h->life.drain_wanted ? CAU_RPC_DRAINING : 0);
 	end(g);
 }
 
 static void tell_stage(cau_hosted *h, const char *stage)
 {
-	snprintf(h->stage, sizeof h->stage, "%s", stage);
+	snprintf(h->suspension.stage, sizeof h->suspension.stage, "%s", stage);
 	cau_hosted_publish_summary(h);
 }
 
@@ -224,7 +223,7 @@ static void run(cau_job *job)
 	cau_hosted *h = g->hosted;
 	cau_error error = {0};
 	bool over = true;
-	cau_status status = cau_building_check(h, "was rewound", stage_names[g->stage], &error);
+	cau_status status = cau_suspension_check(h, "was rewound", stage_names[g->stage], &error);
 	tell_stage(h, stage_names[g->stage]);
 	if (!status && g->stage == READING)
 		status = read_past(g, &error);
@@ -254,41 +253,33 @@ static void drop(cau_job *job)
 
 // ---- on the worker ------------------------------------------------------------------------------
 
-void cau_back_leave(cau_hosted *h)
-{
-	cau_job *job = h->leaving;
-	h->leaving = NULL;
-	h->away = true;
-	cau_builder_submit(h->holding ? h->around->mover : h->around->builder, job);
-}
-
 cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	(void)action;
-	int64_t branch = h->branch;
-	uint64_t tick = order->kind == CAU_ORDER_RESET ? h->first_tick : order->as.tick;
+	int64_t branch = h->history.branch;
+	uint64_t tick = order->kind == CAU_ORDER_RESET ? h->history.first_tick : order->as.tick;
 	if (order->kind == CAU_ORDER_RESTORE) {
-		const cau_named_snapshot *snapshot = cau_snapshot_find(h, order->as.name);
+		const cau_named_snapshot *snapshot = cau_history_find(&h->history, order->as.name);
 		if (!snapshot)
-			return fail(order, CAU_NOT_FOUND, "params.name",
-			            "the session has no snapshot of this name");
+			return cau_answer_refuse(order, CAU_NOT_FOUND, "params.name",
+			                         "the session has no snapshot of this name");
 		branch = snapshot->branch;
 		tick = snapshot->tick;
-	} else if (tick > h->tick) {
-		return fail(order, CAU_BAD_VALUE, "params.tick",
-		            "the tick is later than the session's present tick");
+	} else if (tick > h->core.tick) {
+		return cau_answer_refuse(order, CAU_BAD_VALUE, "params.tick",
+		                         "the tick is later than the session's present tick");
 	}
 	going *g = malloc(sizeof *g);
 	if (!g)
-		return fail(order, CAU_NO_MEMORY, "", "no memory for the rewind");
-	cau_event_end_cut(h);
+		return cau_answer_refuse(order, CAU_NO_MEMORY, "", "no memory for the rewind");
+	cau_timeline_end_cuts(&h->timeline);
 	*g = (going){.job = {.run = run, .drop = drop, .expected_s = READ_EXPECTED_S},
 	             .hosted = cau_hosted_share(h),
 	             .order = order,
 	             .branch = branch,
 	             .tick = tick,
-	             .present_tick = h->tick};
-	h->leaving = &g->job;
+	             .present_tick = h->core.tick};
+	h->suspension.job = &g->job;
 	tell_stage(h, stage_names[READING]);
 	return CAU_DONE;
 }
@@ -300,22 +291,23 @@ static void make_fork(cau_read_job *job)
 {
 	cau_hosted *h = job->hosted;
 	cau_error error = {0};
-	if (cau_replay_check(h, job->branch, true, job->order->as.fork.tick, &error))
+	if (cau_replay_check(&h->identity, &h->commits, job->branch, true, job->order->as.fork.tick,
+	                     &error))
 		cau_reply_fail(&job->order->reply, &error, 0);
 	else
-		h->around->fork(h->around->user, h, job->branch, job->order);
+		h->identity.around->fork(h->identity.around->user, h, job->branch, job->order);
 }
 
 cau_outcome_kind cau_apply_fork(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	(void)action;
 	if (!order->as.fork.has_tick)
-		order->as.fork.tick = h->tick;
-	if (order->as.fork.tick > h->tick)
-		return fail(order, CAU_BAD_VALUE, "params.tick",
-		            "the tick is later than the session's present tick");
-	if (order->as.fork.tick == h->tick)
-		cau_record_checkpoint(h, NULL, NULL);
+		order->as.fork.tick = h->core.tick;
+	if (order->as.fork.tick > h->core.tick)
+		return cau_answer_refuse(order, CAU_BAD_VALUE, "params.tick",
+		                         "the tick is later than the session's present tick");
+	if (order->as.fork.tick == h->core.tick)
+		cau_record_checkpoint(&h->record, NULL, NULL);
 	end_gap(h);
 	cau_reads_hand_over(h, order, make_fork, NULL, NULL, READ_EXPECTED_S);
 	return CAU_DONE;

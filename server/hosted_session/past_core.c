@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/past.h"
+#include "hosted_session/past_core.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
-
-#define MEGABYTE 1e6
+#include "hosted_session/build_limits.h"
+#include "hosted_session/shown.h"
 
 // A state is kept where the nearest one before it is this far: half a second of most scenes, which
 // is replayed faster than a hand notices.
@@ -14,54 +14,41 @@ enum { KEPT_TICKS = 30 };
 
 // ---- building -----------------------------------------------------------------------------------
 typedef struct border {
-	cau_past *past;
-	cau_past_go_on *go_on;
+	cau_past_core *past;
+	cau_past_core_border *go_on;
 	void *user;
 } border;
-
-static cau_status hold_memory(cau_past *past, int64_t bytes, cau_error *error)
-{
-	const cau_surroundings *around = past->hosted->around;
-	int64_t more = bytes - past->memory_held;
-	int64_t all = atomic_fetch_add(around->memory_held, more) + more;
-	if (more > 0 && all > around->config->max_sessions_bytes) {
-		atomic_fetch_sub(around->memory_held, more);
-		return cau_fail(error, CAU_LIMIT, "",
-		                "a past view takes about %.0f MB of memory, all sessions then %.0f "
-		                "MB; they may take %.0f MB (setting max_sessions_bytes)",
-		                (double)bytes / MEGABYTE, (double)all / MEGABYTE,
-		                (double)around->config->max_sessions_bytes / MEGABYTE);
-	}
-	past->memory_held = bytes;
-	return CAU_OK;
-}
 
 static cau_status cross_border(void *user, const cau_build_border *at, cau_error *error)
 {
 	const border *b = user;
+	cau_past_core *past = b->past;
 	cau_status status = b->go_on(b->user, error);
-	return status ? status : hold_memory(b->past, (int64_t)at->bytes, error);
+	return status ? status
+	              : cau_building_hold(past->identity->around, &past->memory_held,
+	                                  (int64_t)at->bytes, "a past view", error);
 }
 
-cau_status cau_past_build(cau_past *past, cau_past_go_on *go_on, void *user, cau_error *error)
+cau_status cau_past_core_build(cau_past_core *past, cau_past_core_border *go_on, void *user,
+                               cau_error *error)
 {
 	border at = {past, go_on, user};
 	cau_session_def def = cau_default_session_def();
-	def.scene = past->hosted->scene;
-	def.thread_count = (int32_t)past->hosted->around->config->session_threads;
+	def.scene = past->identity->scene;
+	def.thread_count = (int32_t)past->identity->around->config->session_threads;
 	def.border = cross_border;
 	def.user = &at;
 	def.unsettled = true; // it is restored to what it shows
-	cau_status status = cau_session_create(&def, &past->core, error);
+	cau_status status = cau_session_create(&def, &past->session, error);
 	if (status)
-		cau_past_finish(past);
+		cau_past_core_finish(past);
 	return status;
 }
 
 // ---- going there --------------------------------------------------------------------------------
 
 // In place of the checkpoint's snapshot.
-static cau_status begin_at_kept(cau_past *past, const cau_kept_state *kept, cau_error *error)
+static cau_status begin_at_kept(cau_past_core *past, const cau_kept_state *kept, cau_error *error)
 {
 	cau_replay *replay = &past->replay;
 	void *copy = malloc(kept->byte_count);
@@ -75,14 +62,14 @@ static cau_status begin_at_kept(cau_past *past, const cau_kept_state *kept, cau_
 	return CAU_OK;
 }
 
-cau_status cau_past_read(cau_past *past, int64_t branch, uint64_t tick, cau_error *error)
+cau_status cau_past_core_read(cau_past_core *past, int64_t branch, uint64_t tick, cau_error *error)
 {
-	cau_hosted *h = past->hosted;
 	cau_replay *replay = &past->replay;
 	uint64_t at = replay->tick;
-	cau_status status = cau_replay_check(h, branch, true, tick, error);
+	cau_status status = cau_replay_check(past->identity, past->commits, branch, true, tick, error);
 	if (!status)
-		status = cau_replay_read(replay, h->around->store, h->id, branch, tick, error);
+		status = cau_replay_read(replay, past->identity->around->store, past->identity->id, branch,
+		                         tick, error);
 	if (status)
 		return status;
 	const cau_kept_state *kept = cau_kept_states_find(&past->kept, branch, tick);
@@ -96,31 +83,31 @@ cau_status cau_past_read(cau_past *past, int64_t branch, uint64_t tick, cau_erro
 	return CAU_OK;
 }
 
-cau_status cau_past_restore(cau_past *past, cau_error *error)
+cau_status cau_past_core_restore(cau_past_core *past, cau_error *error)
 {
 	if (past->arrived)
 		return CAU_OK;
 	const cau_kept_state *kept = cau_kept_states_find(&past->kept, past->branch, past->replay.from);
 	bool was_exact = !kept || kept->tick != past->replay.from || kept->exact;
 	past->somewhere = false;
-	cau_status status = cau_replay_restore(&past->replay, past->core, error);
+	cau_status status = cau_replay_restore(&past->replay, past->session, error);
 	past->replay.exact &= was_exact;
 	past->somewhere = !status;
 	return status;
 }
 
 // What it came by is a gift: where there is no memory for it nothing is kept.
-static void keep(cau_past *past)
+static void keep(cau_past_core *past)
 {
-	size_t budget = (size_t)past->hosted->around->config->look_bytes;
-	size_t capacity = cau_session_snapshot_bytes(past->core);
+	size_t budget = (size_t)past->identity->around->config->look_bytes;
+	size_t capacity = cau_session_snapshot_bytes(past->session);
 	uint64_t tick = past->replay.tick;
 	const cau_kept_state *before = cau_kept_states_find(&past->kept, past->branch, tick);
 	if (capacity > budget || (before && tick - before->tick < KEPT_TICKS))
 		return;
 	cau_kept_state state = {.tick = tick, .exact = past->replay.exact, .bytes = malloc(capacity)};
 	if (state.bytes &&
-	    !cau_session_snapshot(past->core, state.bytes, capacity, &state.byte_count, NULL)) {
+	    !cau_session_snapshot(past->session, state.bytes, capacity, &state.byte_count, NULL)) {
 		void *fitting = realloc(state.bytes, state.byte_count);
 		state.bytes = fitting ? fitting : state.bytes;
 		cau_kept_states_put(&past->kept, budget, past->branch, &state);
@@ -129,10 +116,10 @@ static void keep(cau_past *past)
 	}
 }
 
-cau_status cau_past_slice(cau_past *past, double seconds, bool *over, cau_error *error)
+cau_status cau_past_core_slice(cau_past_core *past, double seconds, bool *over, cau_error *error)
 {
-	CAU_ASSERT(past->somewhere, "the past view of session %s has no start", past->hosted->id);
-	cau_status status = cau_replay_slice(&past->replay, past->core, seconds, over, error);
+	CAU_ASSERT(past->somewhere, "the past view of session %s has no start", past->identity->id);
+	cau_status status = cau_replay_slice(&past->replay, past->session, seconds, over, error);
 	past->somewhere = !status;
 	if (!status)
 		keep(past);
@@ -151,16 +138,16 @@ static cau_status encode(const cau_stream_sample *sample, const cau_stream_def *
 	return status;
 }
 
-cau_buffer *cau_past_frame(cau_past *past, const cau_stream_def *def, uint64_t epoch,
-                           cau_error *error)
+cau_buffer *cau_past_core_frame(cau_past_core *past, const cau_stream_def *def, uint64_t epoch,
+                                cau_error *error)
 {
 	cau_shown shown;
 	size_t bytes = 0;
 	cau_buffer *frame = NULL;
 	void *storage = malloc(cau_frame_encoder_bytes(def));
 	void *scratch = malloc(cau_frame_bytes_max(def));
-	cau_session_watch(past->core, def->channels);
-	cau_show(past->core, &shown);
+	cau_session_watch(past->session, def->channels);
+	cau_show(past->session, &shown);
 	shown.sample.flags = CAU_FRAME_PAUSED;
 	cau_status status = storage && scratch
 	                        ? encode(&shown.sample, def, epoch, storage, scratch, &bytes, error)
@@ -176,13 +163,12 @@ cau_buffer *cau_past_frame(cau_past *past, const cau_stream_def *def, uint64_t e
 	return frame;
 }
 
-void cau_past_finish(cau_past *past)
+void cau_past_core_finish(cau_past_core *past)
 {
-	cau_session_destroy(past->core);
-	past->core = NULL;
+	cau_session_destroy(past->session);
+	past->session = NULL;
 	past->somewhere = past->arrived = false;
 	cau_replay_finish(&past->replay);
 	cau_kept_states_finish(&past->kept);
-	atomic_fetch_sub(past->hosted->around->memory_held, past->memory_held);
-	past->memory_held = 0;
+	cau_building_release(past->identity->around, &past->memory_held);
 }

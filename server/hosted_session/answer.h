@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Answers to orders, and notifications.
+#pragma once
+
+#include "hosted_session/identity.h"
+
+// ---- answer.c: at once
+void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
+// The same with these words. CAU_NOT_DONE.
+cau_outcome_kind cau_answer_refuse(cau_order *order, cau_status status, const char *path,
+                                   const char *reason);
+// Sends a notification.
+void cau_answer_notify(const cau_hosted_identity *identity, cau_audience audience,
+                       cau_method method, const void *params);
+
+// ---- reply.c
+// Answers at once, or after the commit if the method changes something. Takes the order.
+void cau_answer_order(cau_hosted *h, cau_order *order, const void *result);
+// Looks whether the order was sent before; answers it if so.
+cau_outcome_kind cau_answer_resend(cau_hosted *h, cau_order *order);
+// Notifies clients of a change of the session. `client` may be NULL or "".
+void cau_answer_changed(cau_hosted *h, int change, const char *client);
+char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error);

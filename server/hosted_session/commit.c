@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A slice's batch on its way to the disk, and what follows its commit: answers, or what is lost.
+#include <stdlib.h>
+
+#include "hosted_session/answer.h"
+#include "hosted_session/internal.h"
+
+// What travels with a batch.
+typedef struct commit {
+	cau_hosted *hosted;
+	cau_pending *pending;
+	uint64_t from_tick; // what is lost if it fails
+	bool making;        // the session's first rows: without them there is no session
+} commit;
+
+static cau_pending *reversed(cau_pending *list)
+{
+	cau_pending *turned = NULL;
+	for (cau_pending *next; list; list = next) {
+		next = list->next;
+		list->next = turned;
+		turned = list;
+	}
+	return turned;
+}
+
+int32_t cau_hosted_commit_code(cau_status status)
+{
+	return status == CAU_IO || status == CAU_LIMIT ? CAU_RPC_STORE_FULL : 0;
+}
+
+static void answer_all(cau_pending *list, cau_status status, const char *reason)
+{
+	cau_error error = {.status = status};
+	snprintf(error.reason, sizeof error.reason, "%s", reason);
+	for (cau_pending *next; list; list = next) {
+		next = list->next;
+		cau_outcome outcome = {.text = list->text, .text_bytes = list->text_bytes};
+		if (status)
+			outcome = (cau_outcome){.error = &error, .code = cau_hosted_commit_code(status)};
+		cau_reply_answer(&list->reply, &outcome);
+		free(list->text);
+		free(list);
+	}
+}
+
+// The store has not taken the session's first rows, so there is no session. While its past is
+// replayed, the answer to its creator is not among the pending ones.
+static void end_making(cau_hosted *h, cau_status status, const char *reason)
+{
+	cau_error error = {.status = status};
+	snprintf(error.reason, sizeof error.reason, "%s", reason);
+	h->commits.unmade = (int)status;
+	cau_hosted_end(h);
+	cau_hosted_fail_creator(&h->creation, &error, cau_hosted_commit_code(status));
+}
+
+// On the store's thread.
+static void committed(void *user, cau_status status, const char *reason)
+{
+	commit *done = user;
+	if (!status && done->hosted->commits.unmade) { // of a session whose first rows are lost
+		status = (cau_status)done->hosted->commits.unmade;
+		reason = "the session could not be stored";
+	}
+	if (status) {
+		cau_log(CAU_LOG_ERROR, done->hosted->identity.id, "commit_failed",
+		        "status=%s reason=\"%s\"", cau_status_name(status), reason);
+		cau_commits_lose(&done->hosted->commits, done->from_tick);
+		if (done->making)
+			end_making(done->hosted, status, reason);
+	}
+	answer_all(done->pending, status, reason);
+	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {
+		cau_decide(done->hosted,
+		           &(cau_logic_event){.kind = CAU_LOGIC_COMMITTED, .time_s = cau_monotonic_s()});
+		if (done->hosted->life.drain_wanted)
+			cau_worker_pool_wake(done->hosted->identity.around->pool, &done->hosted->task);
+	}
+	cau_hosted_release(done->hosted);
+	free(done);
+}
+
+static bool is_being_made(const cau_hosted *h)
+{
+	return h->creation.unanswered && h->creation.origin.kind != CAU_ORIGIN_STORE;
+}
+
+void cau_record_commit(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_pending *pending = reversed(h->record.pending);
+	h->record.pending = NULL;
+	if (!h->record.batch) {
+		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "no command could be stored");
+		return;
+	}
+	// The store may have failed meanwhile what comes before the entries of this batch.
+	cau_status status = h->record.batch_acts ? cau_record_check(&h->record, &error) : CAU_OK;
+	commit *travelling = status ? NULL : malloc(sizeof *travelling);
+	if (!status && !travelling)
+		status = cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a commit");
+	if (!status) {
+		uint64_t from = h->record.batch_tick < h->record.batch_lost ? h->record.batch_tick
+		                                                            : h->record.batch_lost;
+		*travelling = (commit){cau_hosted_share(h), pending, from, is_being_made(h)};
+		atomic_fetch_add(&h->commits.under_way, 1);
+		status = cau_store_submit(h->identity.around->store, h->record.batch, committed, travelling,
+		                          &error);
+	}
+	if (status) {
+		cau_record_gap(&h->record, &error);
+		cau_commits_lose(&h->commits, h->record.batch_lost);
+		cau_store_batch_destroy(h->record.batch);
+		answer_all(pending, status, error.reason);
+		if (is_being_made(h))
+			end_making(h, status, error.reason);
+		if (travelling) {
+			atomic_fetch_sub(&h->commits.under_way, 1);
+			cau_hosted_release(h);
+		}
+		free(travelling);
+	}
+	h->record.batch = NULL;
+	h->record.batch_acts = false;
+	h->record.batch_lost = UINT64_MAX;
+}

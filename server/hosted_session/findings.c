@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hosted_session/findings.h"
+
+#include <stdio.h>
+
+#include "hosted_session/internal.h"
+
+#define GAIN_MOST 0.01 // of a tick's energy: beyond it a gain is reported
+
+enum { GAIN_QUIET_TICKS = 600 }; // after a report of gained energy: one in ten seconds is enough
+
+void cau_findings_know(cau_hosted_findings *findings, const cau_session *core)
+{
+	cau_frame frame;
+	cau_session_frame(core, &frame);
+	findings->elements_removed = frame.statistics.elements_removed;
+	findings->elements_torn = frame.statistics.elements_torn;
+	for (int32_t i = 0; i < frame.vessel_count; i++)
+		findings->vessel_flags[i] = frame.vessels[i]->flags;
+}
+
+// Who pulls: the first whose jaws hold something.
+static void note_tear(cau_hosted *h, const cau_frame *frame, int32_t torn)
+{
+	const cau_tool_state *puller = NULL;
+	for (int32_t i = frame->tool_count - 1; i >= 0; i--)
+		if (frame->tools[i].grasped_vertices)
+			puller = &frame->tools[i];
+	h->record.touched = true;
+	cau_timeline_add(&h->timeline, CAU_EVENT_TEAR, puller ? puller->name : NULL, NULL, torn, NULL);
+}
+
+static void note_cut(cau_hosted *h, const cau_frame *frame)
+{
+	const cau_statistics *now = &frame->statistics;
+	int32_t torn = now->elements_torn - h->findings.elements_torn;
+	int32_t removed = now->elements_removed - h->findings.elements_removed - torn;
+	h->findings.elements_removed = now->elements_removed;
+	h->findings.elements_torn = now->elements_torn;
+	if (torn > 0)
+		note_tear(h, frame, torn);
+	if (removed <= 0)
+		return;
+	cau_drive drives[CAU_MAX_TOOLS];
+	h->record.touched = true;
+	const cau_drive *cutter = NULL;
+	int32_t count = cau_decisions_drives(&h->decisions, drives);
+	for (int32_t i = 0; i < count; i++)
+		if (drives[i].lit)
+			cutter = &drives[i];
+	cau_timeline_add(&h->timeline, CAU_EVENT_CUT, cutter ? cutter->tool : NULL,
+	                 cutter ? cutter->driver.name : NULL, removed, NULL);
+}
+
+// Once for each layer, until all of it is right again.
+static void note_inverted(cau_hosted *h, const cau_statistics *now)
+{
+	for (int32_t i = 0; i < h->identity.scene->layer_count; i++) {
+		uint32_t bit = 1u << i;
+		bool reported = h->findings.inverted_layers & bit;
+		h->findings.inverted_layers &= now->long_inverted[i] ? UINT32_MAX : ~bit;
+		if (!now->long_inverted[i] || reported)
+			continue;
+		h->findings.inverted_layers |= bit;
+		cau_timeline_add(&h->timeline, CAU_EVENT_INVERTED, NULL, NULL, now->long_inverted[i],
+		                 h->identity.scene->layers[i].name);
+	}
+}
+
+static void note_gain(cau_hosted *h, const cau_statistics *now)
+{
+	char detail[64];
+	bool again = h->core.tick < h->findings.gain_tick ||
+	             h->core.tick - h->findings.gain_tick >= GAIN_QUIET_TICKS;
+	if (!(now->energy_gain_j > GAIN_MOST * now->energy_scale_j) ||
+	    (h->findings.gain_tick && !again))
+		return;
+	h->findings.gain_tick = h->core.tick;
+	snprintf(detail, sizeof detail, "%.3g J in a tick that had %.3g J", now->energy_gain_j,
+	         now->energy_scale_j);
+	cau_timeline_add(&h->timeline, CAU_EVENT_ENERGY_GAIN, NULL, NULL, 0, detail);
+}
+
+static void note_vessels(cau_hosted *h, const cau_frame *frame)
+{
+	for (int32_t i = 0; i < frame->vessel_count; i++) {
+		const cau_vessel_state *vessel = frame->vessels[i];
+		uint32_t before = h->findings.vessel_flags[i], now = vessel->flags;
+		h->findings.vessel_flags[i] = now;
+		if (now & ~before & CAU_VESSEL_SEALED)
+			cau_timeline_add(&h->timeline, CAU_EVENT_SEALED, NULL, NULL, 0, vessel->name);
+		if ((now ^ before) & CAU_VESSEL_BLEEDS)
+			cau_timeline_add(&h->timeline,
+			                 now & CAU_VESSEL_BLEEDS ? CAU_EVENT_BLEEDING
+			                                         : CAU_EVENT_BLEEDING_STOPPED,
+			                 NULL, NULL, 0, vessel->name);
+	}
+}
+
+static void note_refusals(cau_hosted *h, const cau_frame *frame)
+{
+	for (int32_t i = 0; i < frame->refusal_count; i++) {
+		h->findings.refused_commands++;
+		cau_log(CAU_LOG_INFO, h->identity.id, "refused_at_tick", "tick=%llu path=%s reason=\"%s\"",
+		        (unsigned long long)h->core.tick, frame->refusals[i].path,
+		        frame->refusals[i].reason);
+	}
+}
+
+void cau_findings_note(cau_hosted *h, const cau_frame *frame)
+{
+	note_cut(h, frame);
+	note_inverted(h, &frame->statistics);
+	note_gain(h, &frame->statistics);
+	note_vessels(h, frame);
+	cau_timeline_settle(&h->timeline);
+	note_refusals(h, frame);
+}

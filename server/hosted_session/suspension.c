@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// While the builder has a session its stages cannot be interrupted. At the borders between them it
+// reports how far it is, compares what the session will take with the settings, and looks for
+// clients that cancelled it.
+#include "hosted_session/suspension.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "hosted_session/answer.h"
+#include "hosted_session/build_limits.h"
+#include "hosted_session/internal.h"
+
+static const char *const stage_names[] = {
+#define X(code, name) [CAU_BUILD_##code] = (name),
+	CAU_BUILD_STAGE_TABLE(X)
+#undef X
+};
+
+// ---- borders
+static void append(cau_order **list, cau_order *order)
+{
+	while (*list)
+		list = &(*list)->next;
+	order->next = NULL;
+	*list = order;
+}
+
+static cau_order *take_cancelling(cau_hosted_suspension *suspension)
+{
+	pthread_mutex_lock(&suspension->lock);
+	cau_order *taken = suspension->cancelling;
+	suspension->cancelling = NULL;
+	pthread_mutex_unlock(&suspension->lock);
+	return taken;
+}
+
+// False: it is the workers' by now.
+static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
+{
+	pthread_mutex_lock(&suspension->lock);
+	bool kept = suspension->active;
+	if (kept)
+		append(&suspension->cancelling, order);
+	pthread_mutex_unlock(&suspension->lock);
+	return kept;
+}
+
+// An order that was sent before destroyed another session of this
+// name, and gets its answer again.
+bool cau_suspension_is_cancelled(cau_hosted *h)
+{
+	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {
+		next = order->next;
+		cau_outcome_kind looked = cau_answer_resend(h, order);
+		if (looked == CAU_POSTPONED) // its first is not on the disk yet
+			keep_cancelling(&h->suspension, order);
+		else if (looked == CAU_DONE)
+			append(&h->suspension.destroyers, order);
+	}
+	return h->suspension.destroyers != NULL;
+}
+
+cau_status cau_suspension_check(cau_hosted *h, const char *doing, const char *next,
+                                cau_error *error)
+{
+	if (cau_suspension_is_cancelled(h))
+		return cau_fail(error, CAU_BAD_STATE, "",
+		                "the session was destroyed while it %s, before %s", doing, next);
+	if (h->life.drain_wanted)
+		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending; it ended before %s", next);
+	return CAU_OK;
+}
+
+static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error)
+{
+	cau_status status = cau_suspension_check(h, "was being built", next, error);
+	if (!status && h->creation.abandoned)
+		status = cau_fail(error, CAU_BAD_STATE, "", "its creator disconnected; it ended before %s",
+		                  next);
+	h->creation.unwanted = status != CAU_OK;
+	return status;
+}
+
+static void tell_stage(cau_hosted *h, const char *stage, const cau_build_border *border)
+{
+	snprintf(h->suspension.stage, sizeof h->suspension.stage, "%s", stage);
+	cau_hosted_publish_summary(h);
+	cau_log(CAU_LOG_INFO, h->identity.id, "building",
+	        "stage=%s vertices=%lld elements=%lld factor_entries=%lld megabytes=%.0f", stage,
+	        (long long)border->vertex_count, (long long)border->element_count,
+	        (long long)border->factor_entries, (double)border->bytes / 1e6);
+}
+
+cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error)
+{
+	cau_hosted *h = user;
+	const char *next = stage_names[border->next];
+	cau_status status = check_wanted(h, next, error);
+	if (!status)
+		status =
+			cau_building_check_limits(h->identity.around, &h->creation.memory_held, border, error);
+	if (!status)
+		tell_stage(h, next, border);
+	return status;
+}
+
+// ---- cancelling
+bool cau_suspension_cancel(cau_hosted_suspension *suspension, const char *id, cau_order *order)
+{
+	char name[sizeof order->asker.name];
+	if (order->kind != CAU_ORDER_DESTROY || !suspension->active)
+		return false;
+	memcpy(name, order->asker.name, sizeof name); // the order may be answered before this returns
+	bool taken = keep_cancelling(suspension, order);
+	if (taken)
+		cau_log(CAU_LOG_INFO, id, "cancelled",
+		        "client=\"%s\" reason=\"it ends when its present stage does\"", name);
+	return taken;
+}
+
+// ---- from a worker to the builder and back
+void cau_suspension_begin(cau_hosted *h)
+{
+	cau_job *job = h->suspension.job;
+	h->suspension.job = NULL;
+	h->suspension.active = true;
+	cau_builder_submit(
+		h->suspension.holding ? h->identity.around->mover : h->identity.around->builder, job);
+}
+
+cau_order *cau_suspension_end(cau_hosted_suspension *suspension)
+{
+	pthread_mutex_lock(&suspension->lock);
+	suspension->active = false;
+	cau_order *cancelling = suspension->cancelling;
+	suspension->cancelling = NULL;
+	pthread_mutex_unlock(&suspension->lock);
+	return cancelling;
+}
