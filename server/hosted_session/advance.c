@@ -11,12 +11,12 @@
 // ---- commands -----------------------------------------------------------------------------------
 
 // None is taken unless the core takes all. Paths of the core begin in the command.
-static cau_status check(cau_hosted *h, const cau_advance *advance, cau_error *error)
+static cau_status check(cau_session *core, const cau_advance *advance, cau_error *error)
 {
 	int32_t index;
 	char path[sizeof error->path];
-	cau_status status = cau_session_may_submit(h->core.session, advance->commands,
-	                                           advance->command_count, &index, error);
+	cau_status status =
+		cau_session_may_submit(core, advance->commands, advance->command_count, &index, error);
 	if (status) {
 		snprintf(path, sizeof path, "params.commands[%d].%.100s", index, error->path);
 		memcpy(error->path, path, sizeof error->path);
@@ -26,14 +26,14 @@ static cau_status check(cau_hosted *h, const cau_advance *advance, cau_error *er
 
 // An enable that states what holds is none: it is neither the core's nor the log's. Lock-step
 // states it with every request, and each entry costs a stored session some KiB.
-static bool holds_already(cau_hosted *h, const cau_command *command, const cau_drive *drive)
+static bool holds_already(cau_session *core, const cau_command *command, const cau_drive *drive)
 {
 	cau_frame frame;
 	bool plain = command->kind == CAU_COMMAND_TOOL_ENERGIZE && command->as.energized &&
 	             !command->as.ticks && !command->sequence;
 	if (!plain || !drive->enabled || drive->limit_tick)
 		return false;
-	cau_session_frame(h->core.session, &frame);
+	cau_session_frame(core, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++)
 		if (strcmp(frame.tools[i].name, command->tool) == 0)
 			return frame.tools[i].energized;
@@ -45,7 +45,7 @@ static void apply(cau_hosted *h, const cau_order *order, cau_command *command)
 	cau_error error = {0};
 	cau_drive drive = {0};
 	cau_decisions_find(&h->decisions, command->tool, &drive);
-	if (holds_already(h, command, &drive))
+	if (holds_already(h->core.session, command, &drive))
 		return;
 	command->tick = h->core.tick;
 	if (!cau_energy_off_or_hold(&h->identity, &h->core, command) &&
@@ -64,7 +64,8 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 	(void)action;
 	cau_error error = {0};
 	cau_advance *advance = order->as.advance;
-	if (cau_advance_check(&h->core.info, advance, &error) || check(h, advance, &error)) {
+	if (cau_advance_check(&h->core.info, advance, &error) ||
+	    check(h->core.session, advance, &error)) {
 		cau_answer_fail(order, &error, 0);
 		return CAU_NOT_DONE;
 	}
@@ -75,9 +76,7 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 	advance->began_tick = h->core.tick;
 	for (int32_t i = 0; i < advance->command_count; i++)
 		apply(h, order, &advance->commands[i]);
-	pthread_mutex_lock(&h->published.lock);
-	h->published.counts.commands += (uint64_t)advance->command_count;
-	pthread_mutex_unlock(&h->published.lock);
+	cau_published_count_commands(&h->published, advance->command_count, 0);
 	return CAU_DONE;
 }
 
@@ -85,12 +84,12 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 
 // The ticks are in the log where there is one on the disk. An ephemeral session needs no entry for
 // each: it is never brought up again.
-static void record(cau_hosted *h, const cau_advance *advance)
+static void record(cau_hosted_record *record, const cau_advance *advance)
 {
-	if (h->core.tick != advance->began_tick && !h->identity.around->ephemeral)
-		cau_record_reached(&h->record);
-	else if (h->core.tick != advance->began_tick)
-		cau_record_far(&h->record);
+	if (record->core->tick != advance->began_tick && !record->identity->around->ephemeral)
+		cau_record_reached(record);
+	else if (record->core->tick != advance->began_tick)
+		cau_record_far(record);
 }
 
 void cau_advance_answer(cau_hosted *h, cau_order *order)
@@ -98,7 +97,7 @@ void cau_advance_answer(cau_hosted *h, cau_order *order)
 	cau_error error = {0};
 	size_t bytes = 0;
 	const cau_advance *advance = order->as.advance;
-	record(h, advance);
+	record(&h->record, advance);
 	h->frames.dirty = true; // the last state is shown, whatever the streams' rates
 	char *text = cau_advance_text(h, order, &bytes, &error);
 	cau_outcome outcome = {.text = text, .text_bytes = bytes, .error = text ? NULL : &error};

@@ -34,6 +34,17 @@ char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_
 	return NULL;
 }
 
+void cau_answer_now(const cau_reply *reply, const void *result)
+{
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
+	outcome.text = text;
+	outcome.error = text ? NULL : &error;
+	cau_reply_answer(reply, &outcome);
+	free(text);
+}
+
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code)
 {
 	cau_reply_fail(&order->reply, error, code);

@@ -2,9 +2,10 @@
 // Answers to orders, and notifications.
 #pragma once
 
-#include "hosted_session/identity.h"
+#include "hosted_session/record.h"
 
 // ---- answer.c: at once
+void cau_answer_now(const cau_reply *reply, const void *result);
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
 // The same with these words. CAU_NOT_DONE.
 cau_outcome_kind cau_answer_refuse(cau_order *order, cau_status status, const char *path,
@@ -15,7 +16,7 @@ void cau_answer_notify(const cau_hosted_identity *identity, cau_audience audienc
 
 // ---- reply.c
 // Answers at once, or after the commit if the method changes something. Takes the order.
-void cau_answer_order(cau_hosted *h, cau_order *order, const void *result);
+void cau_answer_order(cau_hosted_record *record, cau_order *order, const void *result);
 // Looks whether the order was sent before; answers it if so.
 cau_outcome_kind cau_answer_resend(cau_hosted *h, cau_order *order);
 // Notifies clients of a change of the session. `client` may be NULL or "".

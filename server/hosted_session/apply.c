@@ -9,14 +9,14 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define READS_SLICE_S                                                                              \
-	0.002 // requests that only read are served in one slice; the last may go beyond
+#define READS_SLICE_S 0.002 // for requests that only read; the last one begun may go beyond it
 
-static void note_energy(cau_hosted *h, const cau_order *order, const cau_action *action)
+static void note_energy(cau_hosted_timeline *timeline, const cau_order *order,
+                        const cau_action *action)
 {
 	bool on = order->as.command.as.energized;
 	if (action->was_lit != on)
-		cau_timeline_add(&h->timeline, on ? CAU_EVENT_ENERGY_ON : CAU_EVENT_ENERGY_OFF,
+		cau_timeline_add(timeline, on ? CAU_EVENT_ENERGY_ON : CAU_EVENT_ENERGY_OFF,
 		                 order->as.command.tool, order->asker.name, 0, NULL);
 }
 
@@ -39,7 +39,7 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 		cau_answer_changed(h, CAU_CHANGE_TOOLS, order->asker.name);
 		break;
 	case CAU_COMMAND_TOOL_ENERGIZE:
-		note_energy(h, order, action);
+		note_energy(&h->timeline, order, action);
 		break;
 	case CAU_COMMAND_SET_GRAVITY:
 	case CAU_COMMAND_SET_MATERIAL:
@@ -51,13 +51,14 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 }
 
 // The log of a faulted session ends with the fault; its core goes dark all the same.
-static bool is_off_of_faulted(cau_hosted *h, const cau_command *command)
+static bool is_off_of_faulted(cau_hosted_decisions *decisions, const cau_command *command)
 {
-	return cau_decisions_state(&h->decisions) == CAU_SESSION_FAULTED &&
+	return cau_decisions_state(decisions) == CAU_SESSION_FAULTED &&
 	       command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;
 }
 
-static void answer_command(cau_hosted *h, cau_order *order)
+static void answer_command(cau_hosted_record *record, cau_hosted_decisions *decisions,
+                           cau_order *order)
 {
 	size_t bytes = 0;
 	char *text = NULL;
@@ -67,12 +68,12 @@ static void answer_command(cau_hosted *h, cau_order *order)
 	                                  .sequence = (int64_t)command->sequence};
 	if (order->reply.answer)
 		text = cau_answer_text(order->reply.method, &result, &bytes, &error);
-	if (is_off_of_faulted(h, command))
-		cau_record_answer(&h->record, order, text, bytes);
+	if (is_off_of_faulted(decisions, command))
+		cau_record_answer(record, order, text, bytes);
 	else
-		cau_record_command(&h->record, command, order, text, bytes);
+		cau_record_command(record, command, order, text, bytes);
 	if (text)
-		cau_record_reply(&h->record, &order->reply, text, bytes);
+		cau_record_reply(record, &order->reply, text, bytes);
 }
 
 // Energy off acts although it cannot be logged. Every other command is refused: a restart would
@@ -104,18 +105,15 @@ cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_ac
 	cau_command *command = &order->as.command;
 	if (command->tick < h->core.tick)
 		command->tick = h->core.tick;
-	if (!is_off_of_faulted(h, command) && cau_record_check(&h->record, &error))
+	if (!is_off_of_faulted(&h->decisions, command) && cau_record_check(&h->record, &error))
 		return apply_unstored(h, order, &error);
 	if (!cau_energy_off_or_hold(&h->identity, &h->core, command) &&
 	    cau_session_submit(h->core.session, command, &error)) {
 		cau_hosted_refuse_order(h, order, &error, 0);
 		return CAU_NOT_DONE;
 	}
-	answer_command(h, order);
-	pthread_mutex_lock(&h->published.lock);
-	h->published.counts.commands++;
-	h->published.counts.motions += command->kind == CAU_COMMAND_TOOL_MOVE;
-	pthread_mutex_unlock(&h->published.lock);
+	answer_command(&h->record, &h->decisions, order);
+	cau_published_count_commands(&h->published, 1, command->kind == CAU_COMMAND_TOOL_MOVE);
 	await_frame(h, order);
 	note(h, order, action);
 	free(order);

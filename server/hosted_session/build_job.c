@@ -25,13 +25,13 @@ static bool is_resend(const cau_order *order, const cau_order *first)
 }
 
 // Sent twice while it was built: the answer is stored once.
-static void answer_resend(cau_hosted *h, cau_order *order)
+static void answer_resend(cau_hosted_record *record, cau_order *order)
 {
 	cau_error error = {0};
 	size_t bytes = 0;
 	char *text = cau_answer_text(order->reply.method, &(cau_wire_nothing){0}, &bytes, &error);
 	if (text)
-		cau_record_reply(&h->record, &order->reply, text, bytes);
+		cau_record_reply(record, &order->reply, text, bytes);
 	else
 		cau_reply_fail(&order->reply, &error, CAU_RPC_INTERNAL);
 	free(order);
@@ -44,9 +44,9 @@ static void answer_destroyers(cau_hosted *h)
 	for (cau_order *order = first->next, *next; order; order = next) {
 		next = order->next;
 		if (is_resend(order, first))
-			answer_resend(h, order);
+			answer_resend(&h->record, order);
 		else
-			cau_hosted_refuse_gone(h, order);
+			cau_hosted_refuse_gone(&h->life, order);
 	}
 	cau_hosted_destroy(h, first,
 	                   h->creation.origin.kind == CAU_ORIGIN_STORE || !h->creation.unanswered);
@@ -65,7 +65,7 @@ static void come_to_an_end(cau_hosted *h)
 	cau_hosted_end_slice(h);
 	for (cau_order *late = cau_suspension_end(&h->suspension), *next; late; late = next) {
 		next = late->next;
-		cau_hosted_refuse_gone(h, late);
+		cau_hosted_refuse_gone(&h->life, late);
 	}
 }
 
@@ -94,7 +94,7 @@ static void end(building *b)
 {
 	cau_hosted *h = b->hosted;
 	if (h->creation.replaying) // in slices of the workers
-		snprintf(h->suspension.stage, sizeof h->suspension.stage, "replaying");
+		cau_suspension_name_stage(&h->suspension, "replaying");
 	h->pace.piece_s = STEPPED_VERTEX_S * h->core.info.vertex_count;
 	cau_building_over(h);
 	cau_hosted_release(h);
@@ -111,8 +111,7 @@ static void drop(cau_job *job)
 	end(b);
 }
 
-// ---- of a move: it is built and waits to be accepted
-// ---------------------------------------------
+// ---- of a move: it is built and waits to be accepted --------------------------------------------
 
 static void wait_to_come(building *b)
 {
@@ -145,13 +144,14 @@ static void run_again(cau_job *job)
 	end(b);
 }
 
-static void leave_to_builder(cau_hosted *h, void (*run)(cau_job *job))
+static void leave_to_builder(cau_hosted_creation *creation, const cau_hosted_identity *identity,
+                             void (*run)(cau_job *job))
 {
-	cau_job *job = h->creation.job;
-	CAU_ASSERT(job != NULL, "session %s waits for nothing", h->identity.id);
-	h->creation.job = NULL;
+	cau_job *job = creation->job;
+	CAU_ASSERT(job != NULL, "session %s waits for nothing", identity->id);
+	creation->job = NULL;
 	job->run = run;
-	cau_builder_submit(h->identity.around->mover, job);
+	cau_builder_submit(identity->around->mover, job);
 }
 
 void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply *reply)
@@ -162,12 +162,12 @@ void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply
 	h->creation.pause_at_start = paused;
 	h->creation.reply = *reply;
 	h->creation.waits = true;
-	leave_to_builder(h, run_again);
+	leave_to_builder(&h->creation, &h->identity, run_again);
 }
 
 void cau_hosted_give_up(cau_hosted *h)
 {
-	leave_to_builder(h, drop);
+	leave_to_builder(&h->creation, &h->identity, drop);
 }
 
 static void run(cau_job *job)

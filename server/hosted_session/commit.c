@@ -81,9 +81,9 @@ static void committed(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-static bool is_being_made(const cau_hosted *h)
+static bool is_being_made(const cau_hosted_creation *creation)
 {
-	return h->creation.unanswered && h->creation.origin.kind != CAU_ORIGIN_STORE;
+	return creation->unanswered && creation->origin.kind != CAU_ORIGIN_STORE;
 }
 
 void cau_record_commit(cau_hosted *h)
@@ -103,7 +103,7 @@ void cau_record_commit(cau_hosted *h)
 	if (!status) {
 		uint64_t from = h->record.batch_tick < h->record.batch_lost ? h->record.batch_tick
 		                                                            : h->record.batch_lost;
-		*travelling = (commit){cau_hosted_share(h), pending, from, is_being_made(h)};
+		*travelling = (commit){cau_hosted_share(h), pending, from, is_being_made(&h->creation)};
 		atomic_fetch_add(&h->commits.under_way, 1);
 		status = cau_store_submit(h->identity.around->store, h->record.batch, committed, travelling,
 		                          &error);
@@ -113,7 +113,7 @@ void cau_record_commit(cau_hosted *h)
 		cau_commits_lose(&h->commits, h->record.batch_lost);
 		cau_store_batch_destroy(h->record.batch);
 		answer_all(pending, status, error.reason);
-		if (is_being_made(h))
+		if (is_being_made(&h->creation))
 			end_making(h, status, error.reason);
 		if (travelling) {
 			atomic_fetch_sub(&h->commits.under_way, 1);

@@ -19,14 +19,15 @@ static cau_order *order_of(uint64_t ticket)
 static void tell(cau_hosted *h, const cau_effects *effects)
 {
 	for (int32_t i = 0; i < effects->count; i++)
-		if (effects->list[i].kind == CAU_EFFECT_TELL)
-			cau_driver_notify(h, &effects->list[i].drive);
+		if (effects->list[i].kind == CAU_EFFECT_TELL) {
+			cau_driver_notify(&h->identity, &effects->list[i].drive);
+			h->frames.dirty = true;
+		}
 }
 
 void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order)
 {
-	cau_error error = {0};
-	cau_outcome outcome = {0};
+	bool pause = order->kind == CAU_ORDER_PAUSE;
 	cau_wire_session_summary summary;
 	cau_hosted_summary(h, &summary);
 	summary.has_stored = true;
@@ -36,17 +37,10 @@ void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order)
 	                                  .sequence = (int64_t)order->as.command.sequence,
 	                                  .has_stored = true,
 	                                  .stored = false};
-	bool pause = order->kind == CAU_ORDER_PAUSE;
-	char *text = order->reply.answer ? cau_answer_text(order->reply.method,
-	                                                   pause ? (void *)&summary : (void *)&result,
-	                                                   &outcome.text_bytes, &error)
-	                                 : NULL;
-	outcome.text = text;
-	outcome.error = text ? NULL : &error;
-	cau_reply_answer(&order->reply, &outcome);
+	if (order->reply.answer)
+		cau_answer_now(&order->reply, pause ? (void *)&summary : (void *)&result);
 	cau_log(CAU_LOG_WARNING, h->identity.id, "not_stored", "order=%s tool=%s client=\"%s\"",
 	        pause ? "pause" : "energy_off", pause ? "" : order->as.command.tool, order->asker.name);
-	free(text);
 	free(order);
 }
 
@@ -174,17 +168,17 @@ int32_t cau_hosted_cancel(cau_hosted *h, uint32_t client, uint64_t number)
 
 // Whether the core heats what the machine has on, and nothing else, in the tick that is to begin.
 // Under the lock, so that no cut comes between.
-static void compare(cau_hosted *h)
+static void compare(cau_hosted_decisions *decisions, const cau_session *core)
 {
 	const char *allowed[CAU_MAX_TOOLS];
 	int32_t count = 0;
-	for (int32_t i = 0; i < h->decisions.logic->drive_count; i++) {
-		const cau_drive *drive = &h->decisions.logic->drives[i];
+	for (int32_t i = 0; i < decisions->logic->drive_count; i++) {
+		const cau_drive *drive = &decisions->logic->drives[i];
 		if (drive->enabled && drive->lit && !drive->freeze)
 			allowed[count++] = drive->tool;
 	}
-	const char *odd = cau_session_heats_beyond(h->core.session, allowed, count);
-	snprintf(h->decisions.odd_tool, sizeof h->decisions.odd_tool, "%s", odd ? odd : "");
+	const char *odd = cau_session_heats_beyond(core, allowed, count);
+	snprintf(decisions->odd_tool, sizeof decisions->odd_tool, "%s", odd ? odd : "");
 }
 
 void cau_decide_next(cau_hosted *h, cau_action *action)
@@ -197,7 +191,7 @@ void cau_decide_next(cau_hosted *h, cau_action *action)
 	h->pace.late_s = h->decisions.logic->state == CAU_SESSION_RUNNING ? now_s - due_s : -1;
 	cau_trace_action(h->decisions.trace, action);
 	if (action->act == CAU_ACT_STEP)
-		compare(h);
+		compare(&h->decisions, h->core.session);
 	cau_trace_effects(h->decisions.trace, &effects);
 	tell(h, &effects);
 	pthread_mutex_unlock(&h->decisions.lock);

@@ -18,14 +18,13 @@ void cau_driver_describe(const cau_drive *drive, cau_wire_driver *driver)
 		snprintf(driver->name, sizeof driver->name, "%s", drive->driver.name);
 }
 
-void cau_driver_notify(cau_hosted *h, const cau_drive *drive)
+void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *drive)
 {
 	cau_wire_driver_changed params = {0};
-	cau_audience audience = {CAU_AUDIENCE_SESSION, h->identity.number};
-	snprintf(params.session, sizeof params.session, "%s", h->identity.id);
+	cau_audience audience = {CAU_AUDIENCE_SESSION, identity->number};
+	snprintf(params.session, sizeof params.session, "%s", identity->id);
 	cau_driver_describe(drive, &params.driver);
-	cau_answer_notify(&h->identity, audience, CAU_METHOD_TOOL_DRIVER_CHANGED, &params);
-	h->frames.dirty = true;
+	cau_answer_notify(identity, audience, CAU_METHOD_TOOL_DRIVER_CHANGED, &params);
 }
 
 // ---- refused motion -----------------------------------------------------------------------------

@@ -30,5 +30,5 @@ void cau_refusals_report(cau_hosted_refusals *refusals, const cau_hosted_identit
                          double now_s); // those that are due
 
 // Sends tool.driver_changed.
-void cau_driver_notify(cau_hosted *h, const cau_drive *drive);
+void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *drive);
 void cau_driver_describe(const cau_drive *drive, cau_wire_driver *driver);

@@ -49,9 +49,7 @@ void cau_energy_turn_off(cau_hosted *h, const char *tool)
 static void count_cut(cau_hosted *h, const cau_drive *drive)
 {
 	bool watchdog = drive->cut_off == CAU_ENERGY_OFF_WATCHDOG;
-	pthread_mutex_lock(&h->published.lock);
-	h->published.counts.watchdog_cuts += watchdog;
-	pthread_mutex_unlock(&h->published.lock);
+	cau_published_count_cut(&h->published, watchdog);
 	cau_timeline_add(&h->timeline, watchdog ? CAU_EVENT_WATCHDOG : CAU_EVENT_ENERGY_OFF,
 	                 drive->tool, drive->driver.name, 0, drive->cut_cause);
 	if (watchdog) // who holds a pedal down must not wonder why nothing burns
@@ -84,7 +82,7 @@ cau_outcome_kind cau_apply_drive(cau_hosted *h, cau_order *order, const cau_acti
 		cau_timeline_add(&h->timeline, CAU_EVENT_DRIVER, drive->tool,
 		                 driven ? drive->driver.name : "", 0, driven ? "drives" : "has no driver");
 	cau_driver_describe(drive, &result);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 	return CAU_DONE;
 }
 
@@ -101,6 +99,6 @@ cau_outcome_kind cau_apply_request_takeover(cau_hosted *h, cau_order *order,
 	if (cau_decisions_find(&h->decisions, order->as.tool.tool, &drive) && drive.driver.client)
 		cau_answer_notify(&h->identity, (cau_audience){CAU_AUDIENCE_CLIENT, drive.driver.client},
 		                  CAU_METHOD_TAKEOVER_REQUESTED, &params);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 	return CAU_DONE;
 }

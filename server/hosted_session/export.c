@@ -97,17 +97,17 @@ static void *copy_to(unsigned char **at, const void *source, size_t bytes)
 	return copy;
 }
 
-static tissue_copy *copy_tissue(const cau_hosted *h)
+static tissue_copy *copy_tissue(const cau_present_core *core, cau_shelf *copies)
 {
 	const uint8_t *tetrahedron, *triangle, *link;
-	copy_sizes sizes = sizes_of(&h->core.info);
+	copy_sizes sizes = sizes_of(&core->info);
 	cau_frame frame;
-	tissue_copy *copy = cau_shelf_take(h->reads.copies, cau_export_copy_bytes(&h->core.info));
+	tissue_copy *copy = cau_shelf_take(copies, cau_export_copy_bytes(&core->info));
 	if (!copy)
 		return NULL;
 	unsigned char *at = (unsigned char *)(copy + 1);
-	cau_session_frame(h->core.session, &frame);
-	cau_session_alive(h->core.session, &tetrahedron, &triangle, &link);
+	cau_session_frame(core->session, &frame);
+	cau_session_alive(core->session, &tetrahedron, &triangle, &link);
 	copy->position = copy_to(&at, frame.position, sizes.position);
 	copy->exposure = copy_to(&at, frame.exposure, sizes.exposure);
 	copy->mask = copy_to(&at, frame.face_mask, sizes.mask);
@@ -251,7 +251,7 @@ static void make_tissue_file(cau_read_job *job)
 
 void cau_apply_export(cau_hosted *h, cau_order *order)
 {
-	tissue_copy *copy = copy_tissue(h);
+	tissue_copy *copy = copy_tissue(&h->core, h->reads.copies);
 	if (!copy) {
 		fail(&order->reply, CAU_NO_MEMORY, "no memory for the file");
 		free(order);

@@ -20,99 +20,101 @@ void cau_findings_know(cau_hosted_findings *findings, const cau_session *core)
 }
 
 // Who pulls: the first whose jaws hold something.
-static void note_tear(cau_hosted *h, const cau_frame *frame, int32_t torn)
+static void note_tear(cau_hosted_timeline *timeline, const cau_frame *frame, int32_t torn)
 {
 	const cau_tool_state *puller = NULL;
 	for (int32_t i = frame->tool_count - 1; i >= 0; i--)
 		if (frame->tools[i].grasped_vertices)
 			puller = &frame->tools[i];
-	h->record.touched = true;
-	cau_timeline_add(&h->timeline, CAU_EVENT_TEAR, puller ? puller->name : NULL, NULL, torn, NULL);
+	timeline->record->touched = true;
+	cau_timeline_add(timeline, CAU_EVENT_TEAR, puller ? puller->name : NULL, NULL, torn, NULL);
 }
 
-static void note_cut(cau_hosted *h, const cau_frame *frame)
+static void note_cut(cau_hosted_findings *findings, cau_hosted_timeline *timeline,
+                     cau_hosted_decisions *decisions, const cau_frame *frame)
 {
 	const cau_statistics *now = &frame->statistics;
-	int32_t torn = now->elements_torn - h->findings.elements_torn;
-	int32_t removed = now->elements_removed - h->findings.elements_removed - torn;
-	h->findings.elements_removed = now->elements_removed;
-	h->findings.elements_torn = now->elements_torn;
+	int32_t torn = now->elements_torn - findings->elements_torn;
+	int32_t removed = now->elements_removed - findings->elements_removed - torn;
+	findings->elements_removed = now->elements_removed;
+	findings->elements_torn = now->elements_torn;
 	if (torn > 0)
-		note_tear(h, frame, torn);
+		note_tear(timeline, frame, torn);
 	if (removed <= 0)
 		return;
 	cau_drive drives[CAU_MAX_TOOLS];
-	h->record.touched = true;
+	timeline->record->touched = true;
 	const cau_drive *cutter = NULL;
-	int32_t count = cau_decisions_drives(&h->decisions, drives);
+	int32_t count = cau_decisions_drives(decisions, drives);
 	for (int32_t i = 0; i < count; i++)
 		if (drives[i].lit)
 			cutter = &drives[i];
-	cau_timeline_add(&h->timeline, CAU_EVENT_CUT, cutter ? cutter->tool : NULL,
+	cau_timeline_add(timeline, CAU_EVENT_CUT, cutter ? cutter->tool : NULL,
 	                 cutter ? cutter->driver.name : NULL, removed, NULL);
 }
 
 // Once for each layer, until all of it is right again.
-static void note_inverted(cau_hosted *h, const cau_statistics *now)
+static void note_inverted(cau_hosted_findings *findings, cau_hosted_timeline *timeline,
+                          const cau_scene_def *scene, const cau_statistics *now)
 {
-	for (int32_t i = 0; i < h->identity.scene->layer_count; i++) {
+	for (int32_t i = 0; i < scene->layer_count; i++) {
 		uint32_t bit = 1u << i;
-		bool reported = h->findings.inverted_layers & bit;
-		h->findings.inverted_layers &= now->long_inverted[i] ? UINT32_MAX : ~bit;
+		bool reported = findings->inverted_layers & bit;
+		findings->inverted_layers &= now->long_inverted[i] ? UINT32_MAX : ~bit;
 		if (!now->long_inverted[i] || reported)
 			continue;
-		h->findings.inverted_layers |= bit;
-		cau_timeline_add(&h->timeline, CAU_EVENT_INVERTED, NULL, NULL, now->long_inverted[i],
-		                 h->identity.scene->layers[i].name);
+		findings->inverted_layers |= bit;
+		cau_timeline_add(timeline, CAU_EVENT_INVERTED, NULL, NULL, now->long_inverted[i],
+		                 scene->layers[i].name);
 	}
 }
 
-static void note_gain(cau_hosted *h, const cau_statistics *now)
+static void note_gain(cau_hosted_findings *findings, cau_hosted_timeline *timeline,
+                      const cau_statistics *now)
 {
 	char detail[64];
-	bool again = h->core.tick < h->findings.gain_tick ||
-	             h->core.tick - h->findings.gain_tick >= GAIN_QUIET_TICKS;
-	if (!(now->energy_gain_j > GAIN_MOST * now->energy_scale_j) ||
-	    (h->findings.gain_tick && !again))
+	bool again = timeline->core->tick < findings->gain_tick ||
+	             timeline->core->tick - findings->gain_tick >= GAIN_QUIET_TICKS;
+	if (!(now->energy_gain_j > GAIN_MOST * now->energy_scale_j) || (findings->gain_tick && !again))
 		return;
-	h->findings.gain_tick = h->core.tick;
+	findings->gain_tick = timeline->core->tick;
 	snprintf(detail, sizeof detail, "%.3g J in a tick that had %.3g J", now->energy_gain_j,
 	         now->energy_scale_j);
-	cau_timeline_add(&h->timeline, CAU_EVENT_ENERGY_GAIN, NULL, NULL, 0, detail);
+	cau_timeline_add(timeline, CAU_EVENT_ENERGY_GAIN, NULL, NULL, 0, detail);
 }
 
-static void note_vessels(cau_hosted *h, const cau_frame *frame)
+static void note_vessels(cau_hosted_findings *findings, cau_hosted_timeline *timeline,
+                         const cau_frame *frame)
 {
 	for (int32_t i = 0; i < frame->vessel_count; i++) {
 		const cau_vessel_state *vessel = frame->vessels[i];
-		uint32_t before = h->findings.vessel_flags[i], now = vessel->flags;
-		h->findings.vessel_flags[i] = now;
+		uint32_t before = findings->vessel_flags[i], now = vessel->flags;
+		findings->vessel_flags[i] = now;
 		if (now & ~before & CAU_VESSEL_SEALED)
-			cau_timeline_add(&h->timeline, CAU_EVENT_SEALED, NULL, NULL, 0, vessel->name);
+			cau_timeline_add(timeline, CAU_EVENT_SEALED, NULL, NULL, 0, vessel->name);
 		if ((now ^ before) & CAU_VESSEL_BLEEDS)
-			cau_timeline_add(&h->timeline,
-			                 now & CAU_VESSEL_BLEEDS ? CAU_EVENT_BLEEDING
-			                                         : CAU_EVENT_BLEEDING_STOPPED,
-			                 NULL, NULL, 0, vessel->name);
+			cau_timeline_add(
+				timeline, now & CAU_VESSEL_BLEEDS ? CAU_EVENT_BLEEDING : CAU_EVENT_BLEEDING_STOPPED,
+				NULL, NULL, 0, vessel->name);
 	}
 }
 
-static void note_refusals(cau_hosted *h, const cau_frame *frame)
+static void note_refusals(cau_hosted_findings *findings, const char *id, uint64_t tick,
+                          const cau_frame *frame)
 {
 	for (int32_t i = 0; i < frame->refusal_count; i++) {
-		h->findings.refused_commands++;
-		cau_log(CAU_LOG_INFO, h->identity.id, "refused_at_tick", "tick=%llu path=%s reason=\"%s\"",
-		        (unsigned long long)h->core.tick, frame->refusals[i].path,
-		        frame->refusals[i].reason);
+		findings->refused_commands++;
+		cau_log(CAU_LOG_INFO, id, "refused_at_tick", "tick=%llu path=%s reason=\"%s\"",
+		        (unsigned long long)tick, frame->refusals[i].path, frame->refusals[i].reason);
 	}
 }
 
 void cau_findings_note(cau_hosted *h, const cau_frame *frame)
 {
-	note_cut(h, frame);
-	note_inverted(h, &frame->statistics);
-	note_gain(h, &frame->statistics);
-	note_vessels(h, frame);
+	note_cut(&h->findings, &h->timeline, &h->decisions, frame);
+	note_inverted(&h->findings, &h->timeline, h->identity.scene, &frame->statistics);
+	note_gain(&h->findings, &h->timeline, &frame->statistics);
+	note_vessels(&h->findings, &h->timeline, frame);
 	cau_timeline_settle(&h->timeline);
-	note_refusals(h, frame);
+	note_refusals(&h->findings, h->identity.id, h->core.tick, frame);
 }

@@ -8,16 +8,16 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-typedef struct published {
+typedef struct showing {
 	cau_hosted *hosted;
 	cau_shown shown;
-} published;
+} showing;
 
-static void add_drives(cau_hosted *h, cau_stream_tool *tools, int32_t count)
+static void add_drives(cau_hosted_decisions *decisions, cau_stream_tool *tools, int32_t count)
 {
 	for (int32_t i = 0; i < count; i++) {
 		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-		cau_decisions_find(&h->decisions, tools[i].name, &drive);
+		cau_decisions_find(decisions, tools[i].name, &drive);
 		tools[i].driver = drive.driver.client;
 		tools[i].frozen = drive.frozen;
 		tools[i].energy_off = (uint8_t)drive.energy_off;
@@ -26,12 +26,12 @@ static void add_drives(cau_hosted *h, cau_stream_tool *tools, int32_t count)
 
 static const cau_stream_sample *fill_sample(void *user)
 {
-	published *p = user;
+	showing *p = user;
 	cau_hosted *h = p->hosted;
 	cau_shown *shown = &p->shown;
 	int state = cau_decisions_state(&h->decisions);
 	cau_show(h->core.session, shown);
-	add_drives(h, shown->tools, shown->frame.tool_count);
+	add_drives(&h->decisions, shown->tools, shown->frame.tool_count);
 	shown->statistics.realtime_factor = (float)h->pace.realtime_factor;
 	shown->statistics.step_cost_s = (float)h->pace.step_cost_s;
 	shown->statistics.refused_commands = h->findings.refused_commands;
@@ -41,26 +41,26 @@ static const cau_stream_sample *fill_sample(void *user)
 }
 
 // What costs the core work of its own is made as long as somebody watches it.
-static void follow_channels(cau_hosted *h)
+static void follow_channels(cau_session *core, cau_streams *streams)
 {
-	cau_session_watch(h->core.session, cau_streams_watched(&h->frames.streams));
+	cau_session_watch(core, cau_streams_watched(streams));
 }
 
 // Without subscribers, or ticks, no frame shows what waits for one.
-static bool frame_is_near(cau_hosted *h)
+static bool frame_is_near(cau_hosted_frames *frames, cau_hosted_decisions *decisions)
 {
 	cau_stream_counts streams;
-	cau_streams_count(&h->frames.streams, &streams);
-	return streams.subscribers && cau_decisions_state(&h->decisions) == CAU_SESSION_RUNNING;
+	cau_streams_count(&frames->streams, &streams);
+	return streams.subscribers && cau_decisions_state(decisions) == CAU_SESSION_RUNNING;
 }
 
 void cau_frames_publish(cau_hosted *h, double now_s)
 {
 	cau_error error = {0};
-	published p;
+	showing p;
 	bool made = false;
 	p.hosted = h;
-	follow_channels(h);
+	follow_channels(h->core.session, &h->frames.streams);
 	cau_decided decided = cau_decisions_now(&h->decisions);
 	cau_stream_moment moment = {
 		.now_s = now_s,
@@ -76,7 +76,7 @@ void cau_frames_publish(cau_hosted *h, double now_s)
 	if (made) {
 		cau_pace_framed(&h->pace, h->identity.around->times);
 		h->identity.around->sink.frames(h->identity.around->sink.user);
-	} else if (h->pace.waiting_count && !frame_is_near(h)) {
+	} else if (h->pace.waiting_count && !frame_is_near(&h->frames, &h->decisions)) {
 		h->pace.waiting_count = 0;
 	}
 }
@@ -98,18 +98,18 @@ cau_stream_shape cau_frames_shape(const cau_session_info *info)
 	                          .rest_position = info->rest_position};
 }
 
-static cau_status join(cau_hosted *h, const cau_order *order, const cau_stream **stream,
-                       cau_error *error)
+static cau_status join(cau_hosted_frames *frames, const cau_session_info *info,
+                       const cau_order *order, const cau_stream **stream, cau_error *error)
 {
 	bool woken = false;
 	cau_stream_wish wish = {.rate_hz = order->as.join.rate_hz,
 	                        .step_m = order->as.join.step_m,
 	                        .plain = order->as.join.plain,
 	                        .channels = order->as.join.channels};
-	cau_stream_shape shape = cau_frames_shape(&h->core.info);
-	cau_status status = cau_streams_join(&h->frames.streams, &wish, &shape, stream, &woken, error);
+	cau_stream_shape shape = cau_frames_shape(info);
+	cau_status status = cau_streams_join(&frames->streams, &wish, &shape, stream, &woken, error);
 	if (woken)
-		h->frames.dirty = true;
+		frames->dirty = true;
 	return status;
 }
 
@@ -117,7 +117,7 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
 	const cau_stream *stream = NULL;
-	if (join(h, order, &stream, &error)) {
+	if (join(&h->frames, &h->core.info, order, &stream, &error)) {
 		cau_answer_fail(order, &error, 0);
 		return;
 	}

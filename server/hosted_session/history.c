@@ -104,7 +104,7 @@ cau_outcome_kind cau_apply_snapshot(cau_hosted *h, cau_order *order, const cau_a
 	         (long long)h->history.branch, (unsigned long long)result.hash);
 	cau_record_mark(&h->record);
 	cau_timeline_add(&h->timeline, CAU_EVENT_SNAPSHOT, NULL, order->asker.name, 0, detail);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 	return CAU_DONE;
 }
 
@@ -127,5 +127,5 @@ void cau_apply_snapshots(cau_hosted *h, cau_order *order)
 		memcpy(named[i].name, from->name, sizeof named[i].name);
 	}
 	qsort(named, (size_t)h->history.snapshot_count, sizeof *named, by_tick);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 }

@@ -24,7 +24,7 @@ static void finish(cau_holding *holding)
 {
 	cau_hosted *h = holding->hosted;
 	h->suspension.holding = NULL;
-	h->suspension.stage[0] = 0;
+	cau_suspension_name_stage(&h->suspension, "");
 	free(holding);
 	cau_building_over(h);
 	cau_hosted_release(h);
@@ -93,7 +93,7 @@ cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_actio
 	holding->hash = cau_session_hash(h->core.session);
 	h->suspension.holding = holding;
 	h->suspension.job = &holding->job;
-	snprintf(h->suspension.stage, sizeof h->suspension.stage, "moving");
+	cau_suspension_name_stage(&h->suspension, "moving");
 	cau_hosted_publish_summary(h);
 	return CAU_DONE;
 }

@@ -24,10 +24,10 @@ void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to)
 	cau_reply_answer(reply, &outcome);
 }
 
-void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order)
+void cau_hosted_refuse_gone(const cau_hosted_life *life, cau_order *order)
 {
-	if (*h->life.moved.session) {
-		cau_reply_moved(&order->reply, &h->life.moved);
+	if (*life->moved.session) {
+		cau_reply_moved(&order->reply, &life->moved);
 		free(order);
 		return;
 	}

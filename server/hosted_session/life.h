@@ -13,6 +13,6 @@ typedef struct cau_hosted_life {
 } cau_hosted_life;
 
 // There is no session for the order any more.
-void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order);
+void cau_hosted_refuse_gone(const cau_hosted_life *life, cau_order *order);
 // It could not be brought up or kept: nothing is taken any more. Any thread.
 void cau_hosted_end(cau_hosted *h);

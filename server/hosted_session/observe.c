@@ -104,10 +104,11 @@ static bool observe_mask(observation *o, int32_t face_count)
 	return to != NULL;
 }
 
-static void observe_tool(cau_hosted *h, const cau_tool_state *from, cau_wire_observed_tool *to)
+static void observe_tool(cau_hosted_decisions *decisions, const cau_tool_state *from,
+                         cau_wire_observed_tool *to)
 {
 	cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-	cau_decisions_find(&h->decisions, from->name, &drive);
+	cau_decisions_find(decisions, from->name, &drive);
 	*to = (cau_wire_observed_tool){.jaw = from->jaw,
 	                               .energized = from->energized,
 	                               .has_energy_off = !from->energized,
@@ -128,12 +129,12 @@ static void observe_tool(cau_hosted *h, const cau_tool_state *from, cau_wire_obs
 	memcpy(to->raw_torque_nm, from->raw_torque_nm, sizeof to->raw_torque_nm);
 }
 
-static void observe_tools(cau_hosted *h, observation *o)
+static void observe_tools(cau_hosted_decisions *decisions, observation *o)
 {
 	o->result.has_tools = o->wanted->channels & CAU_CHANNEL_TOOLS;
 	o->result.tools = (cau_wire_list){o->tools, o->frame.tool_count, CAU_MAX_TOOLS};
 	for (int32_t i = 0; o->result.has_tools && i < o->frame.tool_count; i++)
-		observe_tool(h, &o->frame.tools[i], &o->tools[i]);
+		observe_tool(decisions, &o->frame.tools[i], &o->tools[i]);
 }
 
 static void observe_vessels(observation *o)
@@ -162,38 +163,37 @@ static cau_wire_observed_damage wire_damage(const cau_damage *from)
 	                                  .damaged_m3 = from->damaged_m3};
 }
 
-static void observe_regions(const cau_hosted *h, observation *o)
+static void observe_regions(const cau_session *core, observation *o)
 {
 	o->result.has_regions = o->wanted->region_count > 0;
 	o->result.regions = (cau_wire_list){o->regions, o->wanted->region_count, CAU_ADVANCE_REGIONS};
 	for (int32_t i = 0; i < o->wanted->region_count; i++) {
 		const cau_advance_region *region = &o->wanted->regions[i];
 		cau_damage inside, outside;
-		cau_session_damage(h->core.session, &region->where, &inside, &outside);
+		cau_session_damage(core, &region->where, &inside, &outside);
 		memcpy(o->regions[i].name, region->name, sizeof o->regions[i].name);
 		o->regions[i].inside = wire_damage(&inside);
 		o->regions[i].outside = wire_damage(&outside);
 	}
 }
 
-static void observe_energy(const cau_hosted *h, observation *o)
+static void observe_energy(const cau_session *core, observation *o)
 {
 	cau_energy_ledger ledger;
 	o->result.has_energy = o->wanted->energy;
 	if (!o->wanted->energy)
 		return;
-	cau_session_read_ledger(h->core.session, &ledger);
-	o->result.energy =
-		(cau_wire_observed_energy){.delivered_j = ledger.delivered_j,
-	                               .blade_j = ledger.blade_j,
-	                               .far_j = ledger.far_j,
-	                               .stored_j = ledger.stored_j,
-	                               .boiled_j = ledger.boiled_j,
-	                               .perfused_j = ledger.perfused_j,
-	                               .ambient_j = ledger.ambient_j,
-	                               .shed_j = ledger.shed_j,
-	                               .coagulated_m3 = cau_session_coagulated(h->core.session),
-	                               .vapour_kg_s = cau_session_vapour(h->core.session)};
+	cau_session_read_ledger(core, &ledger);
+	o->result.energy = (cau_wire_observed_energy){.delivered_j = ledger.delivered_j,
+	                                              .blade_j = ledger.blade_j,
+	                                              .far_j = ledger.far_j,
+	                                              .stored_j = ledger.stored_j,
+	                                              .boiled_j = ledger.boiled_j,
+	                                              .perfused_j = ledger.perfused_j,
+	                                              .ambient_j = ledger.ambient_j,
+	                                              .shed_j = ledger.shed_j,
+	                                              .coagulated_m3 = cau_session_coagulated(core),
+	                                              .vapour_kg_s = cau_session_vapour(core)};
 }
 
 // What costs the core work of its own is made for this answer, and for the streams that have it.
@@ -202,10 +202,10 @@ static bool observe(cau_hosted *h, observation *o)
 	cau_session_watch(h->core.session,
 	                  cau_streams_watched(&h->frames.streams) | o->wanted->channels);
 	cau_session_frame(h->core.session, &o->frame);
-	observe_tools(h, o);
+	observe_tools(&h->decisions, o);
 	observe_vessels(o);
-	observe_regions(h, o);
-	observe_energy(h, o);
+	observe_regions(h->core.session, o);
+	observe_energy(h->core.session, o);
 	return observe_positions(o) && observe_scalars(o) && observe_mask(o, h->core.info.face_count);
 }
 

@@ -9,11 +9,11 @@
 #include "hosted_session/sink.h"
 #include "session/asker.h"
 
-// Kinds of orders, a row each, and what serves them at a tick border (internal.h).
+// Kinds of orders, a row each, and what serves them at a tick border (slice.h).
 //
 //     CHANGE(KIND, ask, apply)  waits in the session's queue. ask: what the decision knows it as,
 //                               CAU_ASK_<ask> of session/logic.h; of a COMMAND it is its command's
-//     READ(KIND, apply)         changes nothing, and waits apart from the drivers (read_queue.c)
+//     READ(KIND, apply)         changes nothing, and waits apart from the drivers (read_requests.c)
 #define CAU_ORDER_TABLE(CHANGE, READ)                                                              \
 	CHANGE(COMMAND, TISSUE, cau_apply_command) /* as.command */                                    \
 	CHANGE(PAUSE, PAUSE, cau_apply_pause)                                                          \

@@ -22,13 +22,14 @@
 #define KEPT_S 60.0 // an idle core goes after this: it takes as much memory as the session's own
 
 // ---- answers ------------------------------------------------------------------------------------
-static cau_stream_def define(const cau_hosted *h, const cau_order *order)
+static cau_stream_def define(const cau_hosted_identity *identity, const cau_session_info *info,
+                             const cau_order *order)
 {
 	cau_stream_def def = cau_default_stream_def();
-	def.session = h->identity.number;
+	def.session = identity->number;
 	def.channels = order->as.frame_at.channels;
-	def.vertex_count = h->core.info.vertex_count;
-	def.face_count = h->core.info.face_count;
+	def.vertex_count = info->vertex_count;
+	def.face_count = info->face_count;
 	def.step_m = order->as.frame_at.step_m;
 	def.plain = order->as.frame_at.plain;
 	return def;
@@ -59,7 +60,7 @@ static void describe(const cau_past_views *views, const cau_stream_def *def, siz
 static cau_status answer(cau_past_views *views, cau_error *error)
 {
 	cau_order *order = views->present;
-	cau_stream_def def = define(views->hosted, order);
+	cau_stream_def def = define(&views->hosted->identity, &views->hosted->core.info, order);
 	cau_wire_past_frame result;
 	cau_buffer *frame = cau_past_core_frame(&views->core, &def, order->as.frame_at.epoch, error);
 	if (!frame)
@@ -175,9 +176,9 @@ static cau_status do_stage(cau_past_views *views, bool *over, cau_error *error)
 	}
 }
 
-static int32_t code_of(const cau_hosted *h)
+static int32_t code_of(const cau_hosted_life *life)
 {
-	return h->life.ended ? CAU_RPC_NOT_HERE : h->life.drain_wanted ? CAU_RPC_DRAINING : 0;
+	return life->ended ? CAU_RPC_NOT_HERE : life->drain_wanted ? CAU_RPC_DRAINING : 0;
 }
 
 // One stage of the present look, or one turn of its replay.
@@ -195,7 +196,7 @@ static void advance(cau_past_views *views)
 	if (!status && done)
 		status = answer(views, &error);
 	if (status || done)
-		drop_present(views, status ? &error : NULL, code_of(views->hosted));
+		drop_present(views, status ? &error : NULL, code_of(&views->hosted->life));
 }
 
 static void let_go(cau_past_views *views)
@@ -291,7 +292,7 @@ void cau_apply_frame_at(cau_hosted *h, cau_order *order)
 void cau_apply_frame_cancel(cau_hosted *h, cau_order *order)
 {
 	cau_past_views_give_up(&h->past, order->asker.client);
-	cau_answer_order(h, order, &(cau_wire_nothing){0});
+	cau_answer_order(&h->record, order, &(cau_wire_nothing){0});
 }
 
 // Under the lock.

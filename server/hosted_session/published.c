@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hosted_session/published.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "hosted_session/internal.h"
@@ -32,6 +33,35 @@ void cau_hosted_publish_summary(cau_hosted *h)
 	h->published.summary = now;
 	h->published.counts.realtime_factor = h->pace.realtime_factor;
 	pthread_mutex_unlock(&h->published.lock);
+}
+
+void cau_published_count_step(cau_hosted_published *published, double seconds,
+                              const cau_statistics *statistics)
+{
+	pthread_mutex_lock(&published->lock);
+	published->counts.steps++;
+	published->counts.step_seconds += seconds;
+	published->counts.energy_gain_j += fmax(statistics->energy_gain_j, 0);
+	published->counts.contacts_left_out = statistics->contacts_left_out;
+	published->counts.touching_cut_short = statistics->touching_cut_short;
+	published->counts.resting = statistics->resting;
+	pthread_mutex_unlock(&published->lock);
+}
+
+void cau_published_count_commands(cau_hosted_published *published, int32_t commands,
+                                  int32_t motions)
+{
+	pthread_mutex_lock(&published->lock);
+	published->counts.commands += (uint64_t)commands;
+	published->counts.motions += (uint64_t)motions;
+	pthread_mutex_unlock(&published->lock);
+}
+
+void cau_published_count_cut(cau_hosted_published *published, bool watchdog)
+{
+	pthread_mutex_lock(&published->lock);
+	published->counts.watchdog_cuts += watchdog;
+	pthread_mutex_unlock(&published->lock);
 }
 
 void cau_hosted_summary(cau_hosted *h, cau_wire_session_summary *summary)
@@ -76,12 +106,13 @@ void cau_hosted_publish_tools(cau_hosted *h)
 	pthread_mutex_unlock(&h->published.lock);
 }
 
-static void copy_tool(cau_hosted *h, const cau_tool_state *state, cau_hosted_tool *tool)
+static void copy_tool(cau_hosted_decisions *decisions, const cau_tool_state *state,
+                      cau_hosted_tool *tool)
 {
 	*tool = (cau_hosted_tool){
 		.state = *state, .energized = state->energized, .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
 	cau_drive drive;
-	if (!cau_decisions_find(&h->decisions, state->name, &drive))
+	if (!cau_decisions_find(decisions, state->name, &drive))
 		return;
 	tool->driver = drive.driver;
 	tool->energy_off = drive.energy_off;
@@ -97,7 +128,7 @@ int32_t cau_hosted_tools(cau_hosted *h, cau_hosted_tool *tools, uint64_t *tick, 
 	*time_s = h->published.time_s;
 	pthread_mutex_unlock(&h->published.lock);
 	for (int32_t i = 0; i < count; i++)
-		copy_tool(h, &states[i], &tools[i]);
+		copy_tool(&h->decisions, &states[i], &tools[i]);
 	return count;
 }
 
@@ -113,6 +144,6 @@ bool cau_hosted_find_tool(cau_hosted *h, const char *name, cau_hosted_tool *tool
 		}
 	pthread_mutex_unlock(&h->published.lock);
 	if (found)
-		copy_tool(h, &state, tool);
+		copy_tool(&h->decisions, &state, tool);
 	return found;
 }

@@ -115,7 +115,7 @@ void cau_reads_refuse(cau_hosted *h)
 	pthread_mutex_unlock(&h->reads.lock);
 	for (cau_order *next; order; order = next) {
 		next = order->next;
-		cau_hosted_refuse_gone(h, order);
+		cau_hosted_refuse_gone(&h->life, order);
 	}
 }
 

@@ -9,7 +9,7 @@
 #include "hosted_session/resend.h"
 #include "hosted_session/slice.h"
 
-void cau_answer_order(cau_hosted *h, cau_order *order, const void *result)
+void cau_answer_order(cau_hosted_record *record, cau_order *order, const void *result)
 {
 	cau_error error = {0};
 	size_t bytes = 0;
@@ -18,8 +18,8 @@ void cau_answer_order(cau_hosted *h, cau_order *order, const void *result)
 	if (!text) {
 		cau_reply_fail(&order->reply, &error, CAU_RPC_INTERNAL);
 	} else if (method->changes) {
-		cau_record_answer(&h->record, order, text, bytes);
-		cau_record_reply(&h->record, &order->reply, text, bytes);
+		cau_record_answer(record, order, text, bytes);
+		cau_record_reply(record, &order->reply, text, bytes);
 	} else {
 		cau_outcome outcome = {.text = text, .text_bytes = bytes};
 		cau_reply_answer(&order->reply, &outcome);

@@ -35,10 +35,10 @@ static const char *const stage_names[STAGE_COUNT] = {"reading", "restoring", "re
 // ---- the past -----------------------------------------------------------------------------------
 
 // What the store lacks is told to it by the checkpoint that ends it; until then nobody goes there.
-static void end_gap(cau_hosted *h)
+static void end_gap(cau_hosted_record *record)
 {
-	if (h->commits.lost_from != UINT64_MAX)
-		cau_record_checkpoint(&h->record, NULL, NULL);
+	if (record->commits->lost_from != UINT64_MAX)
+		cau_record_checkpoint(record, NULL, NULL);
 }
 
 // ---- arriving -----------------------------------------------------------------------------------
@@ -76,7 +76,7 @@ static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 	int state = cau_decisions_state(&h->decisions);
 	cau_findings_know(&h->findings, h->core.session);
 	h->history.branch = branch;
-	h->suspension.stage[0] = 0;
+	cau_suspension_name_stage(&h->suspension, "");
 	cau_timeline_load(&h->timeline);
 	open_branch(h);
 	cau_timeline_add(&h->timeline, event, NULL, order->asker.name, 0, NULL);
@@ -91,7 +91,7 @@ static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 	                            .branch = h->history.branch,
 	                            .exact = h->replay.exact};
 	cau_answer_changed(h, change, order->asker.name);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 }
 
 // ---- staying ------------------------------------------------------------------------------------
@@ -126,7 +126,7 @@ static void stay(going *g)
 static cau_status read_past(going *g, cau_error *error)
 {
 	cau_hosted *h = g->hosted;
-	end_gap(h);
+	end_gap(&h->record);
 	cau_record_commit(h);
 	cau_status status = cau_replay_check(&h->identity, &h->commits, g->branch,
 	                                     g->branch == h->history.branch, g->tick, error);
@@ -165,10 +165,11 @@ static cau_status leave_present(going *g, cau_error *error)
 	return status;
 }
 
-static cau_status replay_slice(cau_hosted *h, bool *over, cau_error *error)
+static cau_status replay_slice(cau_present_core *core, cau_replay *replay, bool *over,
+                               cau_error *error)
 {
-	cau_status status = cau_replay_slice(&h->replay, h->core.session, SLICE_S, over, error);
-	h->core.tick = h->replay.tick;
+	cau_status status = cau_replay_slice(replay, core->session, SLICE_S, over, error);
+	core->tick = replay->tick;
 	return status;
 }
 
@@ -195,7 +196,7 @@ static void end(going *g)
 	cau_replay_finish(&h->replay);
 	free(g->present);
 	free(g);
-	h->suspension.stage[0] = 0;
+	cau_suspension_name_stage(&h->suspension, "");
 	cau_building_over(h);
 	cau_hosted_release(h);
 }
@@ -213,7 +214,7 @@ static void give_up(going *g, const cau_error *error)
 
 static void tell_stage(cau_hosted *h, const char *stage)
 {
-	snprintf(h->suspension.stage, sizeof h->suspension.stage, "%s", stage);
+	cau_suspension_name_stage(&h->suspension, stage);
 	cau_hosted_publish_summary(h);
 }
 
@@ -230,7 +231,7 @@ static void run(cau_job *job)
 	else if (!status && g->stage == RESTORING)
 		status = leave_present(g, &error);
 	else if (!status)
-		status = replay_slice(h, &over, &error);
+		status = replay_slice(&h->core, &h->replay, &over, &error);
 	if (status) {
 		give_up(g, &error);
 		return;
@@ -308,7 +309,7 @@ cau_outcome_kind cau_apply_fork(cau_hosted *h, cau_order *order, const cau_actio
 		                         "the tick is later than the session's present tick");
 	if (order->as.fork.tick == h->core.tick)
 		cau_record_checkpoint(&h->record, NULL, NULL);
-	end_gap(h);
+	end_gap(&h->record);
 	cau_reads_hand_over(h, order, make_fork, NULL, NULL, READ_EXPECTED_S);
 	return CAU_DONE;
 }

@@ -29,14 +29,7 @@ static void step(cau_hosted *h)
 	cau_session_frame(h->core.session, &frame);
 	cau_pace_stepped(&h->pace, h->identity.around->times, &frame.statistics);
 	cau_findings_note(h, &frame);
-	pthread_mutex_lock(&h->published.lock);
-	h->published.counts.steps++;
-	h->published.counts.step_seconds += h->pace.step_cost_s;
-	h->published.counts.energy_gain_j += fmax(frame.statistics.energy_gain_j, 0);
-	h->published.counts.contacts_left_out = frame.statistics.contacts_left_out;
-	h->published.counts.touching_cut_short = frame.statistics.touching_cut_short;
-	h->published.counts.resting = frame.statistics.resting;
-	pthread_mutex_unlock(&h->published.lock);
+	cau_published_count_step(&h->published, h->pace.step_cost_s, &frame.statistics);
 }
 
 // ---- what is to be done now
@@ -109,10 +102,10 @@ static void act_until_tick(cau_hosted *h)
 	}
 }
 
-static bool energy_is_on(cau_hosted *h)
+static bool energy_is_on(cau_hosted_decisions *decisions)
 {
 	cau_drive drives[CAU_MAX_TOOLS];
-	int32_t count = cau_decisions_drives(&h->decisions, drives);
+	int32_t count = cau_decisions_drives(decisions, drives);
 	bool on = false;
 	for (int32_t i = 0; i < count; i++)
 		on |= drives[i].lit;
@@ -122,7 +115,7 @@ static bool energy_is_on(cau_hosted *h)
 static void checkpoint_if_due(cau_hosted *h, double now_s)
 {
 	bool running = cau_decisions_state(&h->decisions) == CAU_SESSION_RUNNING;
-	if (!cau_record_is_due(&h->record, running, energy_is_on(h), now_s))
+	if (!cau_record_is_due(&h->record, running, energy_is_on(&h->decisions), now_s))
 		return;
 	cau_timeline_end_cuts(&h->timeline);
 	cau_record_checkpoint(&h->record, NULL, NULL);
@@ -191,13 +184,12 @@ static cau_due when(cau_hosted *h)
 }
 
 // The builder made the core, and its threads have the builder's priority: they become a worker's.
-static void adopt(cau_hosted *h)
+static void adopt(cau_present_core *core, const char *id)
 {
 	cau_error error = {0};
-	h->core.adopted = true;
-	if (cau_session_adopt(h->core.session, &error))
-		cau_log(CAU_LOG_WARNING, h->identity.id, "threads_not_adopted", "reason=\"%s\"",
-		        error.reason);
+	core->adopted = true;
+	if (cau_session_adopt(core->session, &error))
+		cau_log(CAU_LOG_WARNING, id, "threads_not_adopted", "reason=\"%s\"", error.reason);
 }
 
 // The first slice steps nothing: by its end the pool knows how long a step may be.
@@ -206,7 +198,7 @@ static void run_slice(cau_hosted *h)
 	if (h->life.drain_wanted)
 		drain(h);
 	else if (!h->core.adopted)
-		adopt(h);
+		adopt(&h->core, h->identity.id);
 	else if (h->creation.replaying)
 		go_on_replaying(h);
 	else
@@ -231,6 +223,6 @@ cau_due cau_hosted_run(cau_task *task)
 	task->undivided_s = h->pace.stepped_s;
 	if (!h->suspension.job)
 		return when(h);
-	cau_suspension_begin(h);
+	cau_suspension_begin(&h->suspension, h->identity.around);
 	return away;
 }

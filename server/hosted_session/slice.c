@@ -19,7 +19,7 @@ void cau_hosted_end_slice(cau_hosted *h)
 void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code)
 {
 	if (code == CAU_RPC_NOT_HERE) {
-		cau_hosted_refuse_gone(h, order);
+		cau_hosted_refuse_gone(&h->life, order);
 		return;
 	}
 	if (order->kind == CAU_ORDER_COMMAND) {

@@ -51,13 +51,11 @@ static cau_status create_first(cau_hosted *h, cau_error *error)
 	return status;
 }
 
-static bool begin_as(cau_hosted *h, const cau_beginning *known)
+static bool begin_as(cau_session *core, const cau_beginning *known)
 {
 	bool exact = false;
-	return known->tissue_hash == cau_session_tissue_hash(h->core.session) &&
-	       !cau_session_restore(h->core.session, known->snapshot, known->byte_count, &exact,
-	                            NULL) &&
-	       exact;
+	return known->tissue_hash == cau_session_tissue_hash(core) &&
+	       !cau_session_restore(core, known->snapshot, known->byte_count, &exact, NULL) && exact;
 }
 
 // As the first session of its scene began; settled by itself where that does not serve.
@@ -66,7 +64,7 @@ static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, ca
 	cau_status status = create(h, true, error);
 	if (status)
 		return status;
-	if (begin_as(h, known)) {
+	if (begin_as(h->core.session, known)) {
 		cau_log(CAU_LOG_INFO, h->identity.id, "settled_before", "bytes=%zu", known->byte_count);
 		return CAU_OK;
 	}
@@ -227,30 +225,31 @@ void cau_hosted_start(cau_hosted *h)
 }
 
 // What was seen after the tick that the store leads to has not come about.
-static void go_on_from_events(cau_hosted *h)
+static void go_on_from_events(cau_hosted_timeline *timeline)
 {
 	cau_error error = {0};
-	cau_store_batch *batch = cau_record_batch(&h->record);
-	if (!batch ||
-	    cau_store_forget_events(batch, h->identity.id, h->history.branch, h->core.tick, &error))
-		cau_log(CAU_LOG_ERROR, h->identity.id, "events_not_forgotten", "reason=\"%s\"",
+	cau_hosted_record *record = timeline->record;
+	cau_store_batch *batch = cau_record_batch(record);
+	if (!batch || cau_store_forget_events(batch, record->identity->id, record->history->branch,
+	                                      record->core->tick, &error))
+		cau_log(CAU_LOG_ERROR, record->identity->id, "events_not_forgotten", "reason=\"%s\"",
 		        error.reason);
-	cau_timeline_load(&h->timeline);
+	cau_timeline_load(timeline);
 }
 
 // The next log entry follows the last one of this tick. The numbers of a tick have gaps where the
 // store was full, so the count of its entries is not the next number.
-static void go_on_logging(cau_hosted *h)
+static void go_on_logging(cau_hosted_record *record, const cau_replay *replay)
 {
-	h->record.logged_order = 0;
-	h->record.logged_acts = false;
-	for (size_t i = 0; i < h->replay.count; i++) {
-		const cau_replayed *entry = &h->replay.commands[i];
-		if (entry->tick != h->core.tick)
+	record->logged_order = 0;
+	record->logged_acts = false;
+	for (size_t i = 0; i < replay->count; i++) {
+		const cau_replayed *entry = &replay->commands[i];
+		if (entry->tick != record->core->tick)
 			continue;
-		h->record.logged_tick = h->core.tick;
-		h->record.logged_order = entry->order + 1;
-		h->record.logged_acts |= entry->acts;
+		record->logged_tick = record->core->tick;
+		record->logged_order = entry->order + 1;
+		record->logged_acts |= entry->acts;
 	}
 }
 
@@ -264,9 +263,9 @@ void cau_hosted_started(cau_hosted *h)
 		h->history.first_tick = h->core.tick;
 	h->record.logged_tick = UINT64_MAX;
 	if (restarted)
-		go_on_logging(h);
+		go_on_logging(&h->record, &h->replay);
 	if (restarted)
-		go_on_from_events(h);
+		go_on_from_events(&h->timeline);
 	cau_record_checkpoint(&h->record, NULL, NULL);
 	if (!restarted)
 		cau_record_mark(&h->record);
@@ -276,7 +275,7 @@ void cau_hosted_started(cau_hosted *h)
 	                                    : "a new session");
 	cau_frames_restart(&h->frames);
 	cau_pace_restart(&h->pace, h->core.tick);
-	h->suspension.stage[0] = 0;
+	cau_suspension_name_stage(&h->suspension, "");
 	h->creation.starting = false;
 	if (restarted)
 		cau_log(CAU_LOG_NOTICE, h->identity.id, "resumed", "tick=%llu exact=%d",

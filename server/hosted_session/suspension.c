@@ -17,6 +17,11 @@ static const char *const stage_names[] = {
 #undef X
 };
 
+void cau_suspension_name_stage(cau_hosted_suspension *suspension, const char *stage)
+{
+	snprintf(suspension->stage, sizeof suspension->stage, "%s", stage);
+}
+
 // ---- borders
 static void append(cau_order **list, cau_order *order)
 {
@@ -84,7 +89,7 @@ static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error
 
 static void tell_stage(cau_hosted *h, const char *stage, const cau_build_border *border)
 {
-	snprintf(h->suspension.stage, sizeof h->suspension.stage, "%s", stage);
+	cau_suspension_name_stage(&h->suspension, stage);
 	cau_hosted_publish_summary(h);
 	cau_log(CAU_LOG_INFO, h->identity.id, "building",
 	        "stage=%s vertices=%lld elements=%lld factor_entries=%lld megabytes=%.0f", stage,
@@ -120,13 +125,12 @@ bool cau_suspension_cancel(cau_hosted_suspension *suspension, const char *id, ca
 }
 
 // ---- from a worker to the builder and back
-void cau_suspension_begin(cau_hosted *h)
+void cau_suspension_begin(cau_hosted_suspension *suspension, const cau_surroundings *around)
 {
-	cau_job *job = h->suspension.job;
-	h->suspension.job = NULL;
-	h->suspension.active = true;
-	cau_builder_submit(
-		h->suspension.holding ? h->identity.around->mover : h->identity.around->builder, job);
+	cau_job *job = suspension->job;
+	suspension->job = NULL;
+	suspension->active = true;
+	cau_builder_submit(suspension->holding ? around->mover : around->builder, job);
 }
 
 cau_order *cau_suspension_end(cau_hosted_suspension *suspension)

@@ -8,7 +8,7 @@
 
 #include "builder/builder.h"
 #include "cautery/session.h"
-#include "hosted_session/order.h"
+#include "hosted_session/hosted.h"
 
 typedef struct cau_holding cau_holding;
 
@@ -25,7 +25,7 @@ typedef struct cau_hosted_suspension {
 
 // Lets the builder have a session whose slice has ended, for suspension.job. From here on it is the
 // builder's.
-void cau_suspension_begin(cau_hosted *h);
+void cau_suspension_begin(cau_hosted_suspension *suspension, const cau_surroundings *around);
 // From here on it is the workers', and a session.destroy waits in the queue. Returns those that
 // came before.
 cau_order *cau_suspension_end(cau_hosted_suspension *suspension);
@@ -36,5 +36,6 @@ bool cau_suspension_is_cancelled(cau_hosted *h);
 // CAU_BAD_STATE, where the session is destroyed or the daemon ends. `doing`: "was being built".
 cau_status cau_suspension_check(cau_hosted *h, const char *doing, const char *next,
                                 cau_error *error);
+void cau_suspension_name_stage(cau_hosted_suspension *suspension, const char *stage);
 // Between two stages of building; `user` is the session.
 cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error);

@@ -12,7 +12,7 @@ static void answer_summary(cau_hosted *h, cau_order *order, int change)
 	cau_wire_session_summary summary;
 	cau_answer_changed(h, change, order->asker.name);
 	cau_hosted_summary(h, &summary);
-	cau_answer_order(h, order, &summary);
+	cau_answer_order(&h->record, order, &summary);
 }
 
 cau_outcome_kind cau_apply_pause(cau_hosted *h, cau_order *order, const cau_action *action)
@@ -54,7 +54,7 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 	cau_error error = {0};
 	cau_decided decided = cau_decisions_now(&h->decisions);
 	if (failed && !*decided.fault) { // it is gone
-		cau_hosted_refuse_gone(h, order);
+		cau_hosted_refuse_gone(&h->life, order);
 		return;
 	}
 	if (failed) {
@@ -70,7 +70,7 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 	h->frames.dirty = true; // the last state is shown, whatever the streams' rates
 	cau_record_reached(&h->record);
 	cau_answer_changed(h, CAU_CHANGE_STEPPED, order->asker.name);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 }
 
 cau_outcome_kind cau_apply_speed(cau_hosted *h, cau_order *order, const cau_action *action)
@@ -92,7 +92,7 @@ bool cau_hosted_destroy(cau_hosted *h, cau_order *order, bool stored)
 	}
 	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name);
 	cau_log(CAU_LOG_INFO, h->identity.id, "destroyed", "client=\"%s\"", order->asker.name);
-	cau_answer_order(h, order, &result);
+	cau_answer_order(&h->record, order, &result);
 	return true;
 }
 

@@ -32,7 +32,7 @@
 // ---- orders -------------------------------------------------------------------------------------
 
 // What an order asks for, as far as the decision goes. All of them change something; what only
-// reads a session waits elsewhere (hosted_session/read_queue.c).
+// reads a session waits elsewhere (hosted_session/read_requests.c).
 typedef enum cau_ask {
 	CAU_ASK_TISSUE,           // pins, forces, gravity, materials: about no tool
 	CAU_ASK_TOOL_ADD,         // whoever adds it drives it
