@@ -76,7 +76,8 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 	advance->began_tick = h->core.tick;
 	for (int32_t i = 0; i < advance->command_count; i++)
 		apply(h, order, &advance->commands[i]);
-	cau_published_count_commands(&h->published, advance->command_count, 0);
+	cau_published_count(&h->published,
+	                    &(cau_hosted_counts){.commands = (uint64_t)advance->command_count});
 	return CAU_DONE;
 }
 

@@ -34,6 +34,8 @@ char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_
 	return NULL;
 }
 
+const cau_error cau_daemon_ends = {.status = CAU_BAD_STATE, .reason = "the daemon is ending"};
+
 void cau_answer_now(const cau_reply *reply, const void *result)
 {
 	cau_error error = {0};

@@ -5,6 +5,7 @@
 #include "hosted_session/record.h"
 
 // ---- answer.c: at once
+extern const cau_error cau_daemon_ends; // why work of the builder is dropped
 void cau_answer_now(const cau_reply *reply, const void *result);
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
 // The same with these words. CAU_NOT_DONE.

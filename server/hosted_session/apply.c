@@ -113,7 +113,9 @@ cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_ac
 		return CAU_NOT_DONE;
 	}
 	answer_command(&h->record, &h->decisions, order);
-	cau_published_count_commands(&h->published, 1, command->kind == CAU_COMMAND_TOOL_MOVE);
+	cau_published_count(
+		&h->published,
+		&(cau_hosted_counts){.commands = 1, .motions = command->kind == CAU_COMMAND_TOOL_MOVE});
 	await_frame(h, order);
 	note(h, order, action);
 	free(order);

@@ -104,10 +104,8 @@ static void end(building *b)
 static void drop(cau_job *job)
 {
 	building *b = (building *)job;
-	cau_error error = {0};
-	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
 	b->hosted->creation.unwanted = true;
-	cau_hosted_fail_start(b->hosted, &error);
+	cau_hosted_fail_start(b->hosted, &cau_daemon_ends);
 	end(b);
 }
 

@@ -23,6 +23,9 @@ cau_decided cau_decisions_now(cau_hosted_decisions *decisions)
 	pthread_mutex_lock(&decisions->lock);
 	cau_decided now = {.state = decisions->logic->state,
 	                   .speed = decisions->logic->speed,
+	                   .tick_s = decisions->logic->next_step_s,
+	                   .period_s = decisions->logic->step_s / decisions->logic->speed,
+	                   .lockstep = decisions->logic->lockstep,
 	                   .steps_left = decisions->logic->steps_left,
 	                   .drive_count = decisions->logic->drive_count};
 	memcpy(now.fault, decisions->logic->fault, sizeof now.fault);
@@ -30,14 +33,12 @@ cau_decided cau_decisions_now(cau_hosted_decisions *decisions)
 	return now;
 }
 
-cau_decided_times cau_decisions_times(cau_hosted_decisions *decisions)
+double cau_decisions_due_s(cau_hosted_decisions *decisions)
 {
 	pthread_mutex_lock(&decisions->lock);
-	cau_decided_times times = {.due_s = cau_logic_due_s(decisions->logic),
-	                           .tick_s = decisions->logic->next_step_s,
-	                           .period_s = decisions->logic->step_s / decisions->logic->speed};
+	double due_s = cau_logic_due_s(decisions->logic);
 	pthread_mutex_unlock(&decisions->lock);
-	return times;
+	return due_s;
 }
 
 double cau_decisions_look_s(cau_hosted_decisions *decisions)
@@ -46,14 +47,6 @@ double cau_decisions_look_s(cau_hosted_decisions *decisions)
 	double look_s = cau_logic_look_s(decisions->logic);
 	pthread_mutex_unlock(&decisions->lock);
 	return look_s;
-}
-
-uint32_t cau_decisions_lockstep(cau_hosted_decisions *decisions)
-{
-	pthread_mutex_lock(&decisions->lock);
-	uint32_t client = decisions->logic->lockstep;
-	pthread_mutex_unlock(&decisions->lock);
-	return client;
 }
 
 bool cau_decisions_find(cau_hosted_decisions *decisions, const char *tool, cau_drive *drive)

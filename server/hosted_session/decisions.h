@@ -22,17 +22,13 @@ typedef struct cau_hosted_decisions {
 typedef struct cau_decided {
 	int state;
 	double speed;
+	double tick_s;   // of a running session: when its next tick begins, on the monotonic clock
+	double period_s; // from tick to tick, by that clock
 	int64_t steps_left;
+	uint32_t lockstep; // its client; 0: none
 	int32_t drive_count;
 	char fault[sizeof((cau_logic *)0)->fault];
 } cau_decided;
-
-// On the monotonic clock, s.
-typedef struct cau_decided_times {
-	double due_s;    // when the worker has something to do, but for ticks
-	double tick_s;   // when the next tick begins, of a running session
-	double period_s; // from tick to tick
-} cau_decided_times;
 
 // `logic` has memory for so many orders, cau_logic_bytes; it is freed at the end.
 void cau_decisions_init(cau_hosted_decisions *decisions, int32_t orders, double step_s);
@@ -46,10 +42,10 @@ void cau_decisions_flush_trace(cau_hosted_decisions *decisions, const char *id);
 // CAU_SESSION_*. Any thread whose event breaks a safety rule makes it CAU_SESSION_FAULTED.
 int cau_decisions_state(cau_hosted_decisions *decisions);
 cau_decided cau_decisions_now(cau_hosted_decisions *decisions);
-cau_decided_times cau_decisions_times(cau_hosted_decisions *decisions);
+// When the worker has something to do, but for ticks.
+double cau_decisions_due_s(cau_hosted_decisions *decisions);
 // When a silence of a driver is to be looked for; INFINITY: nothing is energized.
 double cau_decisions_look_s(cau_hosted_decisions *decisions);
-uint32_t cau_decisions_lockstep(cau_hosted_decisions *decisions); // its client; 0: none
 // A copy of a tool's drive. False: there is none.
 bool cau_decisions_find(cau_hosted_decisions *decisions, const char *tool, cau_drive *drive);
 // Copies of all, at most CAU_MAX_TOOLS.

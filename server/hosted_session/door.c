@@ -199,7 +199,7 @@ bool cau_hosted_is_ephemeral(const cau_hosted *h)
 
 bool cau_hosted_is_advanced_by(cau_hosted *h, uint32_t client)
 {
-	return client && cau_decisions_lockstep(&h->decisions) == client;
+	return client && cau_decisions_now(&h->decisions).lockstep == client;
 }
 
 bool cau_hosted_is_own_ephemeral(const cau_hosted *h, uint32_t client)

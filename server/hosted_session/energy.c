@@ -49,7 +49,7 @@ void cau_energy_turn_off(cau_hosted *h, const char *tool)
 static void count_cut(cau_hosted *h, const cau_drive *drive)
 {
 	bool watchdog = drive->cut_off == CAU_ENERGY_OFF_WATCHDOG;
-	cau_published_count_cut(&h->published, watchdog);
+	cau_published_count(&h->published, &(cau_hosted_counts){.watchdog_cuts = watchdog});
 	cau_timeline_add(&h->timeline, watchdog ? CAU_EVENT_WATCHDOG : CAU_EVENT_ENERGY_OFF,
 	                 drive->tool, drive->driver.name, 0, drive->cut_cause);
 	if (watchdog) // who holds a pedal down must not wonder why nothing burns

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What steps did to the tissue, as far as it was reported. It belongs to the thread that has the
-// session.
+// What steps did to the tissue, as far as it was reported, and faults: numerical trouble and broken
+// safety rules, each of which stops this session alone. All by the thread that has the session.
 #pragma once
 
 #include "cautery/session.h"
@@ -19,7 +19,6 @@ void cau_findings_know(cau_hosted_findings *findings, const cau_session *core);
 // Reports what a step did: cuts, tears, vessels, layers, refused commands.
 void cau_findings_note(cau_hosted *h, const cau_frame *frame);
 
-// ---- faults.c
 // Numerical trouble outside a step. The session is faulted; all clients are notified.
 void cau_hosted_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);

@@ -69,9 +69,7 @@ static void run_stop(cau_job *job)
 static void drop_stop(cau_job *job)
 {
 	cau_holding *holding = (cau_holding *)job;
-	cau_error error = {0};
-	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
-	cau_answer_fail(holding->order, &error, CAU_RPC_DRAINING);
+	cau_answer_fail(holding->order, &cau_daemon_ends, CAU_RPC_DRAINING);
 	run_on(job);
 }
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "clock/clock.h"
-#include "hosted_session/creation.h"
 #include "hosted_session/decisions.h"
 #include "hosted_session/driver_notices.h"
 #include "hosted_session/findings.h"

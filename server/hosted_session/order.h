@@ -110,3 +110,12 @@ typedef struct cau_order {
 		cau_frame_at_order frame_at;
 	} as;
 } cau_order;
+
+// Puts it at the end of a list.
+static inline void cau_order_append(cau_order **list, cau_order *order)
+{
+	while (*list)
+		list = &(*list)->next;
+	order->next = NULL;
+	*list = order;
+}

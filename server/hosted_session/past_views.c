@@ -229,11 +229,9 @@ static void run(cau_job *job)
 static void drop(cau_job *job)
 {
 	cau_past_views *views = (cau_past_views *)job;
-	cau_error error = {0};
-	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
 	do {
 		if (views->present)
-			drop_present(views, &error, CAU_RPC_DRAINING);
+			drop_present(views, &cau_daemon_ends, CAU_RPC_DRAINING);
 	} while (take_next(views));
 	cau_hosted_release(views->hosted);
 }
@@ -261,11 +259,7 @@ static void wake(cau_past_views *views, bool was_busy)
 static void line_up(cau_past_views *views, cau_order *order)
 {
 	pthread_mutex_lock(&views->lock);
-	cau_order **end = &views->waiting;
-	while (*end)
-		end = &(*end)->next;
-	order->next = NULL;
-	*end = order;
+	cau_order_append(&views->waiting, order);
 	bool was_busy = views->busy;
 	views->busy = true;
 	pthread_mutex_unlock(&views->lock);

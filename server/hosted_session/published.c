@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hosted_session/published.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "hosted_session/internal.h"
@@ -35,32 +34,21 @@ void cau_hosted_publish_summary(cau_hosted *h)
 	pthread_mutex_unlock(&h->published.lock);
 }
 
-void cau_published_count_step(cau_hosted_published *published, double seconds,
-                              const cau_statistics *statistics)
+void cau_published_count(cau_hosted_published *published, const cau_hosted_counts *more)
 {
 	pthread_mutex_lock(&published->lock);
-	published->counts.steps++;
-	published->counts.step_seconds += seconds;
-	published->counts.energy_gain_j += fmax(statistics->energy_gain_j, 0);
-	published->counts.contacts_left_out = statistics->contacts_left_out;
-	published->counts.touching_cut_short = statistics->touching_cut_short;
-	published->counts.resting = statistics->resting;
-	pthread_mutex_unlock(&published->lock);
-}
-
-void cau_published_count_commands(cau_hosted_published *published, int32_t commands,
-                                  int32_t motions)
-{
-	pthread_mutex_lock(&published->lock);
-	published->counts.commands += (uint64_t)commands;
-	published->counts.motions += (uint64_t)motions;
-	pthread_mutex_unlock(&published->lock);
-}
-
-void cau_published_count_cut(cau_hosted_published *published, bool watchdog)
-{
-	pthread_mutex_lock(&published->lock);
-	published->counts.watchdog_cuts += watchdog;
+	cau_hosted_counts *counts = &published->counts;
+	counts->steps += more->steps;
+	counts->step_seconds += more->step_seconds;
+	counts->energy_gain_j += more->energy_gain_j;
+	counts->commands += more->commands;
+	counts->motions += more->motions;
+	counts->watchdog_cuts += more->watchdog_cuts;
+	if (more->steps) {
+		counts->contacts_left_out = more->contacts_left_out;
+		counts->touching_cut_short = more->touching_cut_short;
+		counts->resting = more->resting;
+	}
 	pthread_mutex_unlock(&published->lock);
 }
 

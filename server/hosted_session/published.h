@@ -21,8 +21,5 @@ typedef struct cau_hosted_published {
 // By the thread that has the session. From here on the other threads see its state of now.
 void cau_hosted_publish_summary(cau_hosted *h);
 void cau_hosted_publish_tools(cau_hosted *h);
-void cau_published_count_step(cau_hosted_published *published, double seconds,
-                              const cau_statistics *statistics);
-void cau_published_count_commands(cau_hosted_published *published, int32_t commands,
-                                  int32_t motions); // some of these
-void cau_published_count_cut(cau_hosted_published *published, bool watchdog);
+// Adds these; of a step the rest is as it was in the last one.
+void cau_published_count(cau_hosted_published *published, const cau_hosted_counts *more);

@@ -161,9 +161,7 @@ static void run(cau_job *job)
 static void drop(cau_job *job)
 {
 	reading *r = (reading *)job;
-	cau_error error = {0};
-	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
-	cau_reply_fail(&r->read.order->reply, &error, CAU_RPC_DRAINING);
+	cau_reply_fail(&r->read.order->reply, &cau_daemon_ends, CAU_RPC_DRAINING);
 	end(r);
 }
 

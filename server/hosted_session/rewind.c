@@ -247,9 +247,7 @@ static void run(cau_job *job)
 
 static void drop(cau_job *job)
 {
-	cau_error error = {0};
-	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
-	give_up((going *)job, &error);
+	give_up((going *)job, &cau_daemon_ends);
 }
 
 // ---- on the worker ------------------------------------------------------------------------------

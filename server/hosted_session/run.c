@@ -29,7 +29,14 @@ static void step(cau_hosted *h)
 	cau_session_frame(h->core.session, &frame);
 	cau_pace_stepped(&h->pace, h->identity.around->times, &frame.statistics);
 	cau_findings_note(h, &frame);
-	cau_published_count_step(&h->published, h->pace.step_cost_s, &frame.statistics);
+	cau_published_count(
+		&h->published,
+		&(cau_hosted_counts){.steps = 1,
+	                         .step_seconds = h->pace.step_cost_s,
+	                         .energy_gain_j = fmax(frame.statistics.energy_gain_j, 0),
+	                         .contacts_left_out = frame.statistics.contacts_left_out,
+	                         .touching_cut_short = frame.statistics.touching_cut_short,
+	                         .resting = frame.statistics.resting});
 }
 
 // ---- what is to be done now
@@ -174,11 +181,11 @@ static cau_due when(cau_hosted *h)
 		return (cau_due){INFINITY, INFINITY, h->pace.piece_s};
 	if (h->creation.starting)
 		return (cau_due){0, now_s + 0.1, h->pace.piece_s}; // those at wall rate go first
-	cau_decided_times times = cau_decisions_times(&h->decisions);
-	if (cau_decisions_state(&h->decisions) == CAU_SESSION_RUNNING)
-		return (cau_due){fmin(times.due_s, times.tick_s), times.tick_s + times.period_s,
-		                 h->pace.piece_s};
-	double due_s = fmin(times.due_s, cau_past_views_due_s(&h->past));
+	double due_s = cau_decisions_due_s(&h->decisions);
+	cau_decided now = cau_decisions_now(&h->decisions);
+	if (now.state == CAU_SESSION_RUNNING)
+		return (cau_due){fmin(due_s, now.tick_s), now.tick_s + now.period_s, h->pace.piece_s};
+	due_s = fmin(due_s, cau_past_views_due_s(&h->past));
 	return (cau_due){cau_reads_wait(&h->reads) || h->frames.dirty ? 0 : due_s, now_s + 0.1,
 	                 h->pace.piece_s};
 }

@@ -23,14 +23,6 @@ void cau_suspension_name_stage(cau_hosted_suspension *suspension, const char *st
 }
 
 // ---- borders
-static void append(cau_order **list, cau_order *order)
-{
-	while (*list)
-		list = &(*list)->next;
-	order->next = NULL;
-	*list = order;
-}
-
 static cau_order *take_cancelling(cau_hosted_suspension *suspension)
 {
 	pthread_mutex_lock(&suspension->lock);
@@ -46,7 +38,7 @@ static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
 	pthread_mutex_lock(&suspension->lock);
 	bool kept = suspension->active;
 	if (kept)
-		append(&suspension->cancelling, order);
+		cau_order_append(&suspension->cancelling, order);
 	pthread_mutex_unlock(&suspension->lock);
 	return kept;
 }
@@ -61,7 +53,7 @@ bool cau_suspension_is_cancelled(cau_hosted *h)
 		if (looked == CAU_POSTPONED) // its first is not on the disk yet
 			keep_cancelling(&h->suspension, order);
 		else if (looked == CAU_DONE)
-			append(&h->suspension.destroyers, order);
+			cau_order_append(&h->suspension.destroyers, order);
 	}
 	return h->suspension.destroyers != NULL;
 }
