@@ -2,7 +2,6 @@
 #include "hosted_session/answer.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"

@@ -2,7 +2,6 @@
 // Orders at a tick border, once it is decided that they are to be done: what the core says, what
 // the log keeps.
 #include <stdlib.h>
-#include <string.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/energy.h"

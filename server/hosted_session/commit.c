@@ -2,7 +2,6 @@
 // A slice's batch on its way to the disk, and what follows its commit: answers, or what is lost.
 #include <stdlib.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
 // What travels with a batch.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a session comes among the others, and what the daemon wants of it at the end.
 #include <stdlib.h>
-#include <string.h>
 
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The door between the session's decisions (server/session) and the threads around them: events go
 // in under one short lock, and what they lead to is done here, but for what is the worker's.
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The session's side of its streams: what there is to be seen of the core, and who joins.
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

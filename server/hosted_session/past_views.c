@@ -181,7 +181,7 @@ static int32_t code_of(const cau_hosted_life *life)
 	return life->ended ? CAU_RPC_NOT_HERE : life->drain_wanted ? CAU_RPC_DRAINING : 0;
 }
 
-// One stage of the present look, or one turn of its replay.
+// One stage of the present view, or one turn of its replay.
 static void advance(cau_past_views *views)
 {
 	cau_error error = {0};
@@ -202,8 +202,7 @@ static void advance(cau_past_views *views)
 static void let_go(cau_past_views *views)
 {
 	cau_hosted *h = views->hosted;
-	cau_worker_pool_wake(h->identity.around->pool,
-	                     &h->task); // it is to know when the core is to go
+	cau_worker_pool_wake(h->identity.around->pool, &h->task); // to learn when the core is to go
 	cau_hosted_release(h);
 }
 
@@ -270,10 +269,8 @@ void cau_apply_frame_at(cau_hosted *h, cau_order *order)
 {
 	uint64_t epoch = h->frames.epoch;
 	if (order->as.frame_at.tick > h->core.tick) {
-		cau_error error = {0};
-		cau_fail(&error, CAU_BAD_VALUE, "params.tick",
-		         "the tick is later than the session's present tick");
-		cau_answer_fail(order, &error, 0);
+		cau_answer_refuse(order, CAU_BAD_VALUE, "params.tick",
+		                  "the tick is later than the session's present tick");
 		return;
 	}
 	order->as.frame_at.branch = h->history.branch;
@@ -330,16 +327,13 @@ static cau_order *take_of_client(cau_past_views *views, uint32_t client)
 
 void cau_past_views_give_up(cau_past_views *views, uint32_t client)
 {
-	cau_error error = {0};
 	pthread_mutex_lock(&views->lock);
 	cau_order *order = take_of_client(views, client);
 	if (views->present && views->present->asker.client == client)
 		views->given_up = true;
 	pthread_mutex_unlock(&views->lock);
-	if (!order)
-		return;
-	cau_fail(
-		&error, CAU_BAD_STATE, "",
-		"cancelled before it began: the client asked for another past view, or cancelled this one");
-	cau_answer_fail(order, &error, 0);
+	if (order)
+		cau_answer_refuse(order, CAU_BAD_STATE, "",
+		                  "cancelled before it began: the client asked for another past view, or "
+		                  "cancelled this one");
 }

@@ -170,11 +170,9 @@ void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, v
 {
 	reading *r = malloc(sizeof *r);
 	if (!r) {
-		cau_error error = {0};
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the answer");
 		if (finish)
 			finish(copy);
-		cau_answer_fail(order, &error, 0);
+		cau_answer_refuse(order, CAU_NO_MEMORY, "", "no memory for the answer");
 		return;
 	}
 	*r = (reading){.job = {.run = run, .drop = drop, .expected_s = expected_s},

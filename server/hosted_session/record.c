@@ -13,6 +13,8 @@
 // twice, in the write-ahead log and in the file. So a tick stays below 16 KiB with its log entries.
 enum { REACHED_BYTES = 2048 };
 
+enum { QUIET_DOUBLINGS = 6 }; // a session at rest has a checkpoint every 64 checkpoint_s at least
+
 void cau_record_init(cau_hosted_record *record, const cau_hosted_identity *identity,
                      const cau_present_core *core, const cau_hosted_history *history,
                      cau_hosted_commits *commits)
@@ -23,10 +25,6 @@ void cau_record_init(cau_hosted_record *record, const cau_hosted_identity *ident
 	record->commits = commits;
 	record->batch_lost = commits->lost_from = UINT64_MAX;
 }
-
-enum {
-	QUIET_DOUBLINGS = 6
-}; // an untouched session has a checkpoint every 64 checkpoint_s at least
 
 cau_store_batch *cau_record_batch(cau_hosted_record *record)
 {

@@ -7,7 +7,6 @@
 // it is told how far it is, and who destroys the session is heard. The state that is left is kept
 // until another is reached: where that fails, the session goes on as if it had not been asked.
 #include <stdlib.h>
-#include <string.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"

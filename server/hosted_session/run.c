@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One slice of a session on a worker: cuts, orders, one step, frames, the commit.
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/energy.h"
@@ -212,9 +210,9 @@ static void run_slice(cau_hosted *h)
 		serve(h, cau_monotonic_s());
 }
 
-// `away` is looked at first. Until the builder gives the session back it is the builder's, `ended`
-// and all; what the builder did before is seen once `away` is seen to be false, so that no session
-// which has ended there is run. In the other order it may end and be given back between the two.
+// `suspension.active` is read first. While it is set the session is the builder's, `ended` and all.
+// All that the builder did is seen once it is seen to be false, so that no session which has ended
+// there is run. In the other order it may end and be given back between the two.
 cau_due cau_hosted_run(cau_task *task)
 {
 	cau_hosted *h = (cau_hosted *)task;

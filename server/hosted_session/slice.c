@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a slice ends, whoever has it: a worker or the builder; and what is refused in it.
 #include "hosted_session/slice.h"
+
 #include "cautery/assert.h"
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a session comes to be: from its scene, from the store, or from another session's state.
 #include <stdlib.h>
-#include <string.h>
 
 #include "cautery/scene_json.h"
 #include "hosted_session/answer.h"

@@ -4,7 +4,6 @@
 // clients that cancelled it.
 #include "hosted_session/suspension.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "hosted_session/answer.h"
@@ -43,8 +42,7 @@ static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
 	return kept;
 }
 
-// An order that was sent before destroyed another session of this
-// name, and gets its answer again.
+// An order that was sent before destroyed another session of this name, and gets its answer again.
 bool cau_suspension_is_cancelled(cau_hosted *h)
 {
 	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Orders about time and history.
-#include <stdlib.h>
-#include <string.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
@@ -86,8 +84,7 @@ bool cau_hosted_destroy(cau_hosted *h, cau_order *order, bool stored)
 	cau_wire_nothing result = {0};
 	cau_store_batch *batch = cau_record_batch(&h->record);
 	if (stored && (!batch || cau_store_delete_session(batch, h->identity.id, &error))) {
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory to destroy it");
-		cau_answer_fail(order, &error, 0);
+		cau_answer_refuse(order, CAU_NO_MEMORY, "", "no memory to destroy it");
 		return false;
 	}
 	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name);

@@ -224,12 +224,10 @@ static cau_timeline_page *make_page(int32_t capacity)
 
 void cau_apply_timeline(cau_hosted *h, cau_order *order)
 {
-	cau_error error = {0};
 	uint64_t from_tick = order->as.timeline.from_tick;
 	cau_timeline_page *taken = make_page(order->as.timeline.count);
 	if (!taken) {
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the timeline");
-		cau_answer_fail(order, &error, 0);
+		cau_answer_refuse(order, CAU_NO_MEMORY, "", "no memory for the timeline");
 		return;
 	}
 	if (!in_memory(&h->timeline, from_tick, (uint64_t)taken->capacity)) {
