@@ -53,7 +53,7 @@ int32_t cau_decisions_drives(cau_hosted_decisions *decisions, cau_drive *drives)
 // Whether a safety rule was broken, the first time that this is asked. `reason`: 320 bytes.
 bool cau_decisions_broken(cau_hosted_decisions *decisions, char *reason, size_t bytes);
 
-// ---- decide.c: events of any thread, and the worker's next act. These may wake the session,
+// ---- effects.c: events of any thread, and the worker's next act. These may wake the session,
 // answer orders and notify clients, so they take all of it.
 
 // Takes one event, and does what it leads to but for what is the worker's.

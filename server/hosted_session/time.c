@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders about time and history.
+// Orders about time, and the one that ends the session.
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"

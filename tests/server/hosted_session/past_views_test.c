@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks at a session's past while its core stands still on the way: who gives one up, is gone, or
-// loses the session hears so, and the session is as it was.
+// Past views of a session, whose second core is held on the way. A client that gives one up, is
+// gone or loses the session is answered so, and the session is as it was.
 #include <math.h>
 #include <sched.h>
 #include <setjmp.h>

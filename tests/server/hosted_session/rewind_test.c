@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session that goes back, and what reaches it meanwhile; and that it is as it was where it
-// cannot.
+// A session that is rewound, and requests that reach it meanwhile. Where the rewind fails the
+// session is as it was.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
