@@ -22,22 +22,30 @@
 struct cau_hosted {
 	cau_task task; // first
 	atomic_int references;
-	cau_hosted_identity identity;
+	cau_hosted_identity identity; // never changes
+
+	// of the thread that has the session
 	cau_present_core core;
 	cau_hosted_history history;
+	cau_hosted_timeline timeline;
+	cau_hosted_findings findings;
+	cau_hosted_pace pace;
+	cau_hosted_record record;
+	cau_replay replay;
+
+	// of that thread too, but for what is atomic or under a lock of theirs
 	cau_hosted_creation creation;
 	cau_hosted_suspension suspension;
-	cau_replay replay; // of the thread that has the session
-	cau_hosted_record record;
-	cau_hosted_commits commits;
-	cau_hosted_decisions decisions;
 	cau_hosted_frames frames;
+
+	// under a lock each
+	cau_hosted_decisions decisions;
 	cau_hosted_published published;
 	cau_hosted_refusals refusals;
 	cau_hosted_reads reads;
 	cau_past_views past;
-	cau_hosted_pace pace;
-	cau_hosted_findings findings;
-	cau_hosted_timeline timeline;
+
+	// atomic
+	cau_hosted_commits commits;
 	cau_hosted_life life;
 };

@@ -23,7 +23,8 @@ void cau_record_init(cau_hosted_record *record, const cau_hosted_identity *ident
 	record->core = core;
 	record->history = history;
 	record->commits = commits;
-	record->batch_lost = commits->lost_from = UINT64_MAX;
+	record->batch_lost = UINT64_MAX;
+	commits->lost_from = UINT64_MAX;
 }
 
 cau_store_batch *cau_record_batch(cau_hosted_record *record)
