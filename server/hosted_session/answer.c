@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 enum { FIRST_BYTES = 4096 };
 
@@ -78,4 +78,99 @@ void cau_answer_notify(const cau_hosted_identity *identity, cau_audience audienc
 	}
 	buffer->byte_count = out.bytes;
 	identity->around->sink.notify(identity->around->sink.user, audience, buffer);
+}
+
+// ---- of the whole session -----------------------------------------------------------------------
+
+void cau_answer_order(cau_hosted_record *record, cau_order *order, const void *result)
+{
+	cau_error error = {0};
+	size_t bytes = 0;
+	char *text = cau_answer_text(order->reply.method, result, &bytes, &error);
+	const cau_method_info *method = cau_method_describe(order->reply.method);
+	if (!text) {
+		cau_reply_fail(&order->reply, &error, CAU_RPC_INTERNAL);
+	} else if (method->changes) {
+		cau_record_answer(record, order, text, bytes);
+		cau_record_reply(record, &order->reply, text, bytes);
+	} else {
+		cau_outcome outcome = {.text = text, .text_bytes = bytes};
+		cau_reply_answer(&order->reply, &outcome);
+		free(text);
+	}
+	free(order);
+}
+
+void cau_answer_driver(const cau_drive *drive, cau_wire_driver *driver)
+{
+	*driver = (cau_wire_driver){.client = drive->driver.client,
+	                            .energized = drive->enabled,
+	                            .energy_off = drive->energy_off};
+	memcpy(driver->tool, drive->tool, sizeof driver->tool);
+	if (drive->driver.client)
+		snprintf(driver->name, sizeof driver->name, "%s", drive->driver.name);
+}
+
+void cau_answer_changed(cau_hosted *h, int change, const char *client)
+{
+	cau_wire_session_changed changed = {.change = change, .has_client = client && *client};
+	cau_hosted_publish_summary(h);
+	cau_hosted_summary(h, &changed.summary);
+	if (changed.has_client)
+		snprintf(changed.client, sizeof changed.client, "%s", client);
+	bool all = change == CAU_CHANGE_CREATED || change == CAU_CHANGE_DESTROYED;
+	cau_audience audience = {all ? CAU_AUDIENCE_EVERYBODY : CAU_AUDIENCE_SESSION,
+	                         h->identity.number};
+	cau_answer_notify(&h->identity, audience, CAU_METHOD_SESSION_CHANGED, &changed);
+}
+
+static void describe_layers(const cau_session_info *info, cau_wire_layer_description *layers)
+{
+	for (int32_t i = 0; i < info->layer_count; i++) {
+		const cau_session_layer *from = &info->layers[i];
+		layers[i] = (cau_wire_layer_description){.kind = from->kind,
+		                                         .first_face = from->first_face,
+		                                         .face_count = from->face_count,
+		                                         .element_count = from->element_count};
+		memcpy(layers[i].name, from->name, sizeof layers[i].name);
+	}
+}
+
+char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error)
+{
+	cau_wire_layer_description layers[CAU_MAX_LAYERS];
+	cau_drive drives[CAU_MAX_TOOLS];
+	cau_wire_driver drivers[CAU_MAX_TOOLS];
+	cau_wire_session_description result = {
+		.triangle_count = h->core.info.triangle_count,
+		.tetrahedron_count = h->core.info.tetrahedron_count,
+		.link_count = h->core.info.link_count,
+		.layers = {layers, h->core.info.layer_count, CAU_MAX_LAYERS},
+		.drivers = {drivers, 0, CAU_MAX_TOOLS},
+		.definition = h->core.described,
+	};
+	cau_hosted_publish_summary(h);
+	cau_hosted_summary(h, &result.summary);
+	snprintf(result.description, sizeof result.description, "%s", h->core.info.description);
+	snprintf(result.instruction_set, sizeof result.instruction_set, "%s",
+	         h->core.info.instruction_set);
+	describe_layers(&h->core.info, layers);
+	result.drivers.count = cau_decisions_drives(&h->decisions, drives);
+	for (int32_t i = 0; i < result.drivers.count; i++)
+		cau_answer_driver(&drives[i], &drivers[i]);
+	*h->core.described = *h->identity.scene;
+	cau_session_present(h->core.session, h->core.described);
+	return cau_answer_text(method, &result, bytes, error);
+}
+
+void cau_answer_describe(cau_hosted *h, cau_order *order)
+{
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	char *text = cau_answer_description(h, order->reply.method, &outcome.text_bytes, &error);
+	outcome.text = text;
+	outcome.error = text ? NULL : &error;
+	cau_reply_answer(&order->reply, &outcome);
+	free(text);
+	free(order);
 }

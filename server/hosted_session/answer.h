@@ -4,7 +4,6 @@
 
 #include "hosted_session/record.h"
 
-// ---- answer.c: at once
 extern const cau_error cau_daemon_ends; // why work of the builder is dropped
 void cau_answer_now(const cau_reply *reply, const void *result);
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
@@ -15,11 +14,9 @@ cau_outcome_kind cau_answer_refuse(cau_order *order, cau_status status, const ch
 void cau_answer_notify(const cau_hosted_identity *identity, cau_audience audience,
                        cau_method method, const void *params);
 
-// ---- reply.c
 // Answers at once, or after the commit if the method changes something. Takes the order.
 void cau_answer_order(cau_hosted_record *record, cau_order *order, const void *result);
-// Looks whether the order was sent before; answers it if so.
-cau_outcome_kind cau_answer_resend(cau_hosted *h, cau_order *order);
 // Notifies clients of a change of the session. `client` may be NULL or "".
 void cau_answer_changed(cau_hosted *h, int change, const char *client);
 char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error);
+void cau_answer_driver(const cau_drive *drive, cau_wire_driver *driver); // fills it

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slice's batch on its way to the disk, and what follows its commit: answers, or what is lost.
+// A slice's batch on its way to the disk, and what follows its commit: answers, or what is lost. A
+// request that is sent again gets the stored answer.
 #include <stdlib.h>
 
+#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/resend.h"
 
 // What travels with a batch.
 typedef struct commit {
@@ -123,4 +126,44 @@ void cau_record_commit(cau_hosted *h)
 	h->record.batch = NULL;
 	h->record.batch_acts = false;
 	h->record.batch_lost = UINT64_MAX;
+}
+
+// ---- requests that were sent before -------------------------------------------------------------
+
+static cau_status send_again(void *user, const cau_store_answer *answer)
+{
+	const cau_order *order = user;
+	cau_resend_answer(&order->reply, answer->result.data, answer->result.bytes);
+	return CAU_OK;
+}
+
+// The stored answer of a resent request: CAU_OK (answered), CAU_NOT_FOUND (act), CAU_BAD_STATE
+// (wait), CAU_ALREADY_EXISTS (acted upon, and the answer is not kept any more).
+static cau_status look_up(const cau_hosted_identity *identity, const cau_order *order,
+                          cau_error *error)
+{
+	if (!order->client_sequence)
+		return CAU_NOT_FOUND;
+	return cau_store_read_answer(identity->around->store, order->asker.client_id,
+	                             (uint64_t)order->client_sequence, send_again, (void *)order,
+	                             error);
+}
+
+cau_outcome_kind cau_record_resend(cau_hosted *h, cau_order *order)
+{
+	cau_error error = {0};
+	if (h->record.pending) // its first may be in this very slice's batch
+		cau_record_commit(h);
+	cau_status status = look_up(&h->identity, order, &error);
+	if (status == CAU_BAD_STATE)
+		return CAU_POSTPONED;
+	if (status == CAU_OK) {
+		free(order);
+		return CAU_NOT_DONE;
+	}
+	if (status != CAU_ALREADY_EXISTS)
+		return CAU_DONE;
+	snprintf(error.path, sizeof error.path, "params.client_sequence");
+	cau_answer_fail(order, &error, CAU_RPC_SEQUENCE_PAST);
+	return CAU_NOT_DONE;
 }

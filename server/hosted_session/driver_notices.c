@@ -8,22 +8,12 @@
 
 enum { REFUSALS_TOLD_EVERY_S = 1 };
 
-void cau_driver_describe(const cau_drive *drive, cau_wire_driver *driver)
-{
-	*driver = (cau_wire_driver){.client = drive->driver.client,
-	                            .energized = drive->enabled,
-	                            .energy_off = drive->energy_off};
-	memcpy(driver->tool, drive->tool, sizeof driver->tool);
-	if (drive->driver.client)
-		snprintf(driver->name, sizeof driver->name, "%s", drive->driver.name);
-}
-
 void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *drive)
 {
 	cau_wire_driver_changed params = {0};
 	cau_audience audience = {CAU_AUDIENCE_SESSION, identity->number};
 	snprintf(params.session, sizeof params.session, "%s", identity->id);
-	cau_driver_describe(drive, &params.driver);
+	cau_answer_driver(drive, &params.driver);
 	cau_answer_notify(identity, audience, CAU_METHOD_TOOL_DRIVER_CHANGED, &params);
 }
 

@@ -31,4 +31,3 @@ void cau_refusals_report(cau_hosted_refusals *refusals, const cau_hosted_identit
 
 // Sends tool.driver_changed.
 void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *drive);
-void cau_driver_describe(const cau_drive *drive, cau_wire_driver *driver);

@@ -81,7 +81,7 @@ cau_outcome_kind cau_apply_drive(cau_hosted *h, cau_order *order, const cau_acti
 	if (action->changed)
 		cau_timeline_add(&h->timeline, CAU_EVENT_DRIVER, drive->tool,
 		                 driven ? drive->driver.name : "", 0, driven ? "drives" : "has no driver");
-	cau_driver_describe(drive, &result);
+	cau_answer_driver(drive, &result);
 	cau_answer_order(&h->record, order, &result);
 	return CAU_DONE;
 }

@@ -89,3 +89,5 @@ void cau_record_gap(cau_hosted_record *record, const cau_error *error);
 void cau_commits_lose(cau_hosted_commits *commits, uint64_t from_tick);
 // Submits the slice's batch (commit.c).
 void cau_record_commit(cau_hosted *h);
+// Looks whether the order was sent before; answers it if so (commit.c).
+cau_outcome_kind cau_record_resend(cau_hosted *h, cau_order *order);

@@ -46,7 +46,7 @@ static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 		cau_hosted_refuse_order(h, order, &action->error, action->code);
 		return CAU_DONE;
 	case CAU_ACT_LOOK:
-		return cau_answer_resend(h, order);
+		return cau_record_resend(h, order);
 	case CAU_ACT_ORDER:
 		return cau_hosted_apply(h, order, action);
 	case CAU_ACT_CUT:

@@ -47,7 +47,7 @@ bool cau_suspension_is_cancelled(cau_hosted *h)
 {
 	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {
 		next = order->next;
-		cau_outcome_kind looked = cau_answer_resend(h, order);
+		cau_outcome_kind looked = cau_record_resend(h, order);
 		if (looked == CAU_POSTPONED) // its first is not on the disk yet
 			keep_cancelling(&h->suspension, order);
 		else if (looked == CAU_DONE)
