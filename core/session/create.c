@@ -213,6 +213,8 @@ static uint64_t hash_definition(const cau_session *session)
 	uint64_t hash = cau_hash_bytes(CAU_HASH_START, numbers, sizeof numbers);
 	hash = cau_hash_bytes(hash, choices, sizeof choices);
 	hash = cau_hash_word(hash, scene->seed);
+	if (scene->integrator != CAU_INTEGRATOR_EULER) // left out of older snapshots
+		hash = cau_hash_word(cau_hash_word(hash, UINT64_MAX), (uint64_t)scene->integrator);
 	if (scene->parting != CAU_PARTING_EDGES) // left out of older snapshots
 		hash = cau_hash_word(hash, (uint64_t)scene->parting);
 	if (scene->contact_thickness_m > 0) { // likewise
@@ -283,6 +285,8 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 		status = cau_session_make_rest(session, error);
 	if (!status)
 		status = cau_session_make_spin(session, error);
+	if (!status)
+		status = cau_session_make_substeps(session, error);
 	if (!status)
 		status = make_remainder(session, error);
 	if (status)

@@ -43,9 +43,16 @@ void cau_session_lead_driven(cau_session *session)
 {
 	CAU_ASSERT(session->driven_count >= 0 && session->driven_count <= session->tissue.vertex_count,
 	           "%d vertices led of %d", session->driven_count, session->tissue.vertex_count);
-	for (int32_t k = 0; k < session->driven_count; k++)
-		if (session->pinned[session->driven[k]]) // else a command of this tick has unpinned it
-			memcpy(session->position + 3 * (size_t)session->driven[k],
-			       session->driven_position + 3 * (size_t)k, 3 * sizeof(double));
-	session->driven_count = 0;
+	const cau_substep *substep = &session->substep;
+	bool last = substep->index == substep->count - 1;
+	for (int32_t k = 0; k < session->driven_count; k++) {
+		double *at = session->position + 3 * (size_t)session->driven[k];
+		const double *to = session->driven_position + 3 * (size_t)k;
+		if (!session->pinned[session->driven[k]]) // a command of this tick has unpinned it
+			continue;
+		for (int c = 0; c < 3; c++)
+			at[c] = last ? to[c] : at[c] + substep->part * (to[c] - at[c]);
+	}
+	if (last)
+		session->driven_count = 0;
 }

@@ -159,6 +159,7 @@ static void vertex_part(void *context, int32_t chunk)
 	const cau_step_solver *solver = &session->solver;
 	const double *x = session->position, *start = session->position_start;
 	const double *velocity = session->velocity, *force = session->external;
+	const double *push = session->substep.push; // of a first substep
 	const double *gravity = session->scene->gravity_m_s2;
 	double work = 0, before = 0, after = 0, inertia = 0;
 	double scale = cau_session_velocity_scale(session);
@@ -166,17 +167,21 @@ static void vertex_part(void *context, int32_t chunk)
 	if (last > session->tissue.vertex_count)
 		last = session->tissue.vertex_count;
 	for (int32_t v = first; v < last; v++) {
-		double mass = session->tissue.mass[v], move[3], old2 = 0, new2 = 0, along = 0;
+		double mass = session->tissue.mass[v], move[3], moved2 = 0, old2 = 0, new2 = 0, along = 0;
 		for (int c = 0; c < 3; c++) {
 			double away = x[3 * v + c] - solver->predicted[3 * v + c];
 			inertia += mass * away * away;
 			move[c] = x[3 * v + c] - start[3 * v + c];
 			old2 += velocity[3 * v + c] * velocity[3 * v + c];
-			new2 += move[c] * move[c];
+			double way = cau_session_way(session, v, c);
+			moved2 += move[c] * move[c];
+			new2 += way * way;
 			along += (mass * gravity[c] + force[3 * v + c]) * move[c];
+			if (push)
+				along += push[3 * v + c] * move[c];
 		}
 		if (solver->fixed[v]) {
-			work += new2 > 0 ? support_work(session, v, move) : 0;
+			work += moved2 > 0 ? support_work(session, v, move) : 0;
 			continue;
 		}
 		work += along;
@@ -187,7 +192,7 @@ static void vertex_part(void *context, int32_t chunk)
 	sum[0] = work;
 	sum[1] = before / 2;
 	sum[2] = after * scale * scale / 2;
-	sum[3] = inertia / (2 * solver->step_s * solver->step_s);
+	sum[3] = inertia / (2 * solver->inertia_s * solver->inertia_s);
 }
 
 static double tool_work(const cau_session *session)
@@ -205,18 +210,12 @@ static double tool_work(const cau_session *session)
 			work -= drag->coefficient * (session->position[at + c] - drag->target[c]) *
 			        (session->position[at + c] - session->position_start[at + c]);
 	}
-	return work;
+	return cau_session_last_share(session) * work;
 }
 
-void cau_session_end_energy(cau_session *session)
+static void measure_gain(cau_session *session)
 {
 	cau_energy *energy = &session->energy;
-	CAU_ASSERT(!session->solver.conservative || (!energy->stale && !energy->marked),
-	           "tick %llu ends with an energy that it did not begin with",
-	           (unsigned long long)session->tick);
-	energy->gain_j = energy->scale_j = 0;
-	if (!session->solver.conservative)
-		return;
 	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
 	double of_tools_j = tool_work(session), gain_j = -energy->elastic_j - of_tools_j;
 	double inertia_j = 0, work_j = 0, kinetic_j = 0, touching_j = 0;
@@ -235,4 +234,38 @@ void cau_session_end_energy(cau_session *session)
 	                                       : cau_solver_elastic_energy(&session->solver);
 	energy->gain_j = gain_j + energy->end_j;
 	energy->scale_j = energy->elastic_j + kinetic_j + touching_j + fabs(work_j) + fabs(of_tools_j);
+}
+
+// Of the energy of a tick with two substeps. Iterations that leave such a tick far from its
+// solution may feed a swing.
+static const double most_gain = 1e-4;
+
+// Takes so much of the tick's mean velocity that nothing is gained, where that has less energy:
+// kinetic energy is convex, so the share that a straight line between both gives is enough.
+static void take_gain_off(cau_session *session)
+{
+	double gain_j = session->energy.gain_j;
+	cau_session_take_mean(session, 1); // substep.c
+	measure_gain(session);
+	double with_mean_j = session->energy.gain_j;
+	double share = with_mean_j < gain_j ? fmin(gain_j / (gain_j - with_mean_j), 1) : 0;
+	if (share == 1)
+		return;
+	cau_session_take_mean(session, share);
+	measure_gain(session);
+}
+
+void cau_session_end_energy(cau_session *session)
+{
+	cau_energy *energy = &session->energy;
+	const cau_substep *substep = &session->substep;
+	CAU_ASSERT(!session->solver.conservative || (!energy->stale && !energy->marked),
+	           "tick %llu ends with an energy that it did not begin with",
+	           (unsigned long long)session->tick);
+	energy->gain_j = energy->scale_j = 0;
+	if (!session->solver.conservative)
+		return;
+	measure_gain(session);
+	if (substep->count == 2 && !substep->disturbed && energy->gain_j > most_gain * energy->scale_j)
+		take_gain_off(session);
 }

@@ -4,11 +4,15 @@
 
 #include "session/session_internal.h"
 
-// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v; both turned where nothing
-// holds (spin.c).
+// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v; with implicit Euler both
+// turned where nothing holds (spin.c). With two substeps dt is the h of both (substep.c).
 void cau_session_predict(cau_session *session)
 {
-	double dt = session->solver.step_s;
+	double dt = session->solver.inertia_s;
+	if (session->substep.index) {
+		cau_session_predict_on(session); // substep.c
+		return;
+	}
 	const double *gravity = session->scene->gravity_m_s2;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++) {
@@ -18,7 +22,8 @@ void cau_session_predict(cau_session *session)
 			session->solver.predicted[i] = guess + dt * dt * push;
 			session->position[i] = session->fixed[v] ? session->position_start[i] : guess;
 		}
-	cau_session_turn_prediction(session);
+	if (session->substep.count == 1)
+		cau_session_turn_prediction(session);
 }
 
 double cau_session_velocity_scale(const cau_session *session)
@@ -27,14 +32,13 @@ double cau_session_velocity_scale(const cau_session *session)
 	return exp(-session->scene->damping_per_s * dt) / dt;
 }
 
-// v = (x - x_t) / dt, damped by exp(-c dt) (eq. 2).
+// v = (x - x_t) / dt (eq. 2), or of two substeps, damped by exp(-c dt).
 void cau_session_update_velocities(cau_session *session)
 {
 	double scale = cau_session_velocity_scale(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++) {
 			size_t i = 3 * (size_t)v + (size_t)c;
-			session->velocity[i] =
-				session->fixed[v] ? 0 : scale * (session->position[i] - session->position_start[i]);
+			session->velocity[i] = session->fixed[v] ? 0 : scale * cau_session_way(session, v, c);
 		}
 }

@@ -170,16 +170,17 @@ static double towards(double from, double to, double most)
 	return fabs(way) <= (1 + 1e-9) * most ? to : from + (way > 0 ? most : -most);
 }
 
-void cau_session_turn_jaws(cau_tool *tool, double step_s)
+// A part of the tick alone turns them by that part.
+void cau_session_turn_jaws(cau_tool *tool, double step_s, double part)
 {
 	cau_tool_state *state = &tool->state;
-	const double open = state->definition.jaw_open_rad, most = jaw_per_s * step_s;
+	const double open = state->definition.jaw_open_rad, most = jaw_per_s * step_s * part;
 	double before = state->jaw, wanted;
 	tool->jaw_before = before;
 	state->asked_jaw = towards(state->asked_jaw, tool->jaw_target, most);
 	wanted = state->asked_jaw;
 	if (tool->grasp_count) {
-		double yield = yield_of(tool);
+		double yield = part * yield_of(tool);
 		wanted = fmax(wanted, tool->least_open_rad / open);
 		wanted = fmax(wanted, before - yield / open);
 	}

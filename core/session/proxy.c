@@ -28,8 +28,8 @@ static void lead(cau_tool *tool, double share)
 {
 	const double nearly_m = 0.9 * cau_coupling_reach_m;
 	cau_tool_state *state = &tool->state;
-	tool->anchor = share < 1 ? cau_pose_between(&tool->anchor_before, &state->asked_pose, share)
-	                         : state->asked_pose;
+	tool->anchor =
+		share < 1 ? cau_pose_between(&tool->anchor_before, &tool->led, share) : tool->led;
 	cau_vec3 offset = offset_of(&tool->pose_before, &tool->anchor_before);
 	if (cau_length(offset) > nearly_m)
 		offset = offset_of(&tool->pose_before, &tool->anchor);
@@ -39,7 +39,7 @@ static void lead(cau_tool *tool, double share)
 static void let_go(cau_session *session, cau_tool *tool)
 {
 	cau_contact_forget(&session->contact, (int32_t)(tool - session->tool));
-	tool->anchor_before = tool->pose_before = tool->state.asked_pose;
+	tool->anchor_before = tool->pose_before = tool->led;
 	tool->pace = 1;
 	tool->grasp_count = 0;
 	tool->state.slips++;
@@ -52,6 +52,14 @@ void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose 
 	session->contact.tool[tool - session->tool].held_back = false;
 	if (cau_length(offset_of(&tool->state.pose, asked_before)) > most_behind_m)
 		let_go(session, tool);
+	lead(tool, tool->pace);
+}
+
+void cau_session_lead_tool_on(cau_session *session, cau_tool *tool)
+{
+	tool->anchor_before = tool->anchor;
+	tool->pose_before = tool->state.pose;
+	session->contact.tool[tool - session->tool].held_back = false;
 	lead(tool, tool->pace);
 }
 

@@ -103,7 +103,7 @@ static void place(const reach *r, const passage *p, int32_t above, double start_
 	cau_vec3_to(way_back(p, above), row->side);
 	row->way_m = p->way + 2 * r->def->hot_radius_m;
 	double stand = fmin(stand_m, stand_share * r->def->hot_radius_m);
-	row->slack_m = fmax(cau_contact_slack(start_m, r->session->solver.step_s), stand);
+	row->slack_m = fmax(cau_contact_slack(start_m, r->session->substep.length_s), stand);
 	memcpy(row->weight, p->weight, sizeof row->weight);
 }
 

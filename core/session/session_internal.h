@@ -35,6 +35,10 @@ typedef struct cau_tool {
 	cau_pose pose_before; // at the start of the tick
 	// proxy.c: the other end of the virtual coupling, at the end and the start of the tick
 	cau_pose anchor, anchor_before;
+	cau_pose led;          // where the anchor is led to in the substep
+	cau_pose asked_before; // state.asked_pose at the start of the tick
+	cau_pose tick_pose;    // pose_before and jaw_before of the tick, during its second substep
+	double tick_jaw;
 	double pace; // share of the anchor's motion that it follows in a tick; below 1 when held back
 	cau_heat_grid grid;
 	cau_blade blade; // with energy `tissue`: electrosurgery.c
@@ -83,6 +87,21 @@ typedef struct cau_spin {
 	int32_t *member; // (n): vertices, by piece
 	int32_t *first;  // (piece_count + 1): into `member`
 } cau_spin;
+
+// substep.c: the part of a tick that a solve leads on. Of a tick with one part the arrays are NULL.
+typedef struct cau_substep {
+	int32_t index, count;
+	double part;     // of the tick
+	double length_s; // the same in s
+	// A tick with two parts:
+	double *tick_start; // m, (n x 3): x at the tick's start, once the second has begun
+	double *base;       // m, (n x 3): x + q v1
+	double *push;       // N, (n x 3): share of the tick's mean that tools pushed with in the first
+	bool disturbed;     // a substep ended elsewhere than at its solution
+	double touching_j;  // energy of tissue on tissue at the tick's start
+	int32_t iterations, backtracks; // of the first part, as those below
+	double local_s, contact_s, residual, error;
+} cau_substep;
 
 typedef struct cau_contact_watch cau_contact_watch; // tool_contact.c
 
@@ -134,6 +153,7 @@ struct cau_session {
 	cau_energy energy;
 	cau_rest rest;
 	cau_spin spin;
+	cau_substep substep;
 	double size_m;           // diagonal of the tissue's box at rest
 	int32_t driven_count;    // pinned vertices that the next step moves
 	int32_t *driven;         // (n)
@@ -186,8 +206,27 @@ cau_status cau_session_check_sound(const cau_session *session, cau_error *error)
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
 // Whether the command would change nothing of the layer.
 bool cau_layer_has_material(const cau_layer_def *def, const cau_command *command);
-// tool_motion.c: tools follow their drivers, within their speed limits.
+// substep.c. A tick's motion is: begin_substeps; for each substep the prediction, contact and the
+// solve, with next_substep before the second; end_substeps. The last also follows a failed solve,
+// and does nothing where the tick has one substep. Then position_start is the tick's start.
+cau_status cau_session_make_substeps(cau_session *session, cau_error *error);
+void cau_session_begin_substeps(cau_session *session);
+void cau_session_next_substep(cau_session *session);
+void cau_session_end_substeps(cau_session *session);
+// After that: velocities become a share of the tick's mean, as with implicit Euler, and the rest of
+// what they were.
+void cau_session_take_mean(cau_session *session, double share);
+// The prediction of the second substep.
+void cau_session_predict_on(cau_session *session);
+// How far (m) a vertex would go in a tick along axis c at its velocity at the tick's end.
+double cau_session_way(const cau_session *session, int32_t vertex, int c);
+// The share that the last substep's forces have in the tick's mean.
+double cau_session_last_share(const cau_session *session);
+// tool_motion.c: tools follow their drivers, within their speed limits. In the second substep they
+// go the rest of their way. At its end pose_before and jaw_before are of the tick again.
 void cau_session_move_tools(cau_session *session);
+void cau_session_lead_tools_on(cau_session *session);
+void cau_session_keep_tick_poses(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);
 void cau_session_drop_tool(cau_session *session, int32_t index);
 int32_t cau_session_find_tool(const cau_session *session, const char *name);
@@ -199,6 +238,7 @@ int32_t cau_session_find_tool(const cau_session *session, const char *name);
 // tools that were not held back in a tick.
 enum { CAU_ATTEMPTS = 2 };
 void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose *asked_before);
+void cau_session_lead_tool_on(cau_session *session, cau_tool *tool);
 void cau_session_couple(cau_session *session);
 void cau_session_take_poses(cau_session *session);
 bool cau_session_hold_back(cau_session *session, int attempt);
@@ -269,7 +309,7 @@ void cau_session_grasp_faces(const cau_session *session, cau_tool *tool);
 // opening, as far as the held tissue allows, and takes it along. After the solve, reads the force
 // with which they press.
 void cau_session_begin_pinch(const cau_session *session, cau_tool *tool);
-void cau_session_turn_jaws(cau_tool *tool, double step_s);
+void cau_session_turn_jaws(cau_tool *tool, double step_s, double part);
 void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index);
 // meet.c: tissue contact. Makes its arrays if the scene asks for it. As the tick begins, finds the
 // touching pairs and filters the start of the step by them.
@@ -356,6 +396,9 @@ void cau_session_fall_asleep(cau_session *session);
 // spin.c: its arrays; prediction of what turns freely, once the rest is predicted.
 cau_status cau_session_make_spin(cau_session *session, cau_error *error);
 void cau_session_turn_prediction(cau_session *session);
+// After two substeps: v2 of a piece that turns freely gets the angular momentum that the tick began
+// with, where no tool is near and no tissue touches tissue.
+void cau_session_keep_momentum(cau_session *session);
 // motion.c: what turns a tick's way into the velocity after it, 1/s (eq. 2 and damping).
 double cau_session_velocity_scale(const cau_session *session);
 // motion.c: predicts s of eq. 4 before a solve; velocities after it.

@@ -250,7 +250,7 @@ static cau_status make_canonical(cau_session *session, cau_error *error)
 		memcpy(made_from, matrix->value, bytes);
 	cau_alive canonical;
 	memcpy(canonical.element, session->update.canonical, sizeof canonical.element);
-	cau_system_assemble(&solver->system, &session->tissue, &canonical, solver->step_s,
+	cau_system_assemble(&solver->system, &session->tissue, &canonical, solver->inertia_s,
 	                    matrix->value);
 	bool same = made_from && memcmp(made_from, matrix->value, bytes) == 0;
 	free(made_from);

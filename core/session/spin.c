@@ -322,7 +322,68 @@ static void turn_piece(cau_session *session, int32_t first, int32_t last)
 	}
 }
 
-void cau_session_turn_prediction(cau_session *session)
+// ---- ticks with two substeps
+
+// The end of the second substep, about the piece's centre of mass.
+typedef struct ending {
+	cau_vec3 centre;
+	cau_vec3 momentum; // kg m^2/s, by v2
+	matrix spread;     // sum m r2 r2^T, kg m^2
+} ending;
+
+static void measure_ending(const cau_session *session, int32_t first, int32_t last, ending *out)
+{
+	*out = (ending){0};
+	double mass = 0, h = session->solver.inertia_s;
+	for (int32_t k = first; k < last; k++) {
+		size_t v = (size_t)session->spin.member[k];
+		double m = session->tissue.mass[v];
+		mass += m;
+		out->centre = cau_add_scaled(out->centre, m, cau_vec3_of(session->position + 3 * v));
+	}
+	CAU_ASSERT(mass > 0, "a piece of %g kg", mass);
+	out->centre = cau_scale(1 / mass, out->centre);
+	for (int32_t k = first; k < last; k++) {
+		size_t v = (size_t)session->spin.member[k];
+		double m = session->tissue.mass[v], r[3];
+		cau_vec3 at = cau_vec3_of(session->position + 3 * v), arm = cau_sub(at, out->centre);
+		cau_vec3 way = cau_sub(at, cau_vec3_of(session->substep.base + 3 * v));
+		out->momentum = cau_add_scaled(out->momentum, m / h, cau_cross(arm, way));
+		cau_vec3_to(arm, r);
+		for (int i = 0; i < 3; i++)
+			for (int j = 0; j < 3; j++)
+				out->spread[i][j] += m * r[i] * r[j];
+	}
+}
+
+// Both stages have forces without a torque about the places where they act, and a1 of a piece that
+// turns is half of what holds it on its circle, since v is along the circle and v1 along a chord.
+// So sum m x2 x v2 is not the L that the tick began with. v2 gets the rotation that makes it so.
+static void keep_momentum(cau_session *session, int32_t first, int32_t last)
+{
+	motion m;
+	ending end;
+	matrix inertia;
+	measure_motion(session, first, last, &m);
+	measure_ending(session, first, last, &end);
+	inertia_of(end.spread, inertia);
+	double sum = trace(inertia), h = session->solver.inertia_s;
+	if (!(determinant(inertia) > thinnest * sum * sum * sum))
+		return;
+	cau_vec3 momentum = axial(m.flow); // sum m r x u
+	if (!(cau_length(solve(inertia, momentum)) * session->solver.step_s >= least_turn))
+		return;
+	cau_vec3 more = cau_scale(-h, solve(inertia, cau_sub(momentum, end.momentum)));
+	for (int32_t k = first; k < last; k++) {
+		size_t v = (size_t)session->spin.member[k];
+		double *base = session->substep.base + 3 * v;
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), end.centre);
+		cau_vec3_to(cau_add(cau_vec3_of(base), cau_cross(more, arm)), base);
+	}
+}
+
+static void turn_pieces(cau_session *session,
+                        void (*turn)(cau_session *session, int32_t first, int32_t last))
 {
 	cau_spin *spin = &session->spin;
 	if (session->scene->solver == CAU_SOLVER_DIAGONAL) // as printed
@@ -331,5 +392,18 @@ void cau_session_turn_prediction(cau_session *session)
 		find_pieces(session);
 	for (int32_t p = 0; p < spin->piece_count; p++)
 		if (is_free(session, p))
-			turn_piece(session, spin->first[p], spin->first[p + 1]);
+			turn(session, spin->first[p], spin->first[p + 1]);
+}
+
+void cau_session_turn_prediction(cau_session *session)
+{
+	turn_pieces(session, turn_piece);
+}
+
+void cau_session_keep_momentum(cau_session *session)
+{
+	const cau_collide *collide = session->solver.collide;
+	if (!session->contact.row_count && !session->solver.drag_count &&
+	    !(collide && collide->touching_count))
+		turn_pieces(session, keep_momentum);
 }

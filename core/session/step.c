@@ -67,12 +67,22 @@ static void freeze_isolated(cau_session *session)
 	cau_session_drop_frozen_grasps(session);
 }
 
-// The first local step; beside it, what the last ticks cut leaves the factor (section 7.2).
+static void do_nothing(void *context)
+{
+	(void)context;
+}
+
+// The first local step; beside the tick's first, what the last ticks cut leaves the factor (section
+// 7.2).
 static cau_status begin_solve(cau_session *session, cau_error *error)
 {
 	cau_matrix_update *update = &session->update;
 	const cau_alive *alive = &session->dissection.alive;
 	session->solver.contact = session->contact.row_count ? &session->contact : NULL;
+	if (session->substep.index) {
+		cau_solver_begin(&session->solver, do_nothing, NULL);
+		return CAU_OK;
+	}
 	cau_status status = cau_matrix_update_begin(update, alive, session->tick, error);
 	cau_session_stage_end(session, CAU_STAGE_DISSECT);
 	if (status)
@@ -167,6 +177,7 @@ static void begin_tick(cau_session *session)
 	memcpy(session->position_start, session->position, bytes);
 	memset(session->stage_s, 0, sizeof session->stage_s);
 	session->refusal_count = 0;
+	cau_session_begin_substeps(session);
 	cau_dissection_begin(&session->dissection);
 }
 
@@ -190,6 +201,29 @@ static void end_solve_stages(cau_session *session)
 	session->stage_s[CAU_STAGE_GLOBAL] -= session->solver.local_s + session->solver.contact_s;
 }
 
+// The tick's motion, in one or two substeps (substep.c).
+static cau_status move(cau_session *session, cau_status status, cau_error *error)
+{
+	for (int32_t k = 0; k < session->substep.count; k++) {
+		if (k)
+			cau_session_next_substep(session);
+		cau_session_predict(session);       // eq. 4: motion.c
+		cau_session_lead_driven(session);   // drive.c
+		cau_session_begin_collide(session); // meet.c
+		cau_session_find_contacts(session); // touch.c
+		cau_session_stage_end(session, CAU_STAGE_PREDICT);
+		if (!status)
+			status = begin_solve(session, error); // above; solve/matrix_update.c
+		if (!status)
+			status = solve(session, error); // eq. 6 and 7: solve/descend.c
+		cau_session_stage_end(session, CAU_STAGE_GLOBAL);
+		if (status)
+			break;
+	}
+	cau_session_end_substeps(session);
+	return status;
+}
+
 // The way of one step: each stage in order, and nothing else.
 cau_status cau_session_step(cau_session *session, cau_error *error)
 {
@@ -208,15 +242,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_move_tools(session);                                // tool_motion.c
 	cau_session_begin_energy(session);                              // energy.c
 	cau_session_stage_end(session, CAU_STAGE_COMMANDS);
-	cau_session_predict(session);       // eq. 4: motion.c
-	cau_session_lead_driven(session);   // drive.c
-	cau_session_begin_collide(session); // meet.c
-	cau_session_find_contacts(session); // touch.c
-	cau_session_stage_end(session, CAU_STAGE_PREDICT);
-	if (!status)
-		status = begin_solve(session, error); // above; solve/matrix_update.c
-	if (!status)
-		status = solve(session, error); // eq. 6 and 7: solve/descend.c
+	status = move(session, status, error); // above
 	if (!status)
 		status = cau_session_check_motion(session, error); // possible.c
 	if (status)

@@ -74,12 +74,36 @@ static void move_tool(cau_session *session, cau_tool *tool)
 		share = fmin(share, def->max_turn_rad_s * dt / angle);
 	tool->state.asked_pose =
 		share < 1 ? cau_pose_between(&before, &tool->target, share) : tool->target;
+	tool->asked_before = before;
+	tool->led = session->substep.part < 1
+	                ? cau_pose_between(&before, &tool->state.asked_pose, session->substep.part)
+	                : tool->state.asked_pose;
 	cau_session_lead_tool(session, tool, &before);
-	cau_session_turn_jaws(tool, dt);
+	cau_session_turn_jaws(tool, dt, session->substep.part);
 }
 
 void cau_session_move_tools(cau_session *session)
 {
 	for (int32_t i = 0; i < session->tool_count; i++)
 		move_tool(session, &session->tool[i]);
+}
+
+void cau_session_lead_tools_on(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		cau_tool *tool = &session->tool[i];
+		tool->tick_pose = tool->pose_before;
+		tool->tick_jaw = tool->jaw_before;
+		tool->led = tool->state.asked_pose;
+		cau_session_lead_tool_on(session, tool);
+		cau_session_turn_jaws(tool, session->solver.step_s, session->substep.part);
+	}
+}
+
+void cau_session_keep_tick_poses(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		session->tool[i].pose_before = session->tool[i].tick_pose;
+		session->tool[i].jaw_before = session->tool[i].tick_jaw;
+	}
 }

@@ -30,7 +30,7 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	                                   pushing_part(session, tool), local, &side);
 	if (cau_session_feels_faces(tool) && start_m > 0)
 		cau_vec3_to(side, row.side); // else it may leave as it can
-	row.slack_m = cau_contact_slack(start_m, session->solver.step_s);
+	row.slack_m = cau_contact_slack(start_m, session->substep.length_s);
 	row.way_m = cau_length(cau_sub(cau_pose_to_local(&tool->state.pose, start), local)) +
 	            2 * tool->state.definition.hot_radius_m;
 	return row;
@@ -159,7 +159,7 @@ static void add_drag(cau_session *session, int32_t index)
 				continue;
 			double most = drag_share * solver->system.diagonal[v];
 			cau_drag drag = {.vertex = v,
-			                 .coefficient = fmin(def->drag_ns_m / solver->step_s, most)};
+			                 .coefficient = fmin(def->drag_ns_m / session->substep.length_s, most)};
 			cau_vec3 local = cau_pose_to_local(&tool->pose_before, x);
 			cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), drag.target);
 			solver->drag[solver->drag_count++] = drag;

@@ -238,7 +238,7 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 	double changed = force_change(solver), drift = force_drift(accuracy), bound = 0, smooth = 0;
 	if (of.all.increment > 0) {
 		smooth = of.all.increment / of.all.allowed;
-		bound = bound_share * solver->step_s * solver->step_s * norm * norm /
+		bound = bound_share * solver->inertia_s * solver->inertia_s * norm * norm /
 		        (of.mass * of.all.increment * of.all.allowed);
 	}
 	// What an iteration that stalls mixes may be as good as nothing while its increments stay.

@@ -27,7 +27,7 @@ static double least_mass_pivot(const cau_step_solver *solver)
 	double least = INFINITY;
 	for (int32_t r = 0; r < solver->system.row_count; r++)
 		least = fmin(least, solver->tissue->mass[solver->system.vertex_of_row[r]]);
-	return least / (2 * solver->step_s * solver->step_s);
+	return least / (2 * solver->inertia_s * solver->inertia_s);
 }
 
 cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *solver,
@@ -87,7 +87,7 @@ static void take_off_diagonal(cau_step_solver *solver, int kind, int32_t element
 	CAU_ASSERT(omega >= 0, "element %d of kind %d adds %g N/m", element, kind, omega);
 	for (int k = 0; k < map.vertex_count; k++) {
 		int32_t v = map.vertex[k];
-		double inertia = solver->tissue->mass[v] / (solver->step_s * solver->step_s);
+		double inertia = solver->tissue->mass[v] / (solver->inertia_s * solver->inertia_s);
 		solver->system.diagonal[v] = fmax(solver->system.diagonal[v] - omega, inertia);
 	}
 }
@@ -247,7 +247,7 @@ static void make_next(void *context)
 	cau_alive alive;
 	memcpy(alive.element, update->next_canonical, sizeof alive.element);
 	const cau_matrix *matrix = &solver->system.matrix;
-	cau_system_assemble(&solver->system, solver->tissue, &alive, solver->step_s, matrix->value);
+	cau_system_assemble(&solver->system, solver->tissue, &alive, solver->inertia_s, matrix->value);
 	update->next_status = cau_factor_refactor(solver->factor, matrix, NULL);
 	if (!update->next_status &&
 	    (update->next_panels.panel ||
@@ -319,7 +319,7 @@ static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
 	cau_step_solver *solver = update->solver;
 	if (!update->waiting_count)
 		return;
-	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->inertia_s);
 	solver->factor_version++;
 	update->waiting_count = 0;
 }
@@ -376,14 +376,14 @@ cau_status cau_matrix_update_refactor(cau_matrix_update *update, const cau_alive
 {
 	cau_step_solver *solver = update->solver;
 	cau_matrix_update_stop(update);
-	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->inertia_s);
 	update->waiting_count = update->operation_count = update->group_count = 0;
 	copy_alive(update->canonical, alive, solver->tissue);
 	solver->factor_version++;
 	solver->factor_epoch++;
 	if (solver->diagonal)
 		return CAU_OK;
-	cau_system_assemble(&solver->system, solver->tissue, alive, solver->step_s,
+	cau_system_assemble(&solver->system, solver->tissue, alive, solver->inertia_s,
 	                    solver->system.matrix.value);
 	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
 	if (!status)

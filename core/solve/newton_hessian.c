@@ -454,7 +454,7 @@ static void add_spring(cau_newton *newton, const cau_step_solver *solver, int32_
 
 static void evaluate(cau_newton *newton, const cau_step_solver *solver, bool hessian)
 {
-	double scale = 1 / (solver->step_s * solver->step_s);
+	double scale = 1 / (solver->inertia_s * solver->inertia_s);
 	newton->energy = 0;
 	newton->coupling_count = 0;
 	memset(newton->gradient, 0, 4 * (size_t)newton->n * sizeof(double));

@@ -91,7 +91,12 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->iterations = scene->iterations;
 	solver->tolerance = scene->tolerance;
 	solver->step_s = scene->step_s;
-	solver->accuracy.wanted = scene->tolerance > 0 ? 0 : scene->accuracy;
+	solver->inertia_s = scene->integrator == CAU_INTEGRATOR_SDIRK2
+	                        ? CAU_SDIRK2_GAMMA * scene->step_s
+	                        : scene->step_s;
+	// An error of x2 is 1 / gamma times as large in the velocity after two substeps.
+	double share = solver->inertia_s / solver->step_s;
+	solver->accuracy.wanted = scene->tolerance > 0 ? 0 : share * scene->accuracy;
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->whole_panels = CAU_WHOLE_PANELS;
 	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
@@ -114,12 +119,12 @@ cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
                               const int32_t *permutation, cau_error *error)
 {
 	CAU_ASSERT(!solver->factor, "%d rows are factored twice", solver->system.row_count);
-	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->inertia_s);
 	if (solver->diagonal || !solver->system.row_count) {
 		solver->diagonal = true;
 		return CAU_OK;
 	}
-	cau_system_assemble(&solver->system, solver->tissue, alive, solver->step_s,
+	cau_system_assemble(&solver->system, solver->tissue, alive, solver->inertia_s,
 	                    solver->system.matrix.value);
 	return cau_factor_analyse(&solver->factor, &solver->system.matrix, permutation, error);
 }

@@ -15,6 +15,11 @@
 #include "solve/newton.h"
 #include "solve/system.h"
 
+// gamma of Alexander's method of two stages and second order (SIAM J. Numer. Anal. 14, 1977),
+// 1 - 1/sqrt(2): of the two values that make it L-stable, the one of the smaller error. Both stages
+// have M / (gamma dt)^2, so one A serves them.
+#define CAU_SDIRK2_GAMMA (1 - 0.70710678118654752440)
+
 enum {
 	CAU_MAX_BACKTRACKS = 8,
 	CAU_VERTEX_CHUNK = 256, // vertices in one share of a vertex loop
@@ -54,7 +59,9 @@ struct cau_step_solver {
 	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are taken for loose
 	bool none_loose;    // the scene has tissue contact: no sheet is, at rest neither
 	int32_t iterations; // at most
-	double tolerance, step_s;
+	double tolerance;
+	double step_s;    // one tick
+	double inertia_s; // h of M / h^2 in eq. 4 and in A: step_s with implicit Euler
 	cau_accuracy accuracy;
 	const uint8_t *fixed; // (vertex_count): pinned or frozen
 

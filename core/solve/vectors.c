@@ -77,7 +77,7 @@ static void step(const cau_step_solver *solver, double scale, int32_t first, int
 
 static double add_inertia(const cau_step_solver *solver, int32_t first, int32_t last)
 {
-	double energy = 0, scale = 1 / (solver->step_s * solver->step_s);
+	double energy = 0, scale = 1 / (solver->inertia_s * solver->inertia_s);
 	const double *x = solver->position, *s = solver->predicted;
 	real *gradient = (real *)solver->gradient;
 	for (int32_t v = first; v < last; v++) {

@@ -2506,6 +2506,9 @@ class Scene(TypedDict):
     # of the local and global steps
     precision: NotRequired[Literal["single", "double"]]
 
+    # how a tick advances motion: `euler` damps by the step; `sdirk2`, of second order, keeps 0.997 of a 5 Hz swing a period at 60 steps/s, for two solves a tick
+    integrator: NotRequired[Literal["euler", "sdirk2"]]
+
     # what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh
     parting: NotRequired[Literal["edges", "elements"]]
 

@@ -84,6 +84,9 @@ enum {
 #define CAU_PRECISION_TABLE(X)                                                                     \
 	X(SINGLE, "single")                                                                            \
 	X(DOUBLE, "double")
+#define CAU_INTEGRATOR_TABLE(X)                                                                    \
+	X(EULER, "euler")   /* implicit Euler (eq. 1-4): one solve a tick; damps by the step */        \
+	X(SDIRK2, "sdirk2") /* of second order (Alexander 1977): two solves a tick */
 #define CAU_ENERGY_TABLE(X)                                                                        \
 	X(PAPER, "paper")   /* a hot part has a temperature; tissue parts by its dose (section 6.2) */ \
 	X(TISSUE, "tissue") /* a generator gives power; tissue parts where its water has boiled off */
@@ -364,6 +367,7 @@ typedef struct cau_scene_def {
 	int32_t iterations;                   // of a step at most, 1 to 1000
 	int solver;                           // CAU_SOLVER_*
 	int precision;                        // CAU_PRECISION_* of the local and global steps
+	int integrator;                       // CAU_INTEGRATOR_*: how a tick advances motion
 	int parting;                          // CAU_PARTING_*: what heat parts
 	int energy;                           // CAU_ENERGY_*: what an energized tool does to tissue
 	uint64_t seed;                        // of everything drawn at random (ignition temperatures)
@@ -398,6 +402,13 @@ typedef enum cau_precision {
 #undef X
 		CAU_PRECISION_COUNT
 } cau_precision;
+// How a tick advances motion: CAU_INTEGRATOR_TABLE.
+typedef enum cau_integrator {
+#define X(code, name) CAU_INTEGRATOR_##code,
+	CAU_INTEGRATOR_TABLE(X)
+#undef X
+		CAU_INTEGRATOR_COUNT
+} cau_integrator;
 // What heat parts: CAU_PARTING_TABLE.
 typedef enum cau_parting {
 #define X(code, name) CAU_PARTING_##code,
