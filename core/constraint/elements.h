@@ -41,6 +41,7 @@ typedef struct cau_sheet_group {
 	int limit, projection;                 // CAU_LIMIT_*, CAU_PROJECTION_*
 	double stretch_min[2], stretch_max[2]; // RANGE: sqrt(k_aa)
 	double shear_max;
+	double viscosity_s; // retardation time; 0: none
 } cau_sheet_group;
 
 typedef struct cau_fat_group {
@@ -56,6 +57,7 @@ typedef struct cau_fat_group {
 	double stretch_min[3], stretch_max[3];
 	double shear_max;
 	double yield_strain, plastic_strain_max;
+	double viscous_mu, viscous_lambda; // Pa s: of small strain times the retardation time
 } cau_fat_group;
 
 // Fascia and membrane. F = F_0 + [du_1 du_2] D_m'^-1 (eq. 8-10), 3 x 2.
@@ -69,6 +71,7 @@ typedef struct cau_sheet_set {
 	void *target[3];        // real: T^(1/2): 00, 11, 01
 	void *polar[6];         // real: Q of the last evaluation, kept where F loses rank
 	void *position_scale;   // real, m^2: |G|^2 of the element, for the diagonal system
+	void *strain[3];        // real: R of viscosity: 00, 11, 01; NULL: no layer is viscous
 } cau_sheet_set;
 
 // Fat. F = I + [du_1 du_2 du_3] D_m^-1, world axes.
@@ -89,6 +92,7 @@ typedef struct cau_fat_set {
 	uint8_t *targeted; // (slot_count / CAU_BATCH): some slot's target is not its group's
 	uint8_t *flowed;   // (slot_count / CAU_BATCH): some slot has plastic strain
 	void *position_scale;
+	void *strain[6]; // real: R of viscosity: 00, 11, 22, 01, 02, 12; NULL: no layer is viscous
 } cau_fat_set;
 
 // Trusses (section 5.2, last paragraph).
@@ -120,7 +124,9 @@ typedef struct cau_elements {
 	int32_t record_count;
 	int32_t *record_vertex; // 4 x vertex of each; of padding's, 0
 	double *energy;         // J, of each share
-	bool *slack;            // of each share: whether some triangle is slack
+	double rate_per_s;      // 1/h of viscosity; 0: there is none
+	double *viscous_j; // (shares): what of their energy is viscosity's; NULL: no layer is viscous
+	bool *slack;       // of each share: whether some triangle is slack
 } cau_elements;
 
 static inline double cau_real_get(const void *array, bool single, int64_t index)

@@ -63,7 +63,7 @@ static void fat_target_root(const cau_fat_material *material, const double fibre
 }
 
 static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
-                        const double fibre[3])
+                        const double fibre[3], double viscosity_s)
 {
 	double lambda, mu;
 	const cau_law *law = cau_law_of(material->model);
@@ -87,6 +87,8 @@ static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
 	group->shear_max = material->shear_max;
 	group->yield_strain = material->yield_strain;
 	group->plastic_strain_max = material->plastic_strain_max;
+	group->viscous_mu = viscosity_s * mu;
+	group->viscous_lambda = viscosity_s * lambda;
 }
 
 static void set_sheet_slot(cau_sheet_set *set, bool single, int32_t slot, const cau_tissue *tissue,
@@ -96,7 +98,9 @@ static void set_sheet_slot(cau_sheet_set *set, bool single, int32_t slot, const 
 	const cau_sheet_material *material = cau_triangle_material(tissue, element);
 	cau_element_map map;
 	cau_tissue_element_map(tissue, CAU_ELEMENT_TRIANGLE, element, &map);
-	cau_real_set(set->weight, single, slot, alive ? map.weight : 0);
+	double viscosity_s = tissue->layer[tissue->triangle_layer[element]].def.viscosity_s;
+	double weight = map.weight / (1 + viscosity_s / tissue->inertia_s); // A has viscosity's too
+	cau_real_set(set->weight, single, slot, alive ? weight : 0);
 	if (keep_target)
 		return;
 	double root[3] = {0, 0, 0}; // no target
@@ -194,6 +198,7 @@ void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue)
 		cau_sheet_group *group = &elements->sheet.group[g];
 		CAU_ASSERT_INDEX(group->layer, tissue->layer_count);
 		set_sheet_law(group, &tissue->layer[group->layer].def.sheet[group->material]);
+		group->viscosity_s = tissue->layer[group->layer].def.viscosity_s;
 	}
 	for (int32_t g = 0; g < elements->fat.group_count; g++) {
 		cau_fat_group *group = &elements->fat.group[g];
@@ -201,7 +206,7 @@ void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue)
 		           "group %d of fat in a layer of kind %d", g,
 		           tissue->layer[group->layer].def.kind);
 		const cau_layer_def *layer = &tissue->layer[group->layer].def;
-		set_fat_law(group, &layer->fat[group->material], layer->fibre);
+		set_fat_law(group, &layer->fat[group->material], layer->fibre, layer->viscosity_s);
 	}
 }
 

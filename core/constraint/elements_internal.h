@@ -29,8 +29,8 @@ cau_status cau_elements_make_pairs(const cau_tissue *tissue, cau_elements *eleme
                                    cau_arena *arena, cau_error *error);
 
 // elements_records.c, in this order, once the sets are made
-cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slots,
-                                  cau_arena *arena, cau_error *error);
+cau_status cau_elements_make_work(const cau_tissue *tissue, cau_elements *elements,
+                                  cau_element_slots *slots, cau_arena *arena, cau_error *error);
 cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *elements,
                                      cau_element_slots *slots, const cau_slot_vertices *vertices,
                                      cau_arena *arena, cau_error *error);

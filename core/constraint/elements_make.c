@@ -108,7 +108,7 @@ cau_status cau_elements_make(const cau_tissue *tissue, bool single, cau_arena *a
 	if (!status)
 		status = make_hinges(tissue, single, arena, elements, slots, &vertices, error);
 	if (!status)
-		status = cau_elements_make_work(elements, slots, arena, error);
+		status = cau_elements_make_work(tissue, elements, slots, arena, error);
 	if (!status)
 		status = cau_elements_make_records(tissue, elements, slots, &vertices, arena, error);
 	cau_arena_finish(&vertices.arena);

@@ -124,7 +124,9 @@ static cau_status make_sheet_arrays(const pair_maker *maker, cau_arena *arena, c
 	    !cau_real_arrays(arena, &set->weight, 1, set->slot_count, single) ||
 	    !cau_real_arrays(arena, set->target, 3, set->slot_count, single) ||
 	    !cau_real_arrays(arena, set->polar, 6, set->slot_count, single) ||
-	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single))
+	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single) ||
+	    (maker->tissue->viscous &&
+	     !cau_real_arrays(arena, set->strain, 3, set->slot_count, single)))
 		return no_memory(error);
 	return CAU_OK;
 }
@@ -167,7 +169,9 @@ static cau_status make_fat_arrays(const pair_maker *maker, cau_arena *arena, cau
 	    !cau_real_arrays(arena, set->polar, 4, set->slot_count, single) ||
 	    !cau_real_arrays(arena, set->plastic, 6, set->slot_count, single) ||
 	    !cau_real_arrays(arena, set->plastic_strain, 6, set->slot_count, single) ||
-	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single))
+	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single) ||
+	    (maker->tissue->viscous &&
+	     !cau_real_arrays(arena, set->strain, 6, set->slot_count, single)))
 		return no_memory(error);
 	for (int32_t s = 0; s < set->slot_count; s++) {
 		cau_real_set(set->polar[0], single, s, 1);

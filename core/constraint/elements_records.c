@@ -23,8 +23,8 @@ static void add_work(cau_element_slots *slots, int kind, int32_t group, int32_t 
 	}
 }
 
-cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slots,
-                                  cau_arena *arena, cau_error *error)
+cau_status cau_elements_make_work(const cau_tissue *tissue, cau_elements *elements,
+                                  cau_element_slots *slots, cau_arena *arena, cau_error *error)
 {
 	int32_t slot_count = elements->sheet.slot_count + elements->fat.slot_count +
 	                     elements->link.slot_count + elements->hinge.slot_count;
@@ -33,7 +33,10 @@ cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slo
 	slots->work = cau_arena_array(arena, (size_t)most, sizeof *slots->work);
 	elements->energy = cau_arena_array(arena, (size_t)most, sizeof *elements->energy);
 	elements->slack = cau_arena_array(arena, (size_t)most, sizeof *elements->slack);
-	if (!slots->work || !elements->energy || !elements->slack)
+	if (tissue->viscous)
+		elements->viscous_j = cau_arena_array(arena, (size_t)most, sizeof *elements->viscous_j);
+	if (!slots->work || !elements->energy || !elements->slack ||
+	    (tissue->viscous && !elements->viscous_j))
 		return no_memory(error);
 	for (int32_t g = 0; g < elements->fat.group_count; g++) {
 		const cau_fat_group *group = &elements->fat.group[g];

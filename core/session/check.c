@@ -349,6 +349,14 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 		status = in_range(layer->coagulated_tear, CAU_COAGULATED_TEAR_LEAST, 1.0, "1", path,
 		                  "coagulated_tear", error);
 	if (!status)
+		status = in_range(layer->viscosity_s, 0.0, CAU_VISCOSITY_MOST_S, "s", path, "viscosity_s",
+		                  error);
+	if (!status && layer->viscosity_s > 0 && layer->kind == CAU_LAYER_LINKS)
+		status = cau_fail(error, CAU_BAD_VALUE, path, "viscosity_s: links have no viscosity");
+	if (!status && layer->viscosity_s > 0 && scene->solver == CAU_SOLVER_DIAGONAL)
+		status = cau_fail(error, CAU_BAD_VALUE, path,
+		                  "viscosity_s: the solver \"diagonal\" has no viscosity");
+	if (!status)
 		status = finite_vector(layer->fibre, 3, CAU_FIBRE_MOST, path, "fibre", error);
 	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
 		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",

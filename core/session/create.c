@@ -227,6 +227,10 @@ static uint64_t hash_definition(const cau_session *session)
 		if (scene->layers[i].coagulated_tear < 1) // 1: left out of older snapshots
 			hash = cau_hash_bytes(cau_hash_word(hash, (uint64_t)i),
 			                      &scene->layers[i].coagulated_tear, sizeof(double));
+	for (int32_t i = 0; i < scene->layer_count; i++)
+		if (scene->layers[i].viscosity_s > 0) // likewise
+			hash = cau_hash_bytes(cau_hash_word(hash, (uint64_t)i), &scene->layers[i].viscosity_s,
+			                      sizeof(double));
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
 	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
 	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));

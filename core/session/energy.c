@@ -230,7 +230,8 @@ static void measure_gain(cau_session *session)
 		kinetic_j += sum[1];
 		inertia_j += sum[3];
 	}
-	energy->end_j = session->solver.spared ? session->solver.objective - inertia_j
+	energy->end_j = session->solver.spared ? session->solver.objective - inertia_j -
+	                                             cau_solver_viscous_energy(&session->solver)
 	                                       : cau_solver_elastic_energy(&session->solver);
 	energy->gain_j = gain_j + energy->end_j;
 	energy->scale_j = energy->elastic_j + kinetic_j + touching_j + fabs(work_j) + fabs(of_tools_j);

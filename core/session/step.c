@@ -207,6 +207,8 @@ static cau_status move(cau_session *session, cau_status status, cau_error *error
 	for (int32_t k = 0; k < session->substep.count; k++) {
 		if (k)
 			cau_session_next_substep(session);
+		else
+			cau_solver_take_strain(&session->solver, 1);
 		cau_session_predict(session);       // eq. 4: motion.c
 		cau_session_lead_driven(session);   // drive.c
 		cau_session_begin_collide(session); // meet.c

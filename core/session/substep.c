@@ -203,6 +203,7 @@ void cau_session_next_substep(cau_session *session)
 	CAU_ASSERT(substep->index == 0 && substep->count == 2, "substep %d of %d", substep->index,
 	           substep->count);
 	note_disturbance(session);
+	cau_solver_take_strain(&session->solver, (1 - CAU_SDIRK2_GAMMA) / CAU_SDIRK2_GAMMA);
 	carry_on(session);
 	keep_pushes(session);
 	keep_statistics(substep, &session->solver);

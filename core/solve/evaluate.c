@@ -61,12 +61,50 @@ static double add_collisions(cau_step_solver *solver)
 	return energy;
 }
 
-double cau_solver_elastic_energy(const cau_step_solver *solver)
+typedef struct strain_work {
+	const cau_step_solver *solver;
+	double share;
+} strain_work;
+
+double cau_solver_viscous_energy(const cau_step_solver *solver)
+{
+	double energy = 0;
+	for (int32_t w = 0; w < solver->slots.work_count && solver->elements.rate_per_s > 0; w++)
+		energy += solver->elements.viscous_j[w];
+	return energy;
+}
+
+// Of laws and viscosity.
+static double energy_of_elements(const cau_step_solver *solver)
 {
 	double energy = 0;
 	for (int32_t w = 0; w < solver->slots.work_count; w++)
 		energy += solver->elements.energy[w];
 	return energy;
+}
+
+double cau_solver_elastic_energy(const cau_step_solver *solver)
+{
+	return energy_of_elements(solver) - cau_solver_viscous_energy(solver);
+}
+
+static void strain_part(void *context, int32_t index)
+{
+	const strain_work *work = context;
+	const cau_step_solver *solver = work->solver;
+	CAU_ASSERT_INDEX(index, solver->slots.work_count);
+	solver->kernels->take_strain(&solver->elements, &solver->slots.work[index],
+	                             solver->displacement, work->share);
+}
+
+void cau_solver_take_strain(cau_step_solver *solver, double share)
+{
+	strain_work work = {solver, share};
+	if (!solver->tissue->viscous)
+		return;
+	cau_solver_displace(solver);
+	cau_pool_run(solver->pool, solver->slots.work_count, strain_part, &work);
+	solver->elements.rate_per_s = 1 / solver->inertia_s;
 }
 
 void cau_solver_displace(cau_step_solver *solver)
@@ -101,7 +139,7 @@ static double gather(cau_step_solver *solver, double start)
 {
 	// sums over each vertex's records, plus inertia and drag
 	cau_pool_run(solver->pool, solver->chunk_count, vertex_part, solver);
-	double energy = cau_solver_elastic_energy(solver);
+	double energy = energy_of_elements(solver);
 	for (int32_t k = 0; k < solver->chunk_count; k++)
 		energy += solver->chunk_energy[k];
 	energy += add_drag(solver);

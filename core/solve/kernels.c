@@ -10,6 +10,7 @@
 #include "constraint/link_kernel.h"
 #include "constraint/plasticity_kernel.h"
 #include "constraint/sheet_kernel.h"
+#include "constraint/viscous_kernel.h"
 #include "solve/newton_kernel.h"
 #include "solve/pack_kernel.h"
 #include "solve/spread_kernel.h"
@@ -28,6 +29,21 @@ INLINE void take_displacement(const cau_elements *elements, const cau_local_work
 	for (int32_t r = 0; r < work->record_count; r++)
 		((vertex_reals *)taken)[r] =
 			*(const vertex_reals *)((const real *)displacement + vertex[r]);
+}
+
+// The part of viscosity, after the laws have written records and energy.
+INLINE void add_viscosity(const cau_elements *elements, const cau_local_work *work,
+                          const real *taken, real *records)
+{
+	double rate_per_s = elements->rate_per_s, viscous_j = 0;
+	if (work->kind == CAU_ELEMENT_TRIANGLE && elements->sheet.group[work->group].viscosity_s > 0)
+		viscous_j = sheet_viscous_kernel(&elements->sheet, &elements->sheet.group[work->group],
+		                                 rate_per_s, work->first, work->last, taken, records);
+	if (work->kind == CAU_ELEMENT_TETRAHEDRON && elements->fat.group[work->group].viscous_mu > 0)
+		viscous_j = fat_viscous_kernel(&elements->fat, &elements->fat.group[work->group],
+		                               rate_per_s, work->first, work->last, taken, records);
+	elements->viscous_j[work->number] = viscous_j;
+	elements->energy[work->number] += viscous_j;
 }
 
 static void local(const cau_elements *elements, const cau_local_work *work,
@@ -58,6 +74,20 @@ static void local(const cau_elements *elements, const cau_local_work *work,
 		*energy = hinge_kernel(elements, work->first, work->last, taken, records, diagonal);
 		break;
 	}
+	if (elements->rate_per_s > 0)
+		add_viscosity(elements, work, taken, records);
+}
+
+static void take_strain(const cau_elements *elements, const cau_local_work *work,
+                        const cau_reals *displacement, double share)
+{
+	real taken[4 * CAU_SHARE_RECORDS] __attribute__((aligned(64)));
+	CAU_ASSERT(elements->viscous_j, "a share %d without viscosity", work->number);
+	take_displacement(elements, work, displacement, taken);
+	if (work->kind == CAU_ELEMENT_TRIANGLE)
+		sheet_strain_kernel(&elements->sheet, work->first, work->last, taken, share);
+	else if (work->kind == CAU_ELEMENT_TETRAHEDRON)
+		fat_strain_kernel(&elements->fat, work->first, work->last, taken, share);
 }
 
 static int32_t settle(const cau_elements *elements, const cau_local_work *work,
@@ -215,6 +245,7 @@ const cau_kernels CAU_TABLE = {
 	.single = CAU_SINGLE,
 	.vectors = &CAU_VECTORS,
 	.local = local,
+	.take_strain = take_strain,
 	.settle = settle,
 	.sum = sum,
 	.forward = forward,

@@ -41,6 +41,9 @@ typedef struct cau_kernels {
 	// Records (N) and energy (J) of the elements in `work`, at displacement u (m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,
 	              const cau_reals *displacement, bool diagonal);
+	// Before a solve, of viscous tissue: R + share (E - R) in place of R (viscous_kernel.h).
+	void (*take_strain)(const cau_elements *elements, const cau_local_work *work,
+	                    const cau_reals *displacement, double share);
 	// After a step: plastic flow; returns the number of inverted tetrahedra.
 	int32_t (*settle)(const cau_elements *elements, const cau_local_work *work,
 	                  const cau_reals *displacement);

@@ -15,11 +15,6 @@
 #include "solve/newton.h"
 #include "solve/system.h"
 
-// gamma of Alexander's method of two stages and second order (SIAM J. Numer. Anal. 14, 1977),
-// 1 - 1/sqrt(2): of the two values that make it L-stable, the one of the smaller error. Both stages
-// have M / (gamma dt)^2, so one A serves them.
-#define CAU_SDIRK2_GAMMA (1 - 0.70710678118654752440)
-
 enum {
 	CAU_MAX_BACKTRACKS = 8,
 	CAU_VERTEX_CHUNK = 256, // vertices in one share of a vertex loop
@@ -57,7 +52,7 @@ struct cau_step_solver {
 	bool diagonal;      // CAU_SOLVER_DIAGONAL
 	bool conservative;  // every law is the gradient of an energy
 	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are taken for loose
-	bool none_loose;    // the scene has tissue contact: no sheet is, at rest neither
+	bool none_loose;    // tissue contact or a viscous sheet: no sheet is, at rest neither
 	int32_t iterations; // at most
 	double tolerance;
 	double step_s;    // one tick
@@ -128,8 +123,13 @@ double cau_solver_evaluate_beside(cau_step_solver *solver, void (*meanwhile)(voi
 // The displacements alone, and the rest.
 void cau_solver_displace(cau_step_solver *solver);
 double cau_solver_evaluate_displaced(cau_step_solver *solver);
-// Sum of elements' energies of the last evaluation, J.
+// Before a solve: viscosity takes strain at the present position for R (viscous_kernel.h), or that
+// share of the way from the present R to it. Nothing without viscosity.
+void cau_solver_take_strain(cau_step_solver *solver, double share);
+// Sum of elements' energies of the last evaluation without viscosity's, J.
 double cau_solver_elastic_energy(const cau_step_solver *solver);
+// The other part, J: half of what viscosity takes in h, at that strain rate.
+double cau_solver_viscous_energy(const cau_step_solver *solver);
 // global.c: increment = -A^-1 gradient, with unilateral constraints if there are any.
 void cau_solver_global(cau_step_solver *solver);
 // inverse.c: plain A^-1 applied: out = sign * A^-1 in (by vertex; rows of fixed vertices come out

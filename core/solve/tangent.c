@@ -74,6 +74,7 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 	probe->collide = NULL;
 	probe->contact = NULL;
 	probe->now_s = NULL;
+	probe->elements.rate_per_s = 0; // a hand is slow
 	probe->elements.gradient = own.elements.gradient;
 	probe->elements.energy = own.elements.energy;
 	probe->elements.slack = own.elements.slack;

@@ -53,10 +53,18 @@ static void gradient_map(const double *dm_inverse, int rank, cau_element_map *ma
 	}
 }
 
+// How many times as stiff as without viscosity an element is to a step.
+static double viscous_share(const cau_tissue *tissue, int32_t layer)
+{
+	CAU_ASSERT_INDEX(layer, tissue->layer_count);
+	return 1 + tissue->layer[layer].def.viscosity_s / tissue->inertia_s;
+}
+
 static double triangle_weight(const cau_tissue *tissue, int32_t triangle)
 {
 	const cau_sheet_material *material = cau_triangle_material(tissue, triangle);
-	return material->limit_stiffness_pa * material->thickness_m * tissue->triangle_area[triangle];
+	return viscous_share(tissue, tissue->triangle_layer[triangle]) * material->limit_stiffness_pa *
+	       material->thickness_m * tissue->triangle_area[triangle];
 }
 
 // The energy's stiffness at rest 2 mu + 3 lambda, and the limit's where one acts or shrinkage may
@@ -66,7 +74,8 @@ static double tetrahedron_weight(const cau_tissue *tissue, int32_t tetrahedron)
 	const cau_fat_material *material = cau_tetrahedron_material(tissue, tetrahedron);
 	double lambda, mu;
 	cau_fat_lame(material, &lambda, &mu);
-	double stiffness = 2 * mu + 3 * lambda;
+	double viscous = viscous_share(tissue, tissue->tetrahedron_layer[tetrahedron]);
+	double stiffness = viscous * (2 * mu + 3 * lambda);
 	bool shrinks = material->shrink[0] != 1 || material->shrink[1] != 1 || material->shrink[2] != 1;
 	if (material->limit != CAU_LIMIT_NONE || shrinks)
 		stiffness += material->limit_stiffness_pa;

@@ -38,6 +38,11 @@ cau_status cau_tissue_make(const cau_scene_def *scene, cau_arena *arena, cau_tis
                            cau_error *error)
 {
 	memset(tissue, 0, sizeof *tissue);
+	tissue->inertia_s = scene->integrator == CAU_INTEGRATOR_SDIRK2
+	                        ? CAU_SDIRK2_GAMMA * scene->step_s
+	                        : scene->step_s;
+	for (int32_t i = 0; i < scene->layer_count; i++)
+		tissue->viscous = tissue->viscous || scene->layers[i].viscosity_s > 0;
 	cau_status status = cau_tissue_gather(tissue, scene, arena, error);
 	if (!status)
 		status = cau_tissue_shape(tissue, arena, error);

@@ -28,7 +28,14 @@ typedef struct cau_tissue_layer {
 	cau_region_list regions;
 } cau_tissue_layer;
 
+// gamma of Alexander's method of two stages and second order (SIAM J. Numer. Anal. 14, 1977),
+// 1 - 1/sqrt(2): of the two values that make it L-stable, the one of the smaller error. Both stages
+// have M / (gamma dt)^2, so one A serves them.
+#define CAU_SDIRK2_GAMMA (1 - 0.70710678118654752440)
+
 typedef struct cau_tissue {
+	double inertia_s; // h of M / h^2 in eq. 4 and in A: the scene's step, or gamma of it
+	bool viscous;     // some layer is
 	int32_t vertex_count;
 	double *rest;    // m, (vertex_count x 3)
 	double *mass;    // kg, (vertex_count), lumped

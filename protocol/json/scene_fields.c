@@ -88,6 +88,10 @@ static const cau_field layer_fields[] = {
 		"with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none")},
 	{SCALAR_OF(coagulated_tear, CAU_COAGULATED_TEAR_LEAST, 1.0, "1",
                "share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more")},
+	{SCALAR_OF(viscosity_s, 0.0, CAU_VISCOSITY_MOST_S, "s",
+               "retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of "
+               "pi f times it; not with solver `diagonal`"),
+     .kinds = KIND(FASCIA) | KIND(FAT) | KIND(MEMBRANE)},
 };
 #undef STRUCT
 #undef KIND

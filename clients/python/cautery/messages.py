@@ -2077,6 +2077,9 @@ class FasciaLayer(TypedDict):
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
     coagulated_tear: NotRequired[float]
 
+    # retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s)
+    viscosity_s: NotRequired[float]
+
     # sheet thickness (1e-06 to 0.05 m)
     thickness_m: NotRequired[float]
 
@@ -2210,6 +2213,9 @@ class MembraneLayer(TypedDict):
 
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
     coagulated_tear: NotRequired[float]
+
+    # retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s)
+    viscosity_s: NotRequired[float]
 
     # sheet thickness (1e-06 to 0.05 m)
     thickness_m: NotRequired[float]
@@ -2350,6 +2356,9 @@ class FatLayer(TypedDict):
 
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
     coagulated_tear: NotRequired[float]
+
+    # retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s)
+    viscosity_s: NotRequired[float]
 
     # elastic energy
     model: NotRequired[Literal["neohookean", "corotated", "stvk", "energy"]]

@@ -58,6 +58,7 @@ enum {
 #define CAU_ITERATIONS_MOST 1000
 #define CAU_PERFUSION_MOST 10.0
 #define CAU_COAGULATED_TEAR_LEAST 0.01
+#define CAU_VISCOSITY_MOST_S 10.0
 #define CAU_PULL_MOST_M 1.0
 #define CAU_PULL_LEAST_S 1e-3
 #define CAU_PULL_MOST_S 3600.0
@@ -232,6 +233,7 @@ typedef struct cau_layer_def {
 	int tissue;                // CAU_LIVING_*
 	double perfusion;          // its blood flow, as a share of that of living tissue
 	double coagulated_tear;    // energy of a tear where it is coagulated, as a share of the fresh's
+	double viscosity_s;        // retardation time: viscosity over stiffness; none of links
 	char mesh[CAU_NAME_BYTES]; // FASCIA, FAT, MEMBRANE without `of`
 	char of[CAU_NAME_BYTES];   // MEMBRANE: a fat layer. LINKS: the upper layer
 	char to[CAU_NAME_BYTES];   // LINKS: the lower layer

@@ -1403,6 +1403,8 @@ export interface FasciaLayer {
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
+  /** retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s) */
+  viscosity_s?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
   /** mass density (1 to 25000 kg/m^3) */
@@ -1495,6 +1497,8 @@ export interface MembraneLayer {
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
+  /** retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s) */
+  viscosity_s?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
   /** mass density (1 to 25000 kg/m^3) */
@@ -1591,6 +1595,8 @@ export interface FatLayer {
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
+  /** retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s) */
+  viscosity_s?: number;
   /** elastic energy */
   model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
   /** mass density (1 to 25000 kg/m^3) */
