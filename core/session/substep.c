@@ -227,10 +227,15 @@ void cau_session_predict_on(cau_session *session)
 			size_t i = 3 * (size_t)v + (size_t)c;
 			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
 			session->solver.predicted[i] += h * h * push;
-			// s2 with the first substep's acceleration in place of the second's
+			// s2 with the first substep's acceleration in place of the second's. Where anything
+			// touches, this would lead too far for contact: there it is the first one's speed.
 			double speed = (substep->base[i] - substep->tick_start[i]) / rest_s;
 			double rate = (speed - session->velocity[i]) / h;
-			if (!session->fixed[v])
+			if (session->fixed[v])
+				continue;
+			if (session->solver.collide || session->contact.row_count)
+				session->position[i] += rest_s * speed;
+			else
 				session->position[i] = session->solver.predicted[i] + h * h * (rate - push);
 		}
 }
