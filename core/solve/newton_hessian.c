@@ -81,6 +81,10 @@ typedef struct sheet_answer {
 	double squared;
 	sheet_hessian *to;
 	double negative; // as in cau_newton
+	// Viscosity's stress in the plane over the element's weight. Across the plane it is stiffness
+	// beside the limit's. `across`: it is in K there.
+	symmetric2 tension;
+	bool across;
 } sheet_answer;
 
 // The polar factor of F T^(1/2) = Q S. full: F has its rank; else Q is the one that was kept.
@@ -118,14 +122,19 @@ static symmetric2 normal_stiffness(const sheet_polar *polar, symmetric2 root)
 	return (symmetric2){1 - b.a00, 1 - b.a11, -b.a01};
 }
 
-static void add_target_hessian(sheet_hessian *to, const cau_vec3 f[2], symmetric2 root,
-                               const sheet_polar *polar, double negative)
+static void add_target_hessian(sheet_answer *answer, const cau_vec3 f[2], symmetric2 root,
+                               const sheet_polar *polar)
 {
+	sheet_hessian *to = answer->to;
+	double negative = answer->negative;
 	add_identity(&to->k[0], 1);
 	add_identity(&to->k[1], 1);
 	if (!polar->full) // Q is kept, and K is the identity
 		return;
-	symmetric2 normal = filtered(normal_stiffness(polar, root), negative);
+	symmetric2 normal = normal_stiffness(polar, root), more = answer->tension;
+	normal = (symmetric2){normal.a00 + more.a00, normal.a11 + more.a11, normal.a01 + more.a01};
+	normal = filtered(normal, negative);
+	answer->across = true;
 	cau_vec3 n = cau_unit_or(cau_cross(f[0], f[1]), (cau_vec3){0});
 	add_outer(&to->k[0], normal.a00 - 1, n, n);
 	add_outer(&to->k[1], normal.a11 - 1, n, n);
@@ -149,7 +158,7 @@ static void add_target(sheet_answer *answer, const cau_vec3 f[2], symmetric2 roo
 	answer->squared = cau_dot(answer->residual[0], answer->residual[0]) +
 	                  cau_dot(answer->residual[1], answer->residual[1]);
 	if (answer->to)
-		add_target_hessian(answer->to, f, root, &polar, answer->negative);
+		add_target_hessian(answer, f, root, &polar);
 }
 
 // Strains kept in a range (strain_range.h). A column beyond it adds stiffness along itself. Across
@@ -200,6 +209,40 @@ static void add_range(sheet_answer *answer, const cau_vec3 f[2], const cau_sheet
 	add_shear(answer, f, group->shear_max);
 }
 
+// Viscosity (viscous_kernel.h): `share` / 2 |E - R|^2, of the element's weight; the tension is
+// `share` (E - R). Its Hessian is that of dE, and the tension, where negative eigenvalues count as
+// they do.
+static symmetric2 tension_of(const cau_vec3 f[2], symmetric2 from, double share)
+{
+	return (symmetric2){share * ((cau_dot(f[0], f[0]) - 1) / 2 - from.a00),
+	                    share * ((cau_dot(f[1], f[1]) - 1) / 2 - from.a11),
+	                    share * (cau_dot(f[0], f[1]) / 2 - from.a01)};
+}
+
+static void add_viscosity(sheet_answer *answer, const cau_vec3 f[2], double share)
+{
+	symmetric2 s = answer->tension;
+	answer->squared += (s.a00 * s.a00 + s.a11 * s.a11 + 2 * s.a01 * s.a01) / share;
+	answer->residual[0] = cau_add(answer->residual[0], combine(s.a00, f[0], s.a01, f[1]));
+	answer->residual[1] = cau_add(answer->residual[1], combine(s.a01, f[0], s.a11, f[1]));
+	if (!answer->to)
+		return;
+	matrix3 *k = answer->to->k;
+	symmetric2 beside = filtered(s, answer->negative);
+	cau_vec3 n = cau_unit_or(cau_cross(f[0], f[1]), (cau_vec3){0});
+	const double part[3] = {beside.a00, beside.a11, beside.a01};
+	for (int a = 0; a < 3; a++) {
+		add_identity(&k[a], part[a]);
+		if (answer->across)
+			add_outer(&k[a], -part[a], n, n);
+	}
+	for (int a = 0; a < 2; a++) {
+		add_outer(&k[a], share, f[a], f[a]);
+		add_outer(&k[a], share / 2, f[1 - a], f[1 - a]);
+	}
+	add_outer(&k[2], share / 2, f[1], f[0]);
+}
+
 // Element vertices, G by vertex and column of F, and weight.
 typedef struct sheet_element {
 	int32_t vertex[3];
@@ -245,6 +288,14 @@ static sheet_element sheet_at(const cau_step_solver *solver, const cau_local_wor
 		element.kept[c] = get3(solver, set->polar + 3 * c, slot);
 	}
 	return element;
+}
+
+// R of viscosity
+static symmetric2 strain_at(const cau_step_solver *solver, int32_t slot)
+{
+	void *const *strain = solver->elements.sheet.strain;
+	return (symmetric2){get(solver, strain[0], slot), get(solver, strain[1], slot),
+	                    get(solver, strain[2], slot)};
 }
 
 // u = x - X, m
@@ -354,10 +405,15 @@ static void add_sheet(cau_newton *newton, const cau_step_solver *solver, const c
 	if (!(element.weight > 0))
 		return;
 	find_gradient(solver, &element, f);
+	double share = group->viscosity_s * solver->elements.rate_per_s;
+	if (share > 0)
+		answer.tension = tension_of(f, strain_at(solver, slot), share);
 	if (element.root.a00 > 0)
 		add_target(&answer, f, element.root, element.kept);
 	else if (group->limit == CAU_LIMIT_RANGE)
 		add_range(&answer, f, group);
+	if (share > 0)
+		add_viscosity(&answer, f, share);
 	newton->energy += element.weight / 2 * answer.squared;
 	for (int i = 0; i < 3; i++)
 		add_force(

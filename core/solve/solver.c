@@ -39,15 +39,6 @@ bool cau_solver_is_conservative(const cau_tissue *tissue, bool diagonal)
 	return !diagonal;
 }
 
-// Newton's method for loose sheets knows no viscosity.
-static bool has_viscous_sheet(const cau_tissue *tissue)
-{
-	for (int32_t i = 0; i < tissue->layer_count; i++)
-		if (tissue->layer[i].triangle_count && tissue->layer[i].def.viscosity_s > 0)
-			return true;
-	return false;
-}
-
 static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, cau_error *error)
 {
 	size_t n = (size_t)solver->tissue->vertex_count, size = solver->kernels->vectors->real_bytes;
@@ -107,7 +98,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->whole_panels = CAU_WHOLE_PANELS;
 	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
-	solver->none_loose = scene->contact_thickness_m > 0 || has_viscous_sheet(tissue);
+	solver->none_loose = scene->contact_thickness_m > 0;
 	solver->newton_chosen = scene->solver == CAU_SOLVER_NEWTON && solver->conservative;
 	cau_status status =
 		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);

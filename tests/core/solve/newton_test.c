@@ -10,7 +10,7 @@
 static const double DIFFERENCE_M = 1e-8, DIFFERENCE_TOLERANCE = 1e-5;
 static const double SOLVE_TOLERANCE = 1e-9; // rounding times a condition of some 1e5
 
-enum { TAUT, LOOSE, RANGE, LAWS };
+enum { TAUT, LOOSE, RANGE, VISCOUS, LAWS };
 
 static void make(rig *r, int law, double stretch)
 {
@@ -18,7 +18,9 @@ static void make(rig *r, int law, double stretch)
 	double a[3][3] = {{stretch, 0.05, 0}, {0, 1.1 * stretch, 0}, {0.2, -0.1, 1}};
 	rig_begin(r);
 	r->scene->solver = CAU_SOLVER_NEWTON;
-	cau_sheet_material *sheet = &rig_add_sheet(r, 6, 5)->sheet[0];
+	cau_layer_def *layer = rig_add_sheet(r, 6, 5);
+	cau_sheet_material *sheet = &layer->sheet[0];
+	layer->viscosity_s = law == VISCOUS ? 0.01 : 0;
 	sheet->limit = law == RANGE ? CAU_LIMIT_RANGE : CAU_LIMIT_TARGET;
 	sheet->target[0] = law == TAUT ? 0.3 : 1;
 	sheet->target[1] = law == TAUT ? 0.6 : 1;
@@ -29,7 +31,9 @@ static void make(rig *r, int law, double stretch)
 	rig_build(r, NULL, 1);
 	rig_factor(r);
 	assert_true(r->solver.newton_chosen);
+	cau_solver_take_strain(&r->solver, 1); // at rest
 	rig_deform(r, a, 2e-4, &random, r->solver.position);
+	cau_solver_take_strain(&r->solver, 0.8); // a fifth of the strain is of this step
 	r->solver.drag = cau_arena_array(&r->arena, 1, sizeof *r->solver.drag);
 	r->solver.drag_count = 1;
 	r->solver.drag[0] = (cau_drag){20, 40.0, {0.01, 0.02, -0.01}};
@@ -237,7 +241,8 @@ static void settling_leaves_no_force(void **state)
 		double objective = cau_solver_evaluate(&r.solver), first = objective;
 		take(&r, r.solver.gradient, gradient);
 		double size = sqrt(dot(gradient, gradient, n)), left = 0;
-		for (int k = 0; k < 4 && (!k || !r.solver.loose.settled); k++)
+		int most = law == VISCOUS ? 12 : 4; // it buckles on its way
+		for (int k = 0; k < most && (!k || !r.solver.loose.settled); k++)
 			assert_int_equal(cau_loose_settle(&r.solver, &objective, NULL), CAU_OK);
 		assert_true(r.solver.loose.settled && !r.solver.loose.given_up && objective < first);
 		take(&r, r.solver.gradient, gradient);
