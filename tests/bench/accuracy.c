@@ -15,18 +15,16 @@ enum {
 	WARM_UP = 60,
 	MOST = 40, // iterations of a step that has an accuracy to reach
 	SAMPLES = 20,
-	CONVERGED = 300,
 	REST_TICKS = 3000, // until tissue rests, at most
 	RESTING_TICKS = 100000,
 };
-static const double converged_residual = 3e-7;
 
 typedef struct turns {
 	cau_session *session, *fixed, *exact;
 	double accuracy;
 } turns;
 
-static void copy_state(cau_session *to, const cau_session *from)
+void bench_copy_state(cau_session *to, const cau_session *from)
 {
 	size_t bytes = cau_session_snapshot_bytes(from), used = 0;
 	void *shot = malloc(bytes);
@@ -37,6 +35,13 @@ static void copy_state(cau_session *to, const cau_session *from)
 		exit(1);
 	}
 	free(shot);
+}
+
+void bench_converge(cau_session *session)
+{
+	session->solver.accuracy.wanted = 0;
+	session->solver.iterations = 300;
+	session->solver.tolerance = 3e-7;
 }
 
 static double step_s(cau_session *session)
@@ -59,7 +64,7 @@ static void measure(turns *t, int32_t steps, bench_accuracy_result *result)
 	for (int32_t i = -WARM_UP; i < steps; i++) {
 		bool sampled = t->exact && i >= 0 && i % every == 0 && samples < SAMPLES;
 		if (sampled) {
-			copy_state(t->exact, t->session);
+			bench_copy_state(t->exact, t->session);
 			step_s(t->exact);
 		}
 		double accurate = step_s(t->session), fixed = step_s(t->fixed);
@@ -90,7 +95,7 @@ static int measure_rest(turns *t, bench_accuracy_result *result)
 	for (int32_t i = 0; i < RESTING_TICKS; i++)
 		cau_session_step(t->session, NULL);
 	result->rest_core_share = (bench_now_s() - start) / (RESTING_TICKS * t->session->solver.step_s);
-	copy_state(t->fixed, t->session); // awake, both from rest
+	bench_copy_state(t->fixed, t->session); // awake, both from rest
 	return 0;
 }
 
@@ -125,11 +130,8 @@ int bench_accuracy(const bench_options *options, bench_accuracy_result *result)
 		t.fixed->solver.accuracy.wanted = 0;
 		t.fixed->solver.iterations = options->iterations;
 	}
-	if (t.exact) {
-		t.exact->solver.accuracy.wanted = 0;
-		t.exact->solver.iterations = CONVERGED;
-		t.exact->solver.tolerance = converged_residual;
-	}
+	if (t.exact)
+		bench_converge(t.exact);
 	int failed = measure_scene(&t, options, result);
 	cau_session_destroy(t.session);
 	cau_session_destroy(t.fixed);

@@ -59,6 +59,17 @@ typedef struct bench_cut_result {
 	int32_t elements_removed, cutting_steps, refactorisations;
 } bench_cut_result;
 int bench_cut(const bench_options *options, bench_cut_result *result);
+// cut.c: the errors of its steps, as the session reports them and as they are.
+typedef struct bench_along_result {
+	int32_t steps, sampled; // sampled: computed again until they converged
+	double above;           // share of the steps whose reported error is larger than wanted
+	double reported_p50, reported_p95;    // of all steps
+	double true_p50, true_p95, true_most; // of sampled steps
+	double optimistic; // share of these whose true error is over 3 x the reported
+	double iterations_mean, ms_median, ms_p99; // of a step; CPU time of all threads
+	int32_t elements_removed;
+} bench_along_result;
+int bench_along(const bench_options *options, bench_along_result *result);
 
 // error.c: error of K iterations against the converged step, under the scene's pull.
 enum { BENCH_CURVE = 9 };
@@ -79,6 +90,11 @@ typedef struct bench_accuracy_result {
 	double rest_core_share; // of a session that rests, of one core
 } bench_accuracy_result;
 int bench_accuracy(const bench_options *options, bench_accuracy_result *result);
+// Has `to`, a session of the same scene, be in the state of `from`.
+void bench_copy_state(cau_session *to, const cau_session *from);
+// Its steps iterate until they have converged.
+void bench_converge(cau_session *session);
+
 // classroom.c: many sessions at the pace of the clock, some of them driven, by a few workers.
 typedef struct bench_classroom_result {
 	double realtime_factor_min;   // simulated over wall time, of the session that has least

@@ -10,6 +10,8 @@
 #include <string.h>
 
 #include "bench/bench.h"
+#include "core/rig/step_error.h"
+#include "session/session_internal.h"
 
 enum { PLAIN_STEPS = 120 };
 
@@ -154,6 +156,109 @@ int bench_cut(const bench_options *options, bench_cut_result *result)
 		sum_up(&times, result);
 	free(times.drawn);
 	free(times.cuts);
+	free(scene);
+	return failed;
+}
+
+// ---- errors along the cut
+
+enum { SAMPLE_EVERY = 24 }; // steps; a converged step takes some hundred iterations
+
+typedef struct along_run {
+	cut_run cut;
+	cau_session *exact;
+	double accuracy, *reported, *found, *ms;
+	int64_t iterations;
+	int32_t optimistic, above;
+} along_run;
+
+static int step_along(along_run *run, int32_t at, bench_along_result *result)
+{
+	bool sampled = at % SAMPLE_EVERY == 0;
+	cau_session *session = run->cut.session;
+	cau_frame frame;
+	double ms;
+	if (sampled) {
+		bench_copy_state(run->exact, session);
+		bench_keep_awake(run->exact);
+		if (cau_session_step(run->exact, NULL))
+			return 1;
+	}
+	double before = bench_cpu_s();
+	if (step(&run->cut, &ms, &frame))
+		return 1;
+	run->ms[at] = 1e3 * (bench_cpu_s() - before);
+	double reported = run->reported[at] = session->solver.accuracy.error;
+	run->iterations += session->solver.iterations_done;
+	run->above += reported > run->accuracy;
+	result->elements_removed = frame.statistics.elements_removed;
+	if (!sampled)
+		return 0;
+	double is = step_error(session, run->exact->position, run->accuracy);
+	run->found[result->sampled++] = is;
+	run->optimistic += is > 3 * fmax(reported, run->accuracy / 3);
+	return 0;
+}
+
+static void sum_up_along(along_run *run, bench_along_result *result)
+{
+	int32_t n = result->steps;
+	result->above = (double)run->above / n;
+	result->optimistic = (double)run->optimistic / result->sampled;
+	result->iterations_mean = (double)run->iterations / n;
+	result->reported_p50 = bench_quantile(run->reported, n, 0.5);
+	result->reported_p95 = bench_quantile(run->reported, n, 0.95);
+	result->true_p50 = bench_quantile(run->found, result->sampled, 0.5);
+	result->true_p95 = bench_quantile(run->found, result->sampled, 0.95);
+	result->true_most = bench_quantile(run->found, result->sampled, 1);
+	result->ms_median = bench_quantile(run->ms, n, 0.5);
+	result->ms_p99 = bench_quantile(run->ms, n, 0.99);
+}
+
+// The tool dwells and is drawn across; PLAIN_STEPS before and after, when the wound settles.
+static int draw_along(along_run *run, const cau_scene_def *scene, bench_along_result *result)
+{
+	int32_t dwell = (int32_t)(scene->cut.dwell_s / run->cut.step_s);
+	int32_t across = ticks_across(&run->cut), n = dwell + across + 2 * PLAIN_STEPS;
+	run->reported = calloc((size_t)n, sizeof *run->reported);
+	run->found = calloc((size_t)n / SAMPLE_EVERY + 1, sizeof *run->found);
+	run->ms = calloc((size_t)n, sizeof *run->ms);
+	int failed = !run->reported || !run->found || !run->ms;
+	for (int32_t i = 0; i < n && !failed; i++) {
+		if (i == PLAIN_STEPS)
+			energize(&run->cut);
+		if (i == 0)
+			move_to(&run->cut, 0);
+		else if (i > PLAIN_STEPS + dwell && i <= PLAIN_STEPS + dwell + across)
+			move_to(&run->cut, (double)(i - PLAIN_STEPS - dwell) / across);
+		failed = step_along(run, i, result);
+	}
+	result->steps = n;
+	if (!failed)
+		sum_up_along(run, result);
+	free(run->reported);
+	free(run->found);
+	free(run->ms);
+	return failed;
+}
+
+int bench_along(const bench_options *options, bench_along_result *result)
+{
+	memset(result, 0, sizeof *result);
+	cau_scene_def *scene = bench_scene_as_it_is(options);
+	if (!scene)
+		return 1;
+	scene->accuracy = options->accuracy;
+	along_run run = {.cut = {bench_session(scene, options, options->threads), scene, scene->step_s},
+	                 .exact = bench_session(scene, options, options->threads),
+	                 .accuracy = options->accuracy};
+	int failed = !run.cut.session || !run.exact || !scene->cut.present;
+	if (!failed) {
+		bench_converge(run.exact);
+		failed = draw_along(&run, scene, result);
+	}
+	cau_session_destroy(run.cut.session);
+	cau_session_destroy(run.exact);
 	free(scene);
 	return failed;
 }

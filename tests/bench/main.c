@@ -82,6 +82,22 @@ static void print_accuracy(const bench_options *options, const bench_accuracy_re
 		printf(options->json ? ",\"error_p95\":%.6g" : ", error p95 %.4g\n", result->error_p95);
 }
 
+static void print_along(const bench_options *options, const bench_along_result *r)
+{
+	printf(options->json
+	           ? "\"along\":{\"steps\":%d,\"above\":%.6g,\"reported_p50\":%.6g,\"reported_"
+	             "p95\":%.6g,\"sampled\":%d,\"true_p50\":%.6g,\"true_p95\":%.6g,\"true_"
+	             "most\":%.6g,\"optimistic\":%.6g,\"iterations_mean\":%.6g,\"ms_median\":%.6g,"
+	             "\"ms_p99\":%.6g,\"elements_removed\":%d}"
+	           : "  along the cut, %d steps: reported error above the wanted one in %.3g of "
+	             "them, p50 %.4g, p95 %.4g; %d computed again: true error p50 %.4g, p95 %.4g, "
+	             "most %.4g, above 3 x the reported in %.3g; %.2f iterations, CPU median %.3f "
+	             "ms, p99 %.3f ms; %d elements removed\n",
+	       r->steps, r->above, r->reported_p50, r->reported_p95, r->sampled, r->true_p50,
+	       r->true_p95, r->true_most, r->optimistic, r->iterations_mean, r->ms_median, r->ms_p99,
+	       r->elements_removed);
+}
+
 static void print_limit(const bench_options *options, const bench_limit_result *result)
 {
 	printf(options->json ? "\"bytes_step\":%.0f,\"bandwidth_b_s\":%.4g,\"limit_ms\":%.6g"
@@ -174,6 +190,7 @@ int main(int argc, char **argv)
 	bench_scaling_result scaling = {0};
 	bench_limit_result limit;
 	bench_accuracy_result accuracy = {0};
+	bench_along_result along = {0};
 	bench_update_result update = {0};
 	bench_remesh_result remesh = {0};
 	bench_classroom_result classroom = {0};
@@ -188,6 +205,7 @@ int main(int argc, char **argv)
 	    (options.cut && bench_cut(&options, &cut)) ||
 	    (options.error && bench_error(&options, &error)) ||
 	    ((options.accuracy > 0 || options.rest) && bench_accuracy(&options, &accuracy)) ||
+	    (options.accuracy > 0 && options.cut && bench_along(&options, &along)) ||
 	    (options.scaling && bench_scaling(&options, &scaling)) ||
 	    (options.update && bench_update(&options, &update)) ||
 	    (options.remesh && bench_remesh(&options, &remesh)) ||
@@ -210,6 +228,10 @@ int main(int argc, char **argv)
 	if (options.accuracy > 0 || options.rest) {
 		fputs(options.json ? "," : "", stdout);
 		print_accuracy(&options, &accuracy);
+	}
+	if (options.accuracy > 0 && options.cut) {
+		fputs(options.json ? "," : "", stdout);
+		print_along(&options, &along);
 	}
 	if (options.scaling) {
 		fputs(options.json ? "," : "", stdout);

@@ -33,7 +33,8 @@ static const cau_option rows[] = {
 	{"error", NULL, CAU_OPTION_FLAG, AT(error),
      .meaning = "error of K iterations against the converged step under the scene's pull"},
 	{"accuracy", "A", CAU_OPTION_NUMBER, AT(accuracy), 1e-4, 1,
-     .meaning = "steps that end at this error against K iterations, alternating"},
+     .meaning = "steps that end at this error against K iterations, alternating; with --cut\n"
+                "also the errors along the cut, as reported and as they are"},
 	{"rest", NULL, CAU_OPTION_FLAG, AT(rest),
      .meaning = "the same at rest and awake, and the cost of a resting session"},
 	{"scaling", NULL, CAU_OPTION_FLAG, AT(scaling), .meaning = "step time against size"},
