@@ -29,14 +29,29 @@ static double potential(double stiffness, double thickness, double distance, dou
 	return scale * (0.5 + log(half / at)) + force * in + *curvature * in * in / 2;
 }
 
+// A direction that keeps the parts further apart than the thickness spares the search for the
+// nearest places: by more than rounding, so that who has no such direction comes to the same.
+static const double surely = 1 + 1e-9;
+
+double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
+                         double *slope, double *curvature)
+{
+	const cau_collide_pair *of = &collide->pair[pair];
+	cau_vec3 corner[4];
+	cau_collide_corners(of, x, corner);
+	*slope = *curvature = 0;
+	if (cau_gap_along(of->kind, corner, of->plane) >= surely * of->thickness_m)
+		return 0;
+	*gap = cau_gap_between(of->kind, corner);
+	if (!(gap->distance < of->thickness_m) || !(gap->distance > 0))
+		return 0;
+	return potential(of->stiffness, of->thickness_m, gap->distance, slope, curvature);
+}
+
 typedef struct measuring {
 	cau_collide *collide;
 	const double *x;
 } measuring;
-
-// A direction that keeps the parts further apart than the thickness spares the search for the
-// nearest places: by more than rounding, so that who has no such direction comes to the same.
-static const double surely = 1 + 1e-9;
 
 static void measure(const cau_collide *collide, int32_t index, const double *x)
 {
@@ -105,24 +120,34 @@ static void unload(cau_collide *collide)
 	collide->loaded_count = 0;
 }
 
-// Elastic up to the most that friction bears, and of that force beyond.
-static double add_grip(cau_collide *collide, cau_collide_grip *grip, const double *x)
+// Elastic up to the most that friction bears, and of that force beyond. The force is `present` times
+// the slip.
+double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip, const double *x,
+                        cau_vec3 *slip, double *present)
 {
-	cau_vec3 slip = {0, 0, 0};
+	*slip = (cau_vec3){0, 0, 0};
 	for (int i = 0; i < 4; i++) {
 		size_t at = 3 * (size_t)grip->vertex[i];
-		slip = cau_add_scaled(slip, grip->weight[i],
-		                      cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->start + at)));
+		*slip = cau_add_scaled(*slip, grip->weight[i],
+		                       cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->start + at)));
 	}
-	slip = cau_add_scaled(slip, -cau_dot(slip, grip->normal), grip->normal);
-	double length = cau_length(slip), yield = grip->most_n / grip->stiffness;
-	grip->present = grip->stiffness;
+	*slip = cau_add_scaled(*slip, -cau_dot(*slip, grip->normal), grip->normal);
+	double length = cau_length(*slip), yield = grip->most_n / grip->stiffness;
+	*present = grip->stiffness;
 	if (!(length > 0))
 		return 0;
 	double force = length < yield ? grip->stiffness * length : grip->most_n;
-	grip->present = force / length;
-	load(collide, grip->vertex, grip->weight, cau_scale(grip->present, slip));
+	*present = force / length;
 	return length < yield ? force * length / 2 : force * (length - yield / 2);
+}
+
+static double add_grip(cau_collide *collide, cau_collide_grip *grip, const double *x)
+{
+	cau_vec3 slip;
+	double energy = cau_collide_slip(collide, grip, x, &slip, &grip->present);
+	if (energy > 0)
+		load(collide, grip->vertex, grip->weight, cau_scale(grip->present, slip));
+	return energy;
 }
 
 static double distance_of(const cau_collide_pair *pair, const double *x)

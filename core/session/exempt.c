@@ -59,16 +59,26 @@ static bool exempt_thrown(cau_session *session, const double *guess, double most
 	return any;
 }
 
+static int32_t count_exempt(const cau_session *session)
+{
+	int32_t count = 0;
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		count += session->collide.exempt[v];
+	return count;
+}
+
 bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told)
 {
 	cau_collide *collide = &session->collide;
 	memset(collide->exempt, 0, (size_t)session->tissue.vertex_count);
 	exempt_held(session);
+	int32_t held = count_exempt(session);
 	bool all = exempt_inverted(session);
 	*told = exempt_thrown(session, guess, most_m) || all;
 	if (all)
 		cau_collide_forget_crossed(collide);
 	else if (cau_collide_touches_again(collide))
 		cau_collide_exempt_crossed(collide, session->position_start);
+	session->solver.none_loose = all || count_exempt(session) > held;
 	return !all;
 }

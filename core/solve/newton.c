@@ -127,6 +127,24 @@ static bool take_step(cau_newton *newton, cau_step_solver *solver)
 	return false;
 }
 
+// Shortens a row's step to `most`, m, and where other tissue is to CAU_SETTLED_WAY_M from where the
+// settling began.
+static void keep_within(const cau_step_solver *solver, double *way, int32_t vertex, double most)
+{
+	double length = sqrt(length2(way)), whole[3];
+	for (int c = 0; c < 3 && length > most; c++)
+		way[c] *= most / length;
+	if (!solver->collide)
+		return;
+	const double *x = solver->position + 3 * (int64_t)vertex;
+	const double *from = solver->position_before + 3 * (int64_t)vertex;
+	for (int c = 0; c < 3; c++)
+		whole[c] = x[c] + way[c] - from[c];
+	double share = CAU_SETTLED_WAY_M / sqrt(length2(whole));
+	for (int c = 0; c < 3 && share < 1; c++)
+		way[c] = from[c] + share * whole[c] - x[c];
+}
+
 typedef enum outcome { STILL, MOVED, STUCK, NO_MEMORY } outcome;
 
 // One of Newton's steps. STILL: it would move nothing; H is factored where R is.
@@ -143,6 +161,8 @@ static outcome step(cau_newton *newton, cau_step_solver *solver)
 		most2 = fmax(most2, length2(newton->field + 4 * (int64_t)i));
 	if (most2 <= still * still)
 		return STILL;
+	for (int32_t i = 0; i < newton->n; i++)
+		keep_within(solver, newton->field + 4 * (int64_t)i, newton->vertex[i], newton->room[i]);
 	return take_step(newton, solver) ? MOVED : STUCK;
 }
 
@@ -167,7 +187,8 @@ static outcome settle_part(cau_step_solver *solver)
 	cau_loose *loose = &solver->loose;
 	outcome last = MOVED;
 	choose_part(loose);
-	if (!cau_newton_create(&loose->part, solver, &loose->region))
+	if (!cau_newton_create(&loose->part, solver, &loose->region) ||
+	    !cau_newton_find_touching(&loose->part, solver, &loose->region))
 		return NO_MEMORY;
 	for (int k = 0; k < MOST_PART_STEPS && last == MOVED && loose->part.n && !is_spent(solver); k++)
 		last = step(&loose->part, solver);
@@ -197,12 +218,25 @@ static double left_to_do(const cau_step_solver *solver)
 	return sqrt(last / region->n) / fmax(motion_of(solver), NOTHING_M);
 }
 
+// Has the pairs of tissue contact be known as far as R may move. False: they exceed the capacity.
+static bool surround(cau_step_solver *solver)
+{
+	const cau_newton *region = &solver->loose.region;
+	return !solver->collide ||
+	       cau_collide_surround(solver->collide, solver->pool, solver->position, region->vertex,
+	                            region->n, CAU_SETTLED_WAY_M);
+}
+
 static outcome settle(cau_step_solver *solver)
 {
 	cau_loose *loose = &solver->loose;
 	outcome last = MOVED;
 	loose->left = 0;
 	loose->region.negative = loose->part.negative = 1;
+	if (!surround(solver))
+		return STUCK;
+	if (!cau_newton_find_touching(&loose->region, solver, NULL))
+		return NO_MEMORY;
 	loose->still_m = solver->accuracy.wanted > 0
 	                     ? fmax(SETTLED_M, SETTLED * solver->accuracy.wanted * motion_of(solver))
 	                     : SETTLED_EXACTLY_M;
@@ -216,51 +250,82 @@ static outcome settle(cau_step_solver *solver)
 	return last;
 }
 
-// Back to where R was: its rows are left to A for the rest of the step.
-static void give_up(cau_step_solver *solver, const double *from, double *objective)
+// Back to where all was: R is left to A for the rest of the step.
+static void give_up(cau_step_solver *solver, double *objective)
 {
-	const cau_newton *region = &solver->loose.region;
-	for (int32_t i = 0; i < region->n; i++)
-		memcpy(solver->position + 3 * (int64_t)region->vertex[i], from + 4 * (int64_t)i,
-		       3 * sizeof(double));
+	memcpy(solver->position, solver->position_before,
+	       3 * (size_t)solver->tissue->vertex_count * sizeof(double));
 	solver->loose.given_up = true;
 	*objective = cau_solver_evaluate(solver);
 }
 
-static bool has_moved(const cau_step_solver *solver, const double *from)
+static bool has_moved(const cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
-	for (int32_t i = 0; i < region->n; i++)
-		for (int c = 0; c < 3; c++)
-			if (solver->position[3 * region->vertex[i] + c] != from[4 * i + c])
-				return true;
+	for (int32_t i = 0; i < region->n; i++) {
+		size_t at = 3 * (size_t)region->vertex[i];
+		if (memcmp(solver->position + at, solver->position_before + at, 3 * sizeof(double)) != 0)
+			return true;
+	}
 	return false;
+}
+
+// R has come from position_before: as far as it crosses no other tissue. Keeps trial_increment. Returns
+// whether it had to be stopped.
+static bool keep_apart(cau_step_solver *solver)
+{
+	const cau_newton *region = &solver->loose.region;
+	const cau_vectors *vectors = solver->kernels->vectors;
+	cau_reals *way = solver->trial_increment;
+	solver->trial_increment = solver->yield.residual;
+	solver->yield.residual = way;
+	size_t n = (size_t)solver->tissue->vertex_count;
+	memset(solver->trial_increment, 0, 4 * n * vectors->real_bytes);
+	for (int32_t i = 0; i < region->n; i++) {
+		double of[3];
+		for (size_t c = 0; c < 3; c++) {
+			size_t at = 3 * (size_t)region->vertex[i] + c;
+			of[c] = solver->position[at] - solver->position_before[at];
+		}
+		vectors->add(solver->trial_increment, region->vertex[i], of);
+	}
+	bool held_back = solver->collide->held_back;
+	cau_collide_stand(solver->collide, solver->position_before);
+	bool stopped = cau_solver_keep_apart(solver, solver->position_before);
+	solver->collide->held_back = held_back;
+	for (size_t v = 0; v < n && stopped; v++) {
+		double of[3];
+		vectors->read(solver->trial_increment, (int32_t)v, of);
+		for (size_t c = 0; c < 3; c++)
+			solver->position[3 * v + c] = solver->position_before[3 * v + c] + of[c];
+	}
+	way = solver->trial_increment;
+	solver->trial_increment = solver->yield.residual;
+	solver->yield.residual = way;
+	return stopped;
 }
 
 cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_error *error)
 {
 	cau_loose *loose = &solver->loose;
-	cau_newton *region = &loose->region;
-	size_t bytes = 4 * (size_t)region->n * sizeof(double);
-	double *from = malloc(bytes), before = *objective;
-	CAU_ASSERT(region->n > 0, "%d rows to settle", region->n);
-	if (!from)
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
-	keep_rows(region, solver);
-	memcpy(from, region->from, bytes);
+	double before = *objective;
+	CAU_ASSERT(loose->region.n > 0, "%d rows to settle", loose->region.n);
+	memcpy(solver->position_before, solver->position,
+	       3 * (size_t)solver->tissue->vertex_count * sizeof(double));
 	outcome last = settle(solver);
-	bool moved = has_moved(solver, from);
-	loose->moved = moved;
+	if (last == NO_MEMORY)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
+	loose->moved = has_moved(solver);
 	loose->fresh = last == STILL;
-	if (moved)
+	if (loose->moved && solver->collide && keep_apart(solver))
+		loose->settled = loose->fresh = false;
+	if (loose->moved)
 		*objective = cau_solver_evaluate(solver);
 	double noise = solver->kernels->vectors->rounding * fabs(cau_solver_elastic_energy(solver));
-	if (last != NO_MEMORY && !(*objective <= before + noise))
-		give_up(solver, from, objective);
+	if (!(*objective <= before + noise))
+		give_up(solver, objective);
 	loose->given_up |= is_spent(solver);
-	free(from);
-	return last == NO_MEMORY ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps")
-	                         : CAU_OK;
+	return CAU_OK;
 }
 
 // ---- increment

@@ -531,6 +531,7 @@ static void evaluate(cau_newton *newton, const cau_step_solver *solver, bool hes
 		else
 			add_length(newton, solver, work, element->slot, hessian);
 	}
+	cau_newton_touch(newton, solver);
 }
 
 // Blocks that an element may have between the region and the rest: a hinge's 2 x 2.

@@ -35,7 +35,8 @@ static bool make_rows(cau_newton *newton, int32_t n)
 	       make_room(&newton->gradient, count, four) && make_room(&newton->from, count, four) &&
 	       make_room(&newton->next, count, sizeof(int32_t)) &&
 	       make_room(&newton->head, count, sizeof(int32_t)) &&
-	       make_room(&newton->at, count, sizeof(int32_t));
+	       make_room(&newton->at, count, sizeof(int32_t)) &&
+	       make_room(&newton->room, count, sizeof(double));
 }
 
 static bool make_blocks(cau_newton *newton, int32_t count)
@@ -269,6 +270,7 @@ void cau_newton_finish(cau_newton *newton)
 	                  newton->row,     newton->block, newton->pivot,    newton->inverse,
 	                  newton->column,  newton->field, newton->gradient, newton->from,
 	                  newton->next,    newton->head,  newton->at,       newton->element,
+	                  newton->pair,    newton->grip,  newton->room,
 	                  newton->coupling};
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
 		free(arrays[i]);

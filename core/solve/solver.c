@@ -98,7 +98,6 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->whole_panels = CAU_WHOLE_PANELS;
 	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
-	solver->none_loose = scene->contact_thickness_m > 0;
 	solver->newton_chosen = scene->solver == CAU_SOLVER_NEWTON && solver->conservative;
 	cau_status status =
 		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);
