@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which vertices a step leaves to Newton's method: vertices of slack sheets, but none of fat and
-// none near a tool. Scenes with tissue contact have no such vertices. Settling would move them
-// through other tissue, and steps that are shortened to prevent it leave them unsettled.
+// none near a tool.
 #include <stdlib.h>
 #include <string.h>
 
