@@ -80,6 +80,8 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
                               cau_error *error)
 {
 	cau_moved_to to;
+	// Asked first: an arrival becomes one of the hub's sessions before it ceases to be an arrival.
+	bool arrives = creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_arrives(hub, id);
 	cau_hosted *other = cau_hub_find(hub, id);
 	cau_hosted_release(other);
 	if (other)
@@ -87,7 +89,7 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
 	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_moved(hub, id, &to))
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` has moved and is `%s` now",
 		                id, to.session);
-	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_arrives(hub, id))
+	if (arrives)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
 		                "`%s` is moving here from another daemon", id);
 	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
@@ -166,9 +168,11 @@ static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 // A session that was made since the request came is not what it meant.
 static void act_on_missing(cau_hub *hub, const cau_creation *asked)
 {
+	bool destroys = asked->reply.method == CAU_METHOD_SESSION_DESTROY;
+	bool arrives = destroys && cau_hub_arrives(hub, asked->name); // first, as in check_place
 	cau_hosted *made = cau_hub_find(hub, asked->name);
-	if (!made && asked->reply.method == CAU_METHOD_SESSION_DESTROY)
-		cau_clerk_discard(hub, asked);
+	if (!made && destroys)
+		cau_clerk_discard(hub, asked, arrives);
 	else
 		cau_clerk_answer_missing(hub, &asked->reply, asked->name);
 	cau_hosted_release(made);

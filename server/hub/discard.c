@@ -88,10 +88,10 @@ static cau_status submit(cau_store *store, const cau_creation *asked, discarding
 	return status;
 }
 
-void cau_clerk_discard(cau_hub *hub, const cau_creation *asked)
+void cau_clerk_discard(cau_hub *hub, const cau_creation *asked, bool arrives)
 {
 	cau_error error = {0};
-	if (cau_hub_arrives(hub, asked->name)) {
+	if (arrives) {
 		cau_fail(&error, CAU_BAD_STATE, "params.session",
 		         "the session is moving here from another daemon: finish it with `cautery move`");
 		cau_reply_fail(&asked->reply, &error, 0);

@@ -53,8 +53,9 @@ void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_or
 
 // ---- discard.c
 void cau_clerk_answer_missing(cau_hub *hub, const cau_reply *reply, const char *id);
-// Destroys the session `asked->name` of the store, which is not among the hub's; answers.
-void cau_clerk_discard(cau_hub *hub, const cau_creation *asked);
+// Destroys the session `asked->name` of the store, which is not among the hub's; answers. One that
+// arrives from another daemon is not destroyed.
+void cau_clerk_discard(cau_hub *hub, const cau_creation *asked, bool arrives);
 
 // ---- sessions.c
 // Whether this session is on its way here from another daemon, and is not this daemon's yet.

@@ -10,13 +10,6 @@
 typedef cau_arrival arrival;
 typedef cau_arrival_hand hand;
 
-// With the lock.
-static arrival *find_own(cau_moves *moves, const cau_move_asked *asked)
-{
-	arrival *a = cau_arrival_find(moves, asked->session);
-	return a && strcmp(a->move, asked->move) == 0 ? a : NULL;
-}
-
 // ---- ready --------------------------------------------------------------------------------------
 
 typedef struct making {
@@ -64,7 +57,7 @@ static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, c
 static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *error)
 {
 	pthread_mutex_lock(&job->moves->mutex);
-	arrival *a = find_own(job->moves, &job->asked);
+	arrival *a = cau_arrival_find_own(job->moves, &job->asked);
 	cau_coming_state state = a ? a->coming.state : CAU_COMING_NOT;
 	bool waits = state == CAU_COMING_INCOMING || state == CAU_COMING_WHOLE;
 	if (!waits || a->writing)
@@ -84,13 +77,17 @@ static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *er
 void cau_arrival_ready(cau_move_job *job)
 {
 	cau_error error = {0};
+	int32_t code = 0;
 	cau_status status = CAU_OK;
 	cau_creation *creation = NULL;
 	arrival *a = begin_build(job, &status, &error);
 	if (a)
 		status = cau_hub_read_session(job->moves->def.hub, a->id, &creation, &error);
+	cau_fault_point("move_building");
 	if (a) {
 		pthread_mutex_lock(&job->moves->mutex);
+		if (!status) // a builder that has stopped would answer at once, under the lock
+			status = cau_arrivals_check_open(job->moves, &code, &error);
 		if (!status)
 			status = build(job, a, creation, &error);
 		a->writing = false;
@@ -99,17 +96,72 @@ void cau_arrival_ready(cau_move_job *job)
 	if (creation)
 		cau_creation_free(creation);
 	if (status)
-		cau_reply_fail(&job->reply, &error, 0);
+		cau_reply_fail(&job->reply, &error, code);
 }
 
 // ---- accept -------------------------------------------------------------------------------------
 
-typedef struct accepting {
+enum { AGAIN_MOST = 8 }; // couriers of one move that wait at once: there is one, or its successor
+
+struct cau_accepting {
 	cau_job job; // first; on the mover, once it is on the disk
 	cau_moves *moves;
-	arrival *arrival;
+	arrival *arrival; // which this owns
 	cau_reply reply;
-} accepting;
+	cau_reply again[AGAIN_MOST]; // to the same request, repeated; with the lock
+	int32_t again_count;
+};
+
+typedef cau_accepting accepting;
+
+// With the lock. The repeated request is answered when the first one has been carried out.
+static cau_status wait_too(accepting *what, const cau_reply *reply, cau_error *error)
+{
+	if (what->again_count == AGAIN_MOST)
+		return cau_fail(error, CAU_LIMIT, "", "the session is being accepted: ask again");
+	what->again[what->again_count++] = *reply;
+	return CAU_OK;
+}
+
+// Answers that it was accepted before, with the session as it is now.
+static void describe(cau_moves *moves, const char *id, const cau_reply *reply)
+{
+	cau_error error = {0};
+	cau_hosted *hosted = cau_hub_find(moves->def.hub, id);
+	cau_order *order = hosted ? calloc(1, sizeof *order) : NULL;
+	cau_status status = CAU_NOT_FOUND;
+	if (order) {
+		order->kind = CAU_ORDER_DESCRIBE;
+		order->reply = *reply;
+		status = cau_hosted_submit(hosted, order, &error);
+	}
+	if (status) {
+		free(order);
+		cau_move_fail(reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
+		              "the session was accepted before, and this daemon does not serve it: it was "
+		              "destroyed, has moved on, or could not be brought up");
+	}
+	cau_hosted_release(hosted);
+}
+
+// The arrival has no owner from here on. A failure is answered; else the session answers `reply`.
+static void end_accepting(accepting *what, const cau_error *failure, int32_t code)
+{
+	char id[CAU_NAME_BYTES];
+	pthread_mutex_lock(&what->moves->mutex);
+	memcpy(id, what->arrival->id, sizeof id);
+	what->arrival->accepting = NULL; // no further request waits
+	pthread_mutex_unlock(&what->moves->mutex);
+	if (failure)
+		cau_reply_fail(&what->reply, failure, code);
+	for (int32_t i = 0; i < what->again_count; i++) {
+		if (failure)
+			cau_reply_fail(&what->again[i], failure, code);
+		else
+			describe(what->moves, id, &what->again[i]);
+	}
+	free(what);
+}
 
 static void submit_plain(cau_hosted *hosted, cau_order *order)
 {
@@ -148,7 +200,7 @@ static void give_hands(cau_moves *moves, const arrival *a, cau_hosted *hosted)
 }
 
 // The core that was built beforehand, among the hub's sessions, shared; NULL: there is none, or no
-// place. Without a place the arrival keeps it.
+// place. Without a place it ends, and is reaped.
 static cau_hosted *place_built(cau_moves *moves, arrival *a)
 {
 	pthread_mutex_lock(&moves->mutex);
@@ -161,7 +213,9 @@ static cau_hosted *place_built(cau_moves *moves, arrival *a)
 		return hosted;
 	pthread_mutex_lock(&moves->mutex);
 	a->hosted = hosted;
+	a->ready = false;
 	pthread_mutex_unlock(&moves->mutex);
+	cau_hosted_give_up(hosted);
 	cau_hosted_release(hosted);
 	return NULL;
 }
@@ -193,20 +247,19 @@ static void run(cau_job *job)
 {
 	accepting *what = (accepting *)job;
 	cau_error error = {0};
+	cau_fault_point("move_placing");
 	cau_status status = serve(what, &error);
-	if (status) {
+	if (status)
 		cau_hosted_tell_not_resumed(what->arrival->id, status, &error);
-		cau_reply_fail(&what->reply, &error, 0);
-	}
-	free(what);
+	end_accepting(what, status ? &error : NULL, 0);
 }
 
 // It is in the store, and comes up with the others at the next start.
 static void drop(cau_job *job)
 {
-	accepting *what = (accepting *)job;
-	cau_move_fail(&what->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "", "the server is shutting down");
-	free(what);
+	cau_error error = {0};
+	cau_fail(&error, CAU_BAD_STATE, "", "the server is shutting down");
+	end_accepting((accepting *)job, &error, CAU_RPC_DRAINING);
 }
 
 // On the store's thread.
@@ -214,6 +267,7 @@ static void accepted(void *user, cau_status status, const char *reason)
 {
 	accepting *what = user;
 	cau_moves *moves = what->moves;
+	cau_error error = {0};
 	cau_fault_point("move_accepted");
 	pthread_mutex_lock(&moves->mutex);
 	cau_coming_take(&what->arrival->coming, status ? CAU_COMING_REFUSED : CAU_COMING_WRITTEN, true);
@@ -226,8 +280,8 @@ static void accepted(void *user, cau_status status, const char *reason)
 		cau_builder_submit(moves->def.mover, &what->job);
 		return;
 	}
-	cau_move_fail(&what->reply, status, cau_hosted_commit_code(status), "", reason);
-	free(what);
+	cau_fail(&error, status, "", "%s", reason);
+	end_accepting(what, &error, cau_hosted_commit_code(status));
 }
 
 // With the lock.
@@ -246,41 +300,23 @@ static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error
 		                    .reply = job->reply};
 		status = cau_store_submit(job->moves->def.store, batch, accepted, what, error);
 	}
-	if (!status)
+	if (!status) {
+		a->accepting = what;
 		return CAU_OK;
+	}
 	cau_store_batch_destroy(batch);
 	free(what);
 	cau_coming_take(&a->coming, CAU_COMING_REFUSED, true);
 	return status;
 }
 
-// Accepted before: as it is now.
-static void describe(cau_move_job *job)
-{
-	cau_error error = {0};
-	cau_hosted *hosted = cau_hub_find(job->moves->def.hub, job->asked.session);
-	cau_order *order = hosted ? calloc(1, sizeof *order) : NULL;
-	cau_status status = CAU_NOT_FOUND;
-	if (order) {
-		order->kind = CAU_ORDER_DESCRIBE;
-		order->reply = job->reply;
-		status = cau_hosted_submit(hosted, order, &error);
-	}
-	if (status) {
-		free(order);
-		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
-		              "the session was accepted before, and is no longer on this daemon");
-	}
-	cau_hosted_release(hosted);
-}
-
 void cau_arrival_accept(cau_move_job *job)
 {
 	cau_error error = {0};
 	cau_status status = CAU_OK;
-	cau_coming_act act = CAU_COMING_REFUSE;
+	cau_coming_act act = CAU_COMING_NOTHING;
 	pthread_mutex_lock(&job->moves->mutex);
-	arrival *a = find_own(job->moves, &job->asked);
+	arrival *a = cau_arrival_find_own(job->moves, &job->asked);
 	if (!a)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
 	else if (job->moves->ends)
@@ -288,20 +324,21 @@ void cau_arrival_accept(cau_move_job *job)
 		                  "the daemon is shutting down: ask again when it is back");
 	else if (!cau_move_opens(job->asked.key, a->lock))
 		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "the proof is of another move");
+	else if (a->accepting)
+		status = wait_too(a->accepting, &job->reply, &error);
 	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))
 		status = cau_fail(&error, CAU_BAD_STATE, "", "the session is being built: ask again");
 	else
 		act = cau_coming_take(&a->coming, CAU_COMING_PROOF, true);
-	if (!status && act == CAU_COMING_REFUSE)
-		status = cau_fail(&error, CAU_BAD_STATE, "",
-		                  "not all pieces have come, or the session is being accepted");
+	if (act == CAU_COMING_REFUSE)
+		status = cau_fail(&error, CAU_BAD_STATE, "", "not all pieces have come");
 	if (!status && act == CAU_COMING_DO_WRITE)
 		status = write_accepted(job, a, &error);
 	pthread_mutex_unlock(&job->moves->mutex);
 	if (status)
 		cau_reply_fail(&job->reply, &error, cau_hosted_commit_code(status));
 	else if (act == CAU_COMING_SAY_HERE)
-		describe(job);
+		describe(job->moves, job->asked.session, &job->reply);
 }
 
 // ---- forget -------------------------------------------------------------------------------------
@@ -369,26 +406,37 @@ static bool may_forget(const cau_move_job *job, const arrival *a)
 	return true;
 }
 
+// With the lock.
+static cau_status check_forget(const cau_move_job *job, const arrival *a, int32_t *code,
+                               cau_error *error)
+{
+	cau_status status = cau_arrivals_check_open(job->moves, code, error);
+	if (status)
+		return status;
+	if (a && (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted))))
+		return cau_fail(error, CAU_BAD_STATE, "", "the session is being built: ask again");
+	if (a && !may_forget(job, a))
+		return cau_fail(error, CAU_BAD_VALUE, "params.release",
+		                "it is not the one that move.cancel of the other daemon gives for this "
+		                "move");
+	return CAU_OK;
+}
+
 void cau_arrival_forget(cau_move_job *job)
 {
 	cau_error error = {0};
-	cau_status status = CAU_OK;
+	int32_t code = 0;
 	pthread_mutex_lock(&job->moves->mutex);
-	arrival *a = find_own(job->moves, &job->asked);
+	arrival *a = cau_arrival_find_own(job->moves, &job->asked);
 	bool whole = a && a->coming.state == CAU_COMING_WHOLE;
-	bool busy = a && (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)));
-	if (busy)
-		status = cau_fail(&error, CAU_BAD_STATE, "", "the session is being built: ask again");
-	else if (a && !may_forget(job, a))
-		status = cau_fail(&error, CAU_BAD_VALUE, "params.release",
-		                  "it is not the one that move.cancel of the other daemon gives for this "
-		                  "move");
-	else if (!a || cau_coming_take(&a->coming, CAU_COMING_FORGET, true) != CAU_COMING_DO_FORGET)
+	cau_status status = check_forget(job, a, &code, &error);
+	if (!status &&
+	    (!a || cau_coming_take(&a->coming, CAU_COMING_FORGET, true) != CAU_COMING_DO_FORGET))
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move",
 		                  "no such move is known here, or the session is this daemon's");
-	else
+	else if (!status)
 		status = write_forgotten(job, a, whole, &error);
 	pthread_mutex_unlock(&job->moves->mutex);
 	if (status)
-		cau_reply_fail(&job->reply, &error, cau_hosted_commit_code(status));
+		cau_reply_fail(&job->reply, &error, code ? code : cau_hosted_commit_code(status));
 }

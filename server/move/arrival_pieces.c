@@ -96,26 +96,32 @@ static cau_status check_id(const cau_moves *moves, const char *id, cau_error *er
 	                "this daemon's sessions begin with `%s-`", moves->def.config->label);
 }
 
-static cau_status check_room(cau_moves *moves, const char *id, cau_error *error)
+// With the lock. Whether a new move may bring a session by this id.
+static cau_status check_place(cau_moves *moves, const char *id, cau_error *error)
 {
+	const arrival *old = cau_arrival_find(moves, id);
 	cau_hosted *other = cau_hub_find(moves->def.hub, id);
 	cau_hosted_release(other);
 	if (other)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.session", "`%s` exists", id);
+	if (old && (old->accepting || old->hosted))
+		return cau_fail(error, CAU_BAD_STATE, "params.session",
+		                "an earlier move of `%s` is still being finished: try again in a second",
+		                id);
 	if (cau_hub_count(moves->def.hub) >= moves->def.config->max_sessions)
 		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
 		                (long long)moves->def.config->max_sessions);
 	return check_id(moves, id, error);
 }
 
-// With the lock. A session that came by this id before and is gone leaves its place.
+// With the lock. The newest of its id: an earlier move's, whose session is gone, is behind it in
+// the list until this one's first piece is on the disk.
 static arrival *enlist(cau_moves *moves, const cau_move_asked *asked, const contents *found,
                        cau_error *error)
 {
 	int32_t waiting = 0;
-	arrival *old = cau_arrival_find(moves, asked->session);
 	for (const arrival *a = moves->arrivals; a; a = a->next)
-		waiting += !cau_coming_serves(&a->coming);
+		waiting += cau_arrival_waits(a);
 	if (waiting >= ARRIVALS_MOST) {
 		cau_fail(error, CAU_LIMIT, "", "%d sessions are already moving here: try again later",
 		         waiting);
@@ -126,8 +132,6 @@ static arrival *enlist(cau_moves *moves, const cau_move_asked *asked, const cont
 		cau_fail(error, CAU_NO_MEMORY, "", "no memory for a move");
 		return NULL;
 	}
-	if (old)
-		cau_arrival_take_out(moves, old);
 	memcpy(a->id, asked->session, sizeof a->id);
 	memcpy(a->move, asked->move, sizeof a->move);
 	memcpy(a->lock, found->lock, sizeof a->lock);
@@ -160,8 +164,8 @@ static cau_status check_turn(const arrival *a, const cau_move_asked *asked, cons
 	if (a && strcmp(a->move, asked->move) != 0)
 		return cau_fail(error, CAU_BAD_STATE, "params.upload",
 		                "another move of this session is under way: finish it with `cautery move`");
-	if (a ? a->writing || a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE
-	      : found->index > 0)
+	bool all_here = a && a->coming.state >= CAU_COMING_WHOLE;
+	if (a ? a->writing || all_here || a->pieces != found->index : found->index > 0)
 		return cau_fail(error, CAU_BAD_STATE, "params.upload",
 		                "pieces must come in order, and this one is not the next");
 	return CAU_OK;
@@ -178,7 +182,7 @@ static bool is_repeated(const arrival *a, const cau_move_asked *asked, const con
 static void answer_received(const arrival *a, const cau_reply *reply)
 {
 	cau_wire_move_received result = {.pieces = a->pieces,
-	                                 .has_receipt = a->coming.state == CAU_COMING_WHOLE};
+	                                 .has_receipt = a->coming.state >= CAU_COMING_WHOLE};
 	if (result.has_receipt && !cau_move_receipt(a->move, a->seal, result.receipt))
 		cau_move_fail(reply, CAU_NO_MEMORY, 0, "", "no memory for the answer");
 	else
@@ -187,18 +191,22 @@ static void answer_received(const arrival *a, const cau_reply *reply)
 
 // The arrival that takes this piece next, marked as writing; NULL: *error says why not, or the
 // piece was here before, and that is answered.
-static arrival *begin_piece(cau_move_job *job, const contents *found, cau_error *error)
+static arrival *begin_piece(cau_move_job *job, const contents *found, int32_t *code,
+                            cau_error *error)
 {
 	cau_moves *moves = job->moves;
 	pthread_mutex_lock(&moves->mutex);
 	arrival *a = cau_arrival_find(moves, job->asked.session);
 	if (a && cau_coming_serves(&a->coming))
 		a = NULL; // of an earlier move that was accepted
+	bool is_new = !a;
 	if (is_repeated(a, &job->asked, found)) {
 		answer_received(a, &job->reply);
 		a = NULL;
-	} else if (check_turn(a, &job->asked, found, error) ||
-	           check_seal(&job->asked, a ? a->seal : "", found, error)) {
+	} else if (cau_arrivals_check_open(moves, code, error) ||
+	           check_turn(a, &job->asked, found, error) ||
+	           check_seal(&job->asked, a ? a->seal : "", found, error) ||
+	           (is_new && check_place(moves, job->asked.session, error))) {
 		a = NULL;
 	} else {
 		a = a ? a : enlist(moves, &job->asked, found, error);
@@ -224,6 +232,16 @@ static void note_contents(arrival *a, const contents *found)
 		a->hands[a->hand_count++] = found->hands[i];
 }
 
+// With the lock. The first piece of `a` is on the disk, in the place of an earlier move's row.
+static void end_older(cau_moves *moves, const arrival *a)
+{
+	arrival *old = a->next;
+	while (old && (old->forgotten || strcmp(old->id, a->id) != 0))
+		old = old->next;
+	if (old)
+		cau_arrival_take_out(moves, old);
+}
+
 // On the store's thread.
 static void piece_written(void *user, cau_status status, const char *reason)
 {
@@ -237,7 +255,8 @@ static void piece_written(void *user, cau_status status, const char *reason)
 		cau_coming_take(&a->coming, last ? CAU_COMING_LAST : CAU_COMING_PIECE, true);
 		note_contents(a, &done->found);
 		memcpy(a->seal, done->found.seal, sizeof a->seal);
-		a->pieces++;
+		if (a->pieces++ == 0)
+			end_older(done->moves, a);
 		answer_received(a, &done->reply);
 	} else {
 		if (a->pieces == 0)
@@ -273,14 +292,13 @@ static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error 
 void cau_arrival_receive(cau_move_job *job)
 {
 	cau_error error = {0};
+	int32_t code = 0;
 	at_disk *travelling = calloc(1, sizeof *travelling);
 	cau_status status = travelling ? take_seal(&job->asked, &travelling->found, &error)
 	                               : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a piece");
 	if (!status)
 		status = read_contents(&job->asked, &travelling->found, &error);
-	if (!status && travelling->found.index == 0)
-		status = check_room(job->moves, job->asked.session, &error);
-	arrival *a = status ? NULL : begin_piece(job, &travelling->found, &error);
+	arrival *a = status ? NULL : begin_piece(job, &travelling->found, &code, &error);
 	if (a) {
 		travelling->moves = job->moves;
 		travelling->arrival = a;
@@ -292,6 +310,6 @@ void cau_arrival_receive(cau_move_job *job)
 		return;
 	}
 	if (error.status)
-		cau_reply_fail(&job->reply, &error, 0);
+		cau_reply_fail(&job->reply, &error, code);
 	free(travelling);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "move/internal.h"
 
 typedef cau_arrival arrival;
@@ -16,17 +17,40 @@ arrival *cau_arrival_find(cau_moves *moves, const char *id)
 	return a;
 }
 
+arrival *cau_arrival_find_own(cau_moves *moves, const cau_move_asked *asked)
+{
+	arrival *a = moves->arrivals;
+	while (a && (a->forgotten || strcmp(a->id, asked->session) != 0 ||
+	             strcmp(a->move, asked->move) != 0))
+		a = a->next;
+	return a;
+}
+
+cau_status cau_arrivals_check_open(const cau_moves *moves, int32_t *code, cau_error *error)
+{
+	if (!moves->ends)
+		return CAU_OK;
+	*code = CAU_RPC_DRAINING;
+	return cau_fail(error, CAU_BAD_STATE, "", "the server is shutting down");
+}
+
+bool cau_arrival_waits(const arrival *a)
+{
+	return a->accepting || !cau_coming_serves(&a->coming);
+}
+
 bool cau_arrivals_have(cau_moves *moves, const char *id)
 {
 	pthread_mutex_lock(&moves->mutex);
 	const arrival *a = cau_arrival_find(moves, id);
-	bool waits = a && !cau_coming_serves(&a->coming);
+	bool waits = a && cau_arrival_waits(a);
 	pthread_mutex_unlock(&moves->mutex);
 	return waits;
 }
 
 void cau_arrival_take_out(cau_moves *moves, arrival *a)
 {
+	CAU_ASSERT(!a->writing && !a->accepting && !a->hosted, "the arrival of %s has an owner", a->id);
 	arrival **link = &moves->arrivals;
 	while (*link != a)
 		link = &(*link)->next;
@@ -84,7 +108,7 @@ void cau_arrivals_list(const cau_moves *moves, cau_wire_list *list)
 {
 	cau_wire_move_entry *entries = list->items;
 	for (const arrival *a = moves->arrivals; a && list->count < list->capacity; a = a->next) {
-		if (a->forgotten || cau_coming_serves(&a->coming))
+		if (a->forgotten || !cau_arrival_waits(a))
 			continue;
 		cau_wire_move_entry *entry = &entries[list->count++];
 		cau_coming_state state = a->coming.state;
@@ -93,9 +117,9 @@ void cau_arrivals_list(const cau_moves *moves, cau_wire_list *list)
 		memcpy(entry->move, a->move, sizeof entry->move);
 		memcpy(entry->other, a->source, sizeof entry->other);
 		snprintf(entry->state, sizeof entry->state, "%s",
-		         state == CAU_COMING_WHOLE       ? "doubt"
-		         : state == CAU_COMING_ACCEPTING ? "accepting"
-		                                         : "incoming");
+		         a->accepting                ? "accepting"
+		         : state == CAU_COMING_WHOLE ? "doubt"
+		                                     : "incoming");
 	}
 }
 

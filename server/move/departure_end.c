@@ -176,7 +176,7 @@ void cau_departure_hold(cau_move_job *job)
 	pthread_mutex_lock(&job->moves->mutex);
 	departure *d = cau_departure_find_own(job->moves, &job->asked);
 	bool known = d != NULL;
-	bool stops = known && d->part_sent && !d->reading &&
+	bool stops = known && !d->reading && d->part_sent &&
 	             cau_leaving_take(&d->leaving, CAU_LEAVING_HOLD, true) == CAU_LEAVING_DO_STOP;
 	cau_hosted *hosted = stops ? cau_hosted_share(d->hosted) : NULL;
 	pthread_mutex_unlock(&job->moves->mutex);
@@ -284,7 +284,7 @@ void cau_departure_commit(cau_move_job *job)
 	} else if (job->moves->ends) {
 		cau_move_fail(&job->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "",
 		              "the server is shutting down");
-	} else if (!d->all_sent) {
+	} else if (d->reading || !d->all_sent) {
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "not all pieces have been read");
 	} else if (!is_received(d, job->asked.key)) {
 		cau_move_fail(

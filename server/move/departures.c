@@ -121,8 +121,9 @@ static cau_hosted *find_hosted(cau_move_job *job)
 // does not name the move, and no later courier would find it there.
 static bool is_left(const departure *d, double now_s)
 {
-	bool waits = d->part_sent && now_s - d->touched_s <= FIRST_PIECE_MOST_S;
-	return d->leaving.state == CAU_LEAVING_SENDS && !d->reading && d->pieces <= 1 && !waits;
+	if (d->reading || d->leaving.state != CAU_LEAVING_SENDS || d->pieces > 1)
+		return false;
+	return !d->part_sent || now_s - d->touched_s > FIRST_PIECE_MOST_S;
 }
 
 // With the lock.
@@ -296,6 +297,7 @@ void cau_departure_read(cau_move_job *job)
 	char name[2 * CAU_NAME_BYTES];
 	snprintf(name, sizeof name, "%s-%u.caum", d->id, (unsigned)d->pieces);
 	cau_status status = write_piece(job->moves, d, held, &writer, &error);
+	cau_fault_point("move_reading");
 	end_reading(job->moves, d);
 	if (status)
 		cau_reply_fail(&job->reply, &error, 0);

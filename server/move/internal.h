@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the files of this room share.
 //
-// Locks: the moves' lock is taken inside no other lock, and the hub's lock is never taken inside
-// it. Of the hub only cau_hub_make_incoming, which takes no lock, is called under it. Functions of
-// sessions, the store and the builder, and answers to couriers, are called under it: none of them
-// waits or calls back.
+// Locks: the moves' lock is taken inside no other lock. Of the hub, only cau_hub_make_incoming,
+// cau_hub_find and cau_hub_count are called under it. The last two take the hub's lock for a look
+// at its list, so that a session is seen either as arriving or as the hub's. Functions of sessions,
+// the store and the builder, and answers to couriers, are called under it: none of them waits or
+// calls back.
+//
+// An arrival has an owner while `writing` (the request or commit that set it) and while `accepting`
+// is set (that acceptance, until its job has ended). The owner may keep the arrival and read it
+// without the lock, but for its core. cau_arrival_take_out checks that there is none.
 #pragma once
 
 #include <pthread.h>
@@ -48,6 +53,9 @@ typedef struct cau_arrival_hand {
 	cau_client client;
 } cau_arrival_hand;
 
+// An acceptance, from its commit to the end of the job that places the session (arrival_end.c).
+typedef struct cau_accepting cau_accepting;
+
 // A session that comes from another daemon.
 typedef struct cau_arrival {
 	struct cau_arrival *next;
@@ -56,10 +64,11 @@ typedef struct cau_arrival {
 	cau_move_hash lock, unlock;
 	cau_move_hash seal; // of the pieces that are here
 	int64_t pieces;
-	bool writing;       // a piece, or what becomes of it, is on its way to the disk
-	bool forgotten;     // only its core is still to be cleared away
-	cau_hosted *hosted; // that is built, or waits; NULL: none
-	bool ready;         // it waits
+	bool writing;             // a piece, or what becomes of it, is on its way to the disk
+	bool forgotten;           // only its core is still to be cleared away
+	cau_accepting *accepting; // owns the arrival; NULL: none does
+	cau_hosted *hosted;       // that is built, or waits; NULL: none
+	bool ready;               // it waits
 	cau_wire_move_held stands;
 	cau_arrival_hand hands[CAU_MAX_TOOLS];
 	int32_t hand_count;
@@ -134,7 +143,17 @@ void cau_arrivals_reap(cau_moves *moves, bool all); // takes the lock
 cau_store_arrival cau_arrival_row(const cau_arrival *arrival, int64_t pieces,
                                   cau_store_arrival_state state);
 // The others: with the lock.
-cau_arrival *cau_arrival_find(cau_moves *moves, const char *id);   // NULL: there is none
+
+// CAU_BAD_STATE, and the code to answer with, once the daemon ends: from then on no arrival is
+// given to the store or to the builder.
+cau_status cau_arrivals_check_open(const cau_moves *moves, int32_t *code, cau_error *error);
+// The newest of this id; NULL: there is none. One that was accepted and is served stays in the list
+// until the first piece of another move is on the disk.
+cau_arrival *cau_arrival_find(cau_moves *moves, const char *id);
+// The newest of the move that is asked about.
+cau_arrival *cau_arrival_find_own(cau_moves *moves, const cau_move_asked *asked);
+// Whether it is not among the hub's sessions yet.
+bool cau_arrival_waits(const cau_arrival *arrival);
 void cau_arrival_take_out(cau_moves *moves, cau_arrival *arrival); // frees it
 void cau_arrivals_list(const cau_moves *moves, cau_wire_list *list);
 void cau_arrivals_free(cau_moves *moves);

@@ -118,6 +118,7 @@ static void run(cau_job *job)
 		drop(job);
 		return;
 	}
+	cau_fault_point("move_asked");
 	serves[what->asked.what](what);
 	finish(what);
 }

@@ -38,6 +38,7 @@ static cau_status write_batch(struct cau_store *store, struct cau_store_batch *b
 		status = cau_store_writer_apply(&store->writer, record, now_ms, error);
 	if (is_own_fault(status)) {
 		batch->error = *error;
+		batch->error.status = status; // whatever the record's function has filled in
 		store->writer.uncounted = before;
 		status = cau_store_execute(store->writing, "ROLLBACK TO batch", "writing", error);
 	}

@@ -90,7 +90,8 @@ struct importing {
 	sqlite3 *database;
 	const char *id;
 	char name[CAU_STORE_ID_BYTES];
-	int64_t key; // 0: not known yet
+	int64_t key;      // 0: not known yet
+	bool first, made; // the piece has the head of a move; it made the session
 	sqlite3_stmt *statement[CAU_ROWS_COUNT];
 };
 
@@ -126,17 +127,21 @@ static cau_status make_session(struct importing *to, const cau_row *row, cau_err
 	sqlite3_finalize(statement);
 	if (status == CAU_ALREADY_EXISTS)
 		return cau_fail(error, status, "id", "session '%s' exists already", to->id);
-	if (!status)
-		to->key = sqlite3_last_insert_rowid(to->database);
-	return status;
+	if (status)
+		return status;
+	to->key = sqlite3_last_insert_rowid(to->database);
+	to->made = true;
+	return CAU_OK;
 }
 
 static cau_status put_row(struct importing *to, const cau_row *row, cau_error *error)
 {
 	cau_status status = CAU_OK;
 	sqlite3_stmt **statement = &to->statement[row->table];
-	if (row->table == CAU_ROWS_HEADER)
+	if (row->table == CAU_ROWS_HEADER) {
+		to->first = true;
 		cau_rows_text(row, 4, to->name, sizeof to->name);
+	}
 	if (row->table == CAU_ROWS_SESSION)
 		return make_session(to, row, error);
 	if (!inserts[row->table]) // the head of the move, and what is not the store's
@@ -162,13 +167,22 @@ static cau_status put_rows(sqlite3 *database, const struct record *record, cau_e
 	cau_rows_reader reader;
 	cau_row row;
 	cau_status status = cau_rows_open(&reader, piece->data, piece->bytes, error);
-	while (!status && !(status = cau_rows_next(&reader, &row, error)))
-		status = put_row(&to, &row, error);
+	bool all_read = false;
+	while (!status && !all_read) {
+		status = cau_rows_next(&reader, &row, error);
+		all_read = status == CAU_NOT_FOUND;
+		if (!status)
+			status = put_row(&to, &row, error);
+	}
 	for (int i = 0; i < CAU_ROWS_COUNT; i++)
 		sqlite3_finalize(to.statement[i]);
 	if (status == CAU_CORRUPT || status == CAU_UNSUPPORTED) // of the piece: the store is sound
 		status = cau_fail(error, CAU_BAD_VALUE, "rows", "a piece that was not checked");
-	return status == CAU_NOT_FOUND && to.key ? CAU_OK : status;
+	if (!all_read)
+		return status;
+	if (to.first && !to.made)
+		return cau_fail(error, CAU_BAD_VALUE, "rows", "the first piece of a move has no session");
+	return to.key ? CAU_OK : find_key(&to, error);
 }
 
 // ---- what the moves are ---------------------------------------------------------------

@@ -373,6 +373,17 @@ static void rows_that_come_twice_fail_their_batch_alone(void **state)
 	cau_store_close(store);
 }
 
+// Without a reason of its own such a batch would be answered as if it were on the disk.
+static void a_piece_of_no_session_fails_its_batch(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_rows_writer piece;
+	cau_store *store = open_store(&fixture->config);
+	cau_rows_begin(&piece, 3);
+	assert_int_equal(take_piece(store, &piece), CAU_NOT_FOUND);
+	cau_store_close(store);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -382,6 +393,7 @@ int main(void)
 		TEST(answers_of_a_session_that_comes_back_stay),
 		TEST(an_old_row_goes_when_the_session_is_accepted_here_again),
 		TEST(rows_that_come_twice_fail_their_batch_alone),
+		TEST(a_piece_of_no_session_fails_its_batch),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
