@@ -214,6 +214,22 @@ static void fill_places(void)
 	assert_int_equal(make_session(&t.target, "second"), CAU_OK);
 }
 
+static void the_last_piece_may_be_sent_again_while_it_is_accepted(void **state)
+{
+	(void)state;
+	char proof[CAU_PROOF_BYTES];
+	cau_wire_move_received received = {0};
+	decide(proof);
+	accept_up_to("move_accepted", proof);
+	cau_move_asked asked = {.what = CAU_MOVE_RECEIVE, .piece = t.last, .piece_bytes = t.last_bytes};
+	t.last = NULL; // taken
+	assert_int_equal(ask(&t.target, asked, CAU_METHOD_MOVE_RECEIVE), CAU_OK);
+	read_result(CAU_METHOD_MOVE_RECEIVE, &received);
+	assert_true(received.has_receipt);
+	set_gate(NULL);
+	assert_int_equal(await(&t.held), CAU_OK);
+}
+
 // A core that was built beforehand and finds no place among the hub's sessions.
 static void a_core_without_a_place_is_cleared_away_before_a_new_move(void **state)
 {
@@ -312,6 +328,7 @@ int main(void)
 		TEST(a_session_that_was_placed_just_now_is_not_destroyed_as_unserved),
 		TEST(a_session_that_was_placed_just_now_is_not_made_again),
 		TEST(a_piece_after_the_last_is_refused_while_it_is_accepted),
+		TEST(the_last_piece_may_be_sent_again_while_it_is_accepted),
 		TEST(a_core_without_a_place_is_cleared_away_before_a_new_move),
 		TEST(no_core_is_built_once_the_builder_may_have_ended),
 		TEST(no_piece_is_written_once_the_daemon_ends),

@@ -118,6 +118,7 @@ int close_both(void **state)
 	int failed = close_side(&t.source) | close_side(&t.target);
 	free(t.answer.file);
 	free(t.held.file);
+	free(t.last);
 	pthread_cond_destroy(&t.answered);
 	pthread_mutex_destroy(&t.lock);
 	return failed;
@@ -243,6 +244,10 @@ bool carry_piece(cau_wire_move_received *received)
 	size_t bytes = t.answer.file_bytes;
 	t.answer.file = NULL;
 	t.pieces++;
+	free(t.last);
+	t.last = malloc(bytes);
+	t.last_bytes = bytes;
+	memcpy(t.last, piece, bytes);
 	memcpy(t.seal, piece + bytes - CAU_SEAL_BYTES, CAU_SEAL_BYTES);
 	assert_int_equal(ASK(target, RECEIVE, .piece = piece, .piece_bytes = bytes), CAU_OK);
 	*received = (cau_wire_move_received){0};

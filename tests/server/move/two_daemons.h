@@ -45,8 +45,10 @@ typedef struct two_daemons {
 	answer answer;
 	answer held; // to a request that is held at a fault point while others come
 	char move[CAU_NAME_BYTES];
-	uint32_t pieces;    // that were carried
-	cau_move_hash seal; // of the last of them
+	uint32_t pieces;     // that were carried
+	cau_move_hash seal;  // of the last of them
+	unsigned char *last; // its bytes, malloc'ed
+	size_t last_bytes;
 } two_daemons;
 
 extern two_daemons t;
