@@ -223,7 +223,7 @@ static cau_status join(const asked *a, int32_t *code, cau_error *error)
 			s->stream.key_wanted = s->stream.key_forced = true;
 			s->look_s = 0;
 			cau_hosted_summary(s->hosted, &summary);
-			cau_dds_reply_join(a->dds, a->request, &summary);
+			cau_dds_reply_join(&a->dds->control, a->request, &summary);
 			return CAU_OK;
 		}
 	return fail_missing(a, code, error);
@@ -250,14 +250,14 @@ static cau_status serve(asked *a, int32_t *code, cau_error *error)
 	                                   : order_session(a, reply, code, error);
 }
 
-bool cau_dds_is_too_fast(const cau_dds *dds, cau_dds_writer *writer)
+bool cau_dds_is_too_fast(const cau_config *config, cau_dds_writer *writer)
 {
 	double now_s = cau_monotonic_s();
 	if (now_s - writer->requests_s >= 1) {
 		writer->requests_s = now_s;
 		writer->requests = 0;
 	}
-	return ++writer->requests > dds->config->max_requests_per_s;
+	return ++writer->requests > config->max_requests_per_s;
 }
 
 // Who owns the client_ids of a participant. Where clients of WebSocket need tokens, a participant
@@ -286,7 +286,7 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	bool known = (size_t)sample->operation < sizeof methods / sizeof methods[0];
 	if (!known || !is_ours(dds, sample))
 		return;
-	cau_dds_request unkept, *request = cau_dds_keep_request(dds, writer, sample);
+	cau_dds_request unkept, *request = cau_dds_keep_request(&dds->control, writer, sample);
 	asked a = {.dds = dds,
 	           .request = request ? request : &unkept,
 	           .writer = writer,
@@ -300,12 +300,12 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	if (!request) {
 		unkept = cau_dds_describe_request(writer, sample);
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests wait for their answer");
-	} else if (cau_dds_is_too_fast(dds, writer)) {
+	} else if (cau_dds_is_too_fast(dds->config, writer)) {
 		code = CAU_RPC_RATE;
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests a second");
 	} else {
 		status = serve(&a, &code, &error);
 	}
 	if (status)
-		cau_dds_reply_fail(dds, a.request, &error, code);
+		cau_dds_reply_fail(&dds->control, a.request, &error, code);
 }

@@ -31,11 +31,11 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 		[TOPIC_REPLY] = {"cautery/session_reply", &cautery_SessionReply_desc},
 	};
 	for (int i = 0; i < TOPIC_COUNT; i++) {
-		dds->topics[i] =
-			dds_create_topic(dds->participant, topics[i].type, topics[i].name, NULL, NULL);
-		if (dds->topics[i] < 0)
+		dds->entities.topics[i] =
+			dds_create_topic(dds->entities.participant, topics[i].type, topics[i].name, NULL, NULL);
+		if (dds->entities.topics[i] < 0)
 			return cau_fail(error, CAU_IO, "dds", "no topic %s: %s", topics[i].name,
-			                dds_strretcode(dds->topics[i]));
+			                dds_strretcode(dds->entities.topics[i]));
 	}
 	return CAU_OK;
 }
@@ -65,9 +65,9 @@ static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, con
 	}
 	dds_set_status_mask(door->reader,
 	                    DDS_SUBSCRIPTION_MATCHED_STATUS | DDS_LIVELINESS_CHANGED_STATUS);
-	dds_waitset_attach(dds->waitset, door->reader, (dds_attach_t)door);
+	dds_waitset_attach(dds->entities.waitset, door->reader, (dds_attach_t)door);
 	door->samples = dds_create_readcondition(door->reader, DDS_ANY_STATE);
-	dds_waitset_attach(dds->waitset, door->samples, (dds_attach_t)door);
+	dds_waitset_attach(dds->entities.waitset, door->samples, (dds_attach_t)door);
 	return true;
 }
 
@@ -80,7 +80,7 @@ void cau_dds_open_loose(cau_dds *dds, cau_door *loose, const cau_door *reliable)
 	                    .topic = reliable->topic,
 	                    .session = reliable->session};
 	memcpy(loose->tool, reliable->tool, sizeof loose->tool);
-	open_door(dds, loose, dds->subscriber, qos);
+	open_door(dds, loose, dds->entities.subscriber, qos);
 	dds_delete_qos(qos);
 }
 
@@ -88,8 +88,8 @@ static void close_door(cau_dds *dds, cau_door *door)
 {
 	dds_entity_t reader = door->reader;
 	if (reader > 0) {
-		dds_waitset_detach(dds->waitset, door->samples);
-		dds_waitset_detach(dds->waitset, reader);
+		dds_waitset_detach(dds->entities.waitset, door->samples);
+		dds_waitset_detach(dds->entities.waitset, reader);
 		dds_delete(reader);
 		cau_dds_prune(dds, reader, false);
 	}
@@ -107,16 +107,17 @@ cau_status cau_dds_open_control(cau_dds *dds, cau_error *error)
 	dds_qset_durability(kept, DDS_DURABILITY_TRANSIENT_LOCAL);
 	dds_qset_durability_service(kept, 0, DDS_HISTORY_KEEP_LAST, REPLIES_KEPT, DDS_LENGTH_UNLIMITED,
 	                            DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
-	dds->control_subscriber = dds_create_subscriber(dds->participant, partition, NULL);
-	dds->control_publisher = dds_create_publisher(dds->participant, partition, NULL);
-	dds->reply_writer =
-		dds_create_writer(dds->control_publisher, dds->topics[TOPIC_REPLY], kept, NULL);
-	dds->request = (cau_door){.kind = DOOR_REQUEST, .topic = dds->topics[TOPIC_REQUEST]};
-	bool done = open_door(dds, &dds->request, dds->control_subscriber, taken);
+	dds->control.subscriber = dds_create_subscriber(dds->entities.participant, partition, NULL);
+	dds->control.publisher = dds_create_publisher(dds->entities.participant, partition, NULL);
+	dds->control.reply_writer =
+		dds_create_writer(dds->control.publisher, dds->entities.topics[TOPIC_REPLY], kept, NULL);
+	dds->control.door =
+		(cau_door){.kind = DOOR_REQUEST, .topic = dds->entities.topics[TOPIC_REQUEST]};
+	bool done = open_door(dds, &dds->control.door, dds->control.subscriber, taken);
 	dds_delete_qos(partition);
 	dds_delete_qos(taken);
 	dds_delete_qos(kept);
-	return done && dds->reply_writer > 0
+	return done && dds->control.reply_writer > 0
 	           ? CAU_OK
 	           : cau_fail(error, CAU_IO, "dds", "no session_request or session_reply");
 }
@@ -141,10 +142,10 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 	};
 	uint32_t number = cau_hosted_number(session->hosted);
 	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++)
-		cau_dds_open_outlet(dds, outlets[i].outlet, number, session->publisher,
-		                    dds->topics[outlets[i].topic], outlets[i].qos);
+		cau_dds_open_outlet(&dds->wakeup, outlets[i].outlet, number, session->publisher,
+		                    dds->entities.topics[outlets[i].topic], outlets[i].qos);
 	session->status_writer =
-		dds_create_writer(session->publisher, dds->topics[TOPIC_STATUS], last, NULL);
+		dds_create_writer(session->publisher, dds->entities.topics[TOPIC_STATUS], last, NULL);
 	dds_delete_qos(kept);
 	dds_delete_qos(last);
 	dds_delete_qos(chain);
@@ -184,8 +185,8 @@ static bool open_native(cau_dds *dds, cau_dds_session *session, cau_door *door, 
 	dds_qos_t *taken = reliable_qos(NATIVE_KEPT);
 	const struct dds_topic_filter filter = {
 		DDS_TOPIC_FILTER_SAMPLE_ARG, {.sample_arg = natives[kind].admit}, &session->keys};
-	dds_entity_t topic =
-		dds_create_topic(dds->participant, natives[kind].type, natives[kind].name, NULL, NULL);
+	dds_entity_t topic = dds_create_topic(dds->entities.participant, natives[kind].type,
+	                                      natives[kind].name, NULL, NULL);
 	*door = (cau_door){.kind = kind, .topic = topic, .session = session};
 	bool done = topic > 0 && !dds_set_topic_filter_extended(topic, &filter) &&
 	            open_door(dds, door, session->subscriber, taken);
@@ -198,12 +199,12 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	const char *id = cau_hosted_id(session->hosted);
 	dds_qos_t *partition = dds_create_qos();
 	dds_qset_partition1(partition, id);
-	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
-	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
+	session->subscriber = dds_create_subscriber(dds->entities.participant, partition, NULL);
+	session->publisher = dds_create_publisher(dds->entities.participant, partition, NULL);
 	bool done = open_native(dds, session, &session->native, DOOR_NATIVE) &&
 	            open_native(dds, session, &session->setting, DOOR_SETTING) &&
 	            open_native(dds, session, &session->instrument, DOOR_INSTRUMENT);
-	dds->ends_changed = true;
+	dds->peers.ends_changed = true;
 	open_writers(dds, session);
 	dds_delete_qos(partition);
 	if (!session->has_ros_name)
@@ -213,7 +214,7 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	return done ? CAU_OK : CAU_IO;
 }
 
-static void close_writers(cau_dds *dds, cau_dds_session *session)
+static void close_writers(cau_dds_farewell **farewells, cau_dds_session *session)
 {
 	// Readers of other vendors do not take the end of its writer for the instance's own.
 	cautery_SessionStatus gone = {0};
@@ -225,7 +226,7 @@ static void close_writers(cau_dds *dds, cau_dds_session *session)
 		&session->stream.topology, &session->stream.key, &session->stream.delta};
 	for (size_t i = 0; i < sizeof at_once / sizeof at_once[0]; i++)
 		cau_dds_close_outlet(at_once[i]);
-	cau_dds_bid_farewell(dds, session->publisher, session->status_writer);
+	cau_dds_bid_farewell(farewells, session->publisher, session->status_writer);
 }
 
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
@@ -240,7 +241,7 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 	if (session->subscriber > 0)
 		dds_delete(session->subscriber);
 	if (session->publisher > 0)
-		close_writers(dds, session);
+		close_writers(&dds->farewells, session);
 }
 
 // ---- ROS 2
@@ -263,12 +264,12 @@ static bool ros_tool_name(const cau_dds_session *session, const cau_dds_tool *to
 	return true;
 }
 
-static dds_entity_t ros_topic(cau_dds *dds, const char *prefix, const char *name,
-                              const dds_topic_descriptor_t *type)
+static dds_entity_t ros_topic(const cau_dds_entities *entities, const char *prefix,
+                              const char *name, const dds_topic_descriptor_t *type)
 {
 	char topic[TOPIC_BYTES];
 	snprintf(topic, sizeof topic, "rt/%s/%s", prefix, name);
-	return dds_create_topic(dds->participant, type, topic, NULL, NULL);
+	return dds_create_topic(entities->participant, type, topic, NULL, NULL);
 }
 
 typedef struct ros_outlet {
@@ -301,9 +302,9 @@ static void open_ros_outlets(cau_dds *dds, const cau_dds_session *session, const
 {
 	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
 	for (size_t i = 0; i < count; i++) {
-		*outlets[i].topic = ros_topic(dds, prefix, outlets[i].name, outlets[i].type);
-		cau_dds_open_outlet(dds, outlets[i].outlet, cau_hosted_number(session->hosted),
-		                    dds->publisher, *outlets[i].topic, qos);
+		*outlets[i].topic = ros_topic(&dds->entities, prefix, outlets[i].name, outlets[i].type);
+		cau_dds_open_outlet(&dds->wakeup, outlets[i].outlet, cau_hosted_number(session->hosted),
+		                    dds->entities.publisher, *outlets[i].topic, qos);
 	}
 	dds_delete_qos(qos);
 }
@@ -315,20 +316,20 @@ static void open_ros_doors(cau_dds *dds, cau_dds_session *session, const cau_dds
 	for (size_t i = 0; i < count; i++) {
 		*doors[i].door = (cau_door){.kind = doors[i].kind, .session = session};
 		memcpy(doors[i].door->tool, tool->name, sizeof tool->name);
-		doors[i].door->topic = ros_topic(dds, prefix, doors[i].name, doors[i].type);
-		open_door(dds, doors[i].door, dds->subscriber, qos);
+		doors[i].door->topic = ros_topic(&dds->entities, prefix, doors[i].name, doors[i].type);
+		open_door(dds, doors[i].door, dds->entities.subscriber, qos);
 	}
 	dds_delete_qos(qos);
 }
 
-static void open_operating(cau_dds *dds, cau_dds_tool *tool, const char *prefix)
+static void open_operating(const cau_dds_entities *entities, cau_dds_tool *tool, const char *prefix)
 {
 	dds_qos_t *latched = reliable_qos(1); // late joiners want it, CRTK's clients ask for it
 	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
 	tool->operating_topic =
-		ros_topic(dds, prefix, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc);
+		ros_topic(entities, prefix, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc);
 	tool->operating_writer =
-		dds_create_writer(dds->publisher, tool->operating_topic, latched, NULL);
+		dds_create_writer(entities->publisher, tool->operating_topic, latched, NULL);
 	dds_delete_qos(latched);
 }
 
@@ -357,10 +358,10 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 		{&tool->raw_force_topic, &tool->raw_force, "raw/measured_cf",
 	     &geometry_msgs_msg_dds__WrenchStamped__desc},
 	};
-	dds->ends_changed = true;
+	dds->peers.ends_changed = true;
 	open_ros_doors(dds, session, tool, prefix, doors, sizeof doors / sizeof doors[0]);
 	open_ros_outlets(dds, session, prefix, outlets, sizeof outlets / sizeof outlets[0]);
-	open_operating(dds, tool, prefix);
+	open_operating(&dds->entities, tool, prefix);
 }
 
 static void delete_topics(dds_entity_t *const *topics, size_t count)
@@ -394,7 +395,7 @@ void cau_dds_follow_jaws(cau_dds *dds, cau_dds_session *session, cau_dds_tool *t
 	};
 	if (has_jaws == (tool->servo_jp.reader > 0) || tool->servo_cp.reader <= 0)
 		return;
-	dds->ends_changed = true;
+	dds->peers.ends_changed = true;
 	if (!has_jaws) {
 		close_jaws(dds, tool);
 	} else if (ros_prefix(session, tool, prefix)) {

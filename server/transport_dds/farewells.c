@@ -11,21 +11,20 @@
 #define FAREWELL_S 2 // what a reader that hangs costs
 #define LOOK_EVERY_S 0.01
 
-void cau_dds_bid_farewell(cau_dds *dds, dds_entity_t publisher, dds_entity_t writer)
+void cau_dds_bid_farewell(cau_dds_farewell **farewells, dds_entity_t publisher, dds_entity_t writer)
 {
 	cau_dds_farewell *farewell = malloc(sizeof *farewell);
 	if (!farewell) {
 		dds_delete(publisher);
 		return;
 	}
-	*farewell =
-		(cau_dds_farewell){dds->farewells, publisher, writer, cau_monotonic_s() + FAREWELL_S};
-	dds->farewells = farewell;
+	*farewell = (cau_dds_farewell){*farewells, publisher, writer, cau_monotonic_s() + FAREWELL_S};
+	*farewells = farewell;
 }
 
-double cau_dds_end_farewells(cau_dds *dds, double now_s)
+double cau_dds_end_farewells(cau_dds_farewell **farewells, double now_s)
 {
-	for (cau_dds_farewell **link = &dds->farewells; *link;) {
+	for (cau_dds_farewell **link = farewells; *link;) {
 		cau_dds_farewell *farewell = *link;
 		if (now_s < farewell->until_s &&
 		    dds_wait_for_acks(farewell->writer, 0) == DDS_RETCODE_TIMEOUT) {
@@ -36,12 +35,12 @@ double cau_dds_end_farewells(cau_dds *dds, double now_s)
 		dds_delete(farewell->publisher);
 		free(farewell);
 	}
-	return dds->farewells ? now_s + LOOK_EVERY_S : INFINITY;
+	return *farewells ? now_s + LOOK_EVERY_S : INFINITY;
 }
 
-void cau_dds_await_farewells(cau_dds *dds)
+void cau_dds_await_farewells(cau_dds_farewell **farewells)
 {
 	const struct timespec pause = {.tv_nsec = (long)(1e9 * LOOK_EVERY_S)};
-	while (cau_dds_end_farewells(dds, cau_monotonic_s()) < INFINITY)
+	while (cau_dds_end_farewells(farewells, cau_monotonic_s()) < INFINITY)
 		nanosleep(&pause, NULL);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of this room share. All but the wake-up and the mailbox is the transport's own
-// thread's.
+// What the files of this room share. Each part of the transport names its thread or its lock.
 #pragma once
 
 #include <dds/dds.h>
@@ -76,7 +75,7 @@ typedef enum cau_dds_operating_state {
 
 // A writer of ours of which it is known who reads it; outlets.c.
 typedef struct cau_dds_outlet {
-	struct cau_dds *dds;
+	struct cau_dds_wakeup *wakeup;
 	uint32_t session; // its number
 	dds_entity_t writer;
 	atomic_uint readers;   // matched now
@@ -263,41 +262,86 @@ typedef struct cau_dds_farewell {
 	double until_s;
 } cau_dds_farewell;
 
+// Entities of Cyclone: opened with the transport, then never changed. Any thread may use them.
+typedef struct cau_dds_entities {
+	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
+	dds_entity_t topics[TOPIC_COUNT];
+	dds_entity_t waitset;
+} cau_dds_entities;
+
+// Why the DDS thread is to look again, and at which sessions; atomic, any thread. mailbox.c.
+typedef struct cau_dds_wakeup {
+	dds_entity_t guard; // wakes the thread; opened with the transport
+	atomic_bool ending, roles_changed, sessions_changed, sliced, answered, fell_silent,
+		peers_changed;
+	cau_dds_bits marked, read; // sessions to be followed; sessions that have readers
+} cau_dds_wakeup;
+
+// Deliveries of other threads to the DDS thread, under the lock `mutex`; mailbox.c.
+typedef struct cau_dds_mailbox {
+	pthread_mutex_t mutex;
+	cau_dds_post *first, *last;
+	cau_dds_silenced *silenced;
+	cau_dds_roles *roles; // to be taken over; NULL: none
+} cau_dds_mailbox;
+
+// Numbers for the metrics: written by the DDS thread, read by any; atomic.
+typedef struct cau_dds_counts {
+	atomic_ullong clients, denied, evicted, incompatible;
+} cau_dds_counts;
+
+// Requests for sessions and their replies; the DDS thread's. control.c, replies.c.
+typedef struct cau_dds_control {
+	dds_entity_t subscriber, publisher, reply_writer;
+	cau_door door;
+	cau_dds_request requests[REQUESTS_MOST];
+} cau_dds_control;
+
+// Readers and writers of other programs in the domain; the DDS thread's. peers.c.
+typedef struct cau_dds_peers {
+	dds_entity_t writers, readers; // of DDS's built-in topics, which list them
+	cau_dds_peer *first;
+	bool ends_changed; // there are new readers and writers of ours
+	double told_s;     // the second in which so many were logged
+	int told;
+} cau_dds_peers;
+
+// Clients that hold a place; the DDS thread's. places.c.
+typedef struct cau_dds_places {
+	cau_dds_client *clients; // the newest first
+	uint64_t last_connection;
+	uint64_t denials; // since they were last logged
+	double denials_told_s;
+} cau_dds_places;
+
+// Matched writers, by reader and handle; the DDS thread's. writers.c.
+typedef struct cau_dds_writers {
+	cau_dds_writer *buckets[WRITER_BUCKETS];
+	double onlookers_told_s; // the second in which so many without a role to drive were logged
+	int onlookers_told;
+} cau_dds_writers;
+
 struct cau_dds {
 	const cau_config *config;
 	cau_hub *hub;
-	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
-	dds_entity_t topics[TOPIC_COUNT];
-	cau_dds_roles roles;
-	cau_dds_roles *roles_read; // mutex: to be taken over; NULL: nothing new
-	dds_entity_t control_subscriber, control_publisher, reply_writer;
-	cau_door request;
-	cau_dds_request requests[REQUESTS_MOST];
-	dds_entity_t waitset, wake;
-	pthread_t thread;
+	cau_dds_entities entities;
+	pthread_t thread; // started and joined by the daemon's main thread
 	bool started;
-	atomic_bool ending, roles_changed, sessions_changed, sliced, answered, fell_silent,
-		peers_changed;
-	cau_dds_bits marked, read; // sessions to be followed; sessions that somebody reads
-	pthread_mutex_t mutex;     // guards the posts and who fell silent
-	cau_dds_post *first, *last;
-	cau_dds_silenced *silenced;
-	uint64_t last_connection, last_ticket;
+
+	// of any thread
+	cau_dds_wakeup wakeup;
+	cau_dds_mailbox mailbox;
+	cau_dds_counts counts;
+
+	// of the DDS thread
+	cau_dds_roles roles;
+	uint64_t last_ticket;
 	cau_dds_session *sessions;
 	cau_dds_farewell *farewells;
-	dds_entity_t peer_writers, peer_readers; // who is in the domain, as DDS tells
-	cau_dds_peer *peers;
-	bool ends_changed;   // there are new readers and writers of ours
-	double peers_told_s; // the second in which so many were told
-	int peers_told;
-	cau_dds_client *clients; // the newest first
-	cau_dds_writer *writers[WRITER_BUCKETS];
-	uint64_t denials; // of places, since they were last told of
-	double denials_told_s, onlookers_told_s;
-	int onlookers_told; // since then
-	struct {
-		atomic_ullong clients, denied, evicted, incompatible;
-	} counts;
+	cau_dds_control control;
+	cau_dds_peers peers;
+	cau_dds_places places;
+	cau_dds_writers writers;
 };
 
 // NULL: it has none of this name.
@@ -310,10 +354,10 @@ static inline cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, co
 }
 
 // ---- mailbox.c: makes the thread look again, for the reason `why`; any thread
-void cau_dds_wake(cau_dds *dds, atomic_bool *why);
+void cau_dds_wake(cau_dds_wakeup *wakeup, atomic_bool *why);
 
 // Makes it look at this session; any thread
-void cau_dds_mark(cau_dds *dds, uint32_t session);
+void cau_dds_mark(cau_dds_wakeup *wakeup, uint32_t session);
 
 void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session);
 bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session);
@@ -322,7 +366,7 @@ void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken);
 
 // ---- outlets.c: who reads
 // Opens a writer; the outlet stays where it is until that is deleted. False: it could not.
-bool cau_dds_open_outlet(cau_dds *dds, cau_dds_outlet *outlet, uint32_t session,
+bool cau_dds_open_outlet(cau_dds_wakeup *wakeup, cau_dds_outlet *outlet, uint32_t session,
                          dds_entity_t publisher, dds_entity_t topic, const dds_qos_t *qos);
 void cau_dds_close_outlet(cau_dds_outlet *outlet);
 bool cau_dds_is_read(const cau_dds_outlet *outlet);
@@ -341,7 +385,7 @@ void cau_dds_close_sessions(cau_dds *dds);
 // A reply that comes back as a post with a ticket of its own.
 cau_reply cau_dds_reply(cau_dds *dds, cau_method method);
 // The next post, for the caller to free with cau_dds_post_free; NULL: none.
-cau_dds_post *cau_dds_next_post(cau_dds *dds);
+cau_dds_post *cau_dds_next_post(cau_dds_mailbox *mailbox);
 void cau_dds_post_free(cau_dds_post *post);
 // Fills the C type of the method's result from a post that did not fail.
 cau_status cau_dds_post_result(const cau_dds_post *post, void *result, cau_error *error);
@@ -365,15 +409,16 @@ cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error);
 // Looks at who came, and at all when there are new ends of ours: opens doors of best effort, tells
 // once of each that cannot be matched.
 void cau_dds_look_at_peers(cau_dds *dds);
-void cau_dds_forget_peers(cau_dds *dds);
+void cau_dds_forget_peers(cau_dds_peers *peers);
 
 // ---- farewells.c: last samples on their way
 // Takes `publisher`, which goes once the readers of its `writer` have what that wrote last.
-void cau_dds_bid_farewell(cau_dds *dds, dds_entity_t publisher, dds_entity_t writer);
+void cau_dds_bid_farewell(cau_dds_farewell **farewells, dds_entity_t publisher,
+                          dds_entity_t writer);
 // Deletes those that are done. Returns when to look again.
-double cau_dds_end_farewells(cau_dds *dds, double now_s);
+double cau_dds_end_farewells(cau_dds_farewell **farewells, double now_s);
 // Waits for all of them: two seconds at most.
-void cau_dds_await_farewells(cau_dds *dds);
+void cau_dds_await_farewells(cau_dds_farewell **farewells);
 
 // ---- writers.c: who writes
 // The writer behind a sample, or NULL: it is gone, or memory ran out.
@@ -395,7 +440,7 @@ uint64_t cau_dds_places_most(const cau_config *config); // of clients
 // The writer's client, or itself while it has no place.
 const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer);
 // Makes the writer one of the client whose it is, if that has a place.
-void cau_dds_join_place(cau_dds *dds, cau_dds_writer *writer);
+void cau_dds_join_place(const cau_dds_places *places, cau_dds_writer *writer);
 // The writer is gone; so is its client if it was the last.
 void cau_dds_leave_place(cau_dds *dds, cau_dds_writer *writer);
 // The writer's client; makes one by the quotas. Who `drives_now` gets a place in any case, if need
@@ -464,22 +509,22 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
 
 // ---- control.c
 // Counts what the writer asks for. Whether it is more than a WebSocket connection may in a second.
-bool cau_dds_is_too_fast(const cau_dds *dds, cau_dds_writer *writer);
+bool cau_dds_is_too_fast(const cau_config *config, cau_dds_writer *writer);
 void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 
 // ---- replies.c: each but the first two answers the request and forgets it
 cau_dds_request cau_dds_describe_request(const cau_dds_writer *writer,
                                          const cautery_SessionRequest *sample);
-cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_writer *writer,
+cau_dds_request *cau_dds_keep_request(cau_dds_control *control, const cau_dds_writer *writer,
                                       const cautery_SessionRequest *sample); // NULL: too many
-void cau_dds_reply_fail(cau_dds *dds, cau_dds_request *request, const cau_error *error,
-                        int32_t code);
-void cau_dds_reply_join(cau_dds *dds, cau_dds_request *request,
+void cau_dds_reply_fail(const cau_dds_control *control, cau_dds_request *request,
+                        const cau_error *error, int32_t code);
+void cau_dds_reply_join(const cau_dds_control *control, cau_dds_request *request,
                         const cau_wire_session_summary *summary);
 void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request);
 void cau_dds_reply_post(cau_dds *dds, const cau_dds_post *post);
 // The requester is gone: its replies are kept for nobody.
-void cau_dds_forget_replies(cau_dds *dds, const dds_guid_t *writer);
+void cau_dds_forget_replies(const cau_dds_control *control, const dds_guid_t *writer);
 
 // ---- operating.c
 void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer,

@@ -8,16 +8,16 @@
 #include "transport_dds/internal.h"
 
 // ---- looking again; from any thread
-void cau_dds_wake(cau_dds *dds, atomic_bool *why)
+void cau_dds_wake(cau_dds_wakeup *wakeup, atomic_bool *why)
 {
-	if (!atomic_exchange(why, true) && dds->wake > 0)
-		dds_set_guardcondition(dds->wake, true);
+	if (!atomic_exchange(why, true) && wakeup->guard > 0)
+		dds_set_guardcondition(wakeup->guard, true);
 }
 
-void cau_dds_mark(cau_dds *dds, uint32_t session)
+void cau_dds_mark(cau_dds_wakeup *wakeup, uint32_t session)
 {
-	cau_dds_set_bit(&dds->marked, session);
-	cau_dds_wake(dds, &dds->sliced);
+	cau_dds_set_bit(&wakeup->marked, session);
+	cau_dds_wake(wakeup, &wakeup->sliced);
 }
 
 // ---- sets of sessions, which are marked without a lock
@@ -40,20 +40,20 @@ void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken)
 }
 
 // ---- answers
-static void put(cau_dds *dds, cau_dds_post *post)
+static void put(cau_dds_mailbox *mailbox, cau_dds_post *post)
 {
-	pthread_mutex_lock(&dds->mutex);
-	if (dds->last)
-		dds->last->next = post;
+	pthread_mutex_lock(&mailbox->mutex);
+	if (mailbox->last)
+		mailbox->last->next = post;
 	else
-		dds->first = post;
-	dds->last = post;
-	pthread_mutex_unlock(&dds->mutex);
-	cau_dds_wake(dds, &dds->answered);
+		mailbox->first = post;
+	mailbox->last = post;
+	pthread_mutex_unlock(&mailbox->mutex);
 }
 
 static void on_answer(void *user, const cau_reply *reply, const cau_outcome *outcome)
 {
+	cau_dds *dds = user;
 	size_t bytes = outcome->error ? 0 : outcome->text_bytes;
 	cau_dds_post *post = calloc(1, sizeof *post + bytes);
 	if (!post) {
@@ -75,7 +75,8 @@ static void on_answer(void *user, const cau_reply *reply, const cau_outcome *out
 		if (outcome->joined)
 			post->joined = cau_hosted_share(outcome->joined);
 	}
-	put(user, post);
+	put(&dds->mailbox, post);
+	cau_dds_wake(&dds->wakeup, &dds->wakeup.answered);
 }
 
 cau_reply cau_dds_reply(cau_dds *dds, cau_method method)
@@ -87,15 +88,15 @@ cau_reply cau_dds_reply(cau_dds *dds, cau_method method)
 	                   .method = method};
 }
 
-cau_dds_post *cau_dds_next_post(cau_dds *dds)
+cau_dds_post *cau_dds_next_post(cau_dds_mailbox *mailbox)
 {
-	pthread_mutex_lock(&dds->mutex);
-	cau_dds_post *post = dds->first;
+	pthread_mutex_lock(&mailbox->mutex);
+	cau_dds_post *post = mailbox->first;
 	if (post)
-		dds->first = post->next;
-	if (!dds->first)
-		dds->last = NULL;
-	pthread_mutex_unlock(&dds->mutex);
+		mailbox->first = post->next;
+	if (!mailbox->first)
+		mailbox->last = NULL;
+	pthread_mutex_unlock(&mailbox->mutex);
 	return post;
 }
 

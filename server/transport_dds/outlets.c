@@ -12,15 +12,15 @@ static void on_matched(dds_entity_t writer, const dds_publication_matched_status
 	atomic_store(&outlet->readers, status.current_count);
 	if (status.total_count_change > 0)
 		atomic_store(&outlet->newcomers, true);
-	cau_dds_mark(outlet->dds, outlet->session);
+	cau_dds_mark(outlet->wakeup, outlet->session);
 }
 
-bool cau_dds_open_outlet(cau_dds *dds, cau_dds_outlet *outlet, uint32_t session,
+bool cau_dds_open_outlet(cau_dds_wakeup *wakeup, cau_dds_outlet *outlet, uint32_t session,
                          dds_entity_t publisher, dds_entity_t topic, const dds_qos_t *qos)
 {
 	dds_listener_t *listener = dds_create_listener(outlet);
 	dds_lset_publication_matched(listener, on_matched);
-	outlet->dds = dds;
+	outlet->wakeup = wakeup;
 	outlet->session = session;
 	outlet->writer = dds_create_writer(publisher, topic, qos, listener);
 	dds_delete_listener(listener);

@@ -41,9 +41,9 @@ static end find_native(cau_dds *dds, const cau_dds_peer *peer)
 	static const char prefix[] = "cautery/";
 	const char *leaf = peer->topic + sizeof prefix - 1;
 	if (strcmp(leaf, "session_request") == 0)
-		return (end){.entity = peer->writes ? dds->request.reader : 0};
+		return (end){.entity = peer->writes ? dds->control.door.reader : 0};
 	if (strcmp(leaf, "session_reply") == 0)
-		return (end){.entity = peer->writes ? 0 : dds->reply_writer};
+		return (end){.entity = peer->writes ? 0 : dds->control.reply_writer};
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
 		const char *id = cau_hosted_id(s->hosted);
 		if (!is_in_partition(peer->qos, id))
@@ -143,11 +143,11 @@ static void tell(cau_dds *dds, cau_dds_peer *peer, const end *ours, const char *
 	char participant[2 * sizeof peer->participant.v + 1];
 	peer->told = true;
 	dds->counts.incompatible++;
-	if (now_s - dds->peers_told_s >= 1) {
-		dds->peers_told_s = now_s;
-		dds->peers_told = 0;
+	if (now_s - dds->peers.told_s >= 1) {
+		dds->peers.told_s = now_s;
+		dds->peers.told = 0;
 	}
-	if (dds->peers_told++ >= PEERS_TOLD_MOST)
+	if (dds->peers.told++ >= PEERS_TOLD_MOST)
 		return;
 	for (size_t i = 0; i < sizeof peer->participant.v; i++)
 		snprintf(participant + 2 * i, 3, "%02x", peer->participant.v[i]);
@@ -179,9 +179,9 @@ static void free_peer(cau_dds_peer *peer)
 	free(peer);
 }
 
-static void forget_peer(cau_dds *dds, dds_instance_handle_t handle)
+static void forget_peer(cau_dds_peers *peers, dds_instance_handle_t handle)
 {
-	for (cau_dds_peer **link = &dds->peers; *link; link = &(*link)->next)
+	for (cau_dds_peer **link = &peers->first; *link; link = &(*link)->next)
 		if ((*link)->handle == handle) {
 			cau_dds_peer *gone = *link;
 			*link = gone->next;
@@ -190,23 +190,24 @@ static void forget_peer(cau_dds *dds, dds_instance_handle_t handle)
 		}
 }
 
-static bool concerns_us(const cau_dds *dds, const dds_builtintopic_endpoint_t *endpoint)
+static bool concerns_us(dds_entity_t participant, const dds_builtintopic_endpoint_t *endpoint)
 {
 	dds_guid_t own;
 	return endpoint->topic_name && endpoint->type_name &&
 	       (strncmp(endpoint->topic_name, "cautery/", 8) == 0 ||
 	        strncmp(endpoint->topic_name, "rt/", 3) == 0) &&
-	       !dds_get_guid(dds->participant, &own) &&
+	       !dds_get_guid(participant, &own) &&
 	       memcmp(own.v, endpoint->participant_key.v, sizeof own.v) != 0;
 }
 
 static void meet_peer(cau_dds *dds, const dds_builtintopic_endpoint_t *endpoint,
                       dds_instance_handle_t handle, bool writes)
 {
-	cau_dds_peer *peer = concerns_us(dds, endpoint) ? calloc(1, sizeof *peer) : NULL;
+	cau_dds_peer *peer =
+		concerns_us(dds->entities.participant, endpoint) ? calloc(1, sizeof *peer) : NULL;
 	if (!peer)
 		return;
-	*peer = (cau_dds_peer){.next = dds->peers,
+	*peer = (cau_dds_peer){.next = dds->peers.first,
 	                       .handle = handle,
 	                       .writes = writes,
 	                       .participant = endpoint->participant_key,
@@ -218,7 +219,7 @@ static void meet_peer(cau_dds *dds, const dds_builtintopic_endpoint_t *endpoint,
 		free_peer(peer);
 		return;
 	}
-	dds->peers = peer;
+	dds->peers.first = peer;
 	look_at(dds, peer);
 }
 
@@ -231,7 +232,7 @@ static void take_peers(cau_dds *dds, dds_entity_t reader, bool writes)
 		samples[0] = NULL;
 		count = dds_take(reader, samples, infos, TAKEN_AT_ONCE, TAKEN_AT_ONCE);
 		for (dds_return_t i = 0; i < count; i++) {
-			forget_peer(dds, infos[i].instance_handle);
+			forget_peer(&dds->peers, infos[i].instance_handle);
 			if (infos[i].valid_data && infos[i].instance_state == DDS_ALIVE_INSTANCE_STATE)
 				meet_peer(dds, samples[i], infos[i].instance_handle, writes);
 		}
@@ -242,14 +243,14 @@ static void take_peers(cau_dds *dds, dds_entity_t reader, bool writes)
 
 void cau_dds_look_at_peers(cau_dds *dds)
 {
-	if (atomic_exchange(&dds->peers_changed, false)) {
-		take_peers(dds, dds->peer_writers, true);
-		take_peers(dds, dds->peer_readers, false);
+	if (atomic_exchange(&dds->wakeup.peers_changed, false)) {
+		take_peers(dds, dds->peers.writers, true);
+		take_peers(dds, dds->peers.readers, false);
 	}
-	if (!dds->ends_changed)
+	if (!dds->peers.ends_changed)
 		return;
-	dds->ends_changed = false;
-	for (cau_dds_peer *peer = dds->peers; peer; peer = peer->next)
+	dds->peers.ends_changed = false;
+	for (cau_dds_peer *peer = dds->peers.first; peer; peer = peer->next)
 		look_at(dds, peer);
 }
 
@@ -257,27 +258,27 @@ static void on_peers(dds_entity_t reader, void *user)
 {
 	cau_dds *dds = user;
 	(void)reader;
-	cau_dds_wake(dds, &dds->peers_changed);
+	cau_dds_wake(&dds->wakeup, &dds->wakeup.peers_changed);
 }
 
 cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error)
 {
 	dds_listener_t *listener = dds_create_listener(dds);
 	dds_lset_data_available(listener, on_peers);
-	dds->peer_writers =
-		dds_create_reader(dds->participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, NULL, listener);
-	dds->peer_readers =
-		dds_create_reader(dds->participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, NULL, listener);
+	dds->peers.writers = dds_create_reader(dds->entities.participant,
+	                                       DDS_BUILTIN_TOPIC_DCPSPUBLICATION, NULL, listener);
+	dds->peers.readers = dds_create_reader(dds->entities.participant,
+	                                       DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, NULL, listener);
 	dds_delete_listener(listener);
-	return dds->peer_writers > 0 && dds->peer_readers > 0
+	return dds->peers.writers > 0 && dds->peers.readers > 0
 	           ? CAU_OK
 	           : cau_fail(error, CAU_IO, "dds", "cannot read the participants of the domain");
 }
 
-void cau_dds_forget_peers(cau_dds *dds)
+void cau_dds_forget_peers(cau_dds_peers *peers)
 {
-	for (cau_dds_peer *next; dds->peers; dds->peers = next) {
-		next = dds->peers->next;
-		free_peer(dds->peers);
+	for (cau_dds_peer *next; peers->first; peers->first = next) {
+		next = peers->first->next;
+		free_peer(peers->first);
 	}
 }

@@ -51,17 +51,17 @@ const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer)
 	return writer->client ? &writer->client->asker : &writer->asker;
 }
 
-static cau_dds_client *find_client(cau_dds *dds, const cau_dds_writer *writer)
+static cau_dds_client *find_client(const cau_dds_places *places, const cau_dds_writer *writer)
 {
-	cau_dds_client *client = dds->clients;
+	cau_dds_client *client = places->clients;
 	while (client && (client->identity != writer->identity || client->native != writer->native))
 		client = client->next;
 	return client;
 }
 
-void cau_dds_join_place(cau_dds *dds, cau_dds_writer *writer)
+void cau_dds_join_place(const cau_dds_places *places, cau_dds_writer *writer)
 {
-	writer->client = find_client(dds, writer);
+	writer->client = find_client(places, writer);
 	if (writer->client)
 		writer->client->writers++;
 }
@@ -69,23 +69,23 @@ void cau_dds_join_place(cau_dds *dds, cau_dds_writer *writer)
 static cau_dds_client *add_client(cau_dds *dds, cau_dds_writer *writer, cau_error *error)
 {
 	cau_dds_client *client = calloc(1, sizeof *client);
-	cau_client made = {.asker = writer->asker, .connection = ++dds->last_connection};
+	cau_client made = {.asker = writer->asker, .connection = ++dds->places.last_connection};
 	uint64_t replaced;
 	if (!client || !cau_hub_attach(dds->hub, &made, NULL, &replaced)) {
 		free(client);
 		cau_fail(error, CAU_NO_MEMORY, "", "no memory for a client");
 		return NULL;
 	}
-	*client = (cau_dds_client){.next = dds->clients,
+	*client = (cau_dds_client){.next = dds->places.clients,
 	                           .identity = writer->identity,
 	                           .native = writer->native,
 	                           .participant = writer->participant,
 	                           .connection = made.connection,
 	                           .asker = made.asker};
 	memcpy(client->subject, writer->subject, sizeof client->subject);
-	dds->clients = client;
+	dds->places.clients = client;
 	dds->counts.clients++;
-	cau_dds_join_place(dds, writer);
+	cau_dds_join_place(&dds->places, writer);
 	cau_log(CAU_LOG_INFO, NULL, "dds_client",
 	        "client=%u name=\"%s\" deadline_s=%.3f role=%s subject=\"%s\"", made.asker.client,
 	        made.asker.name, made.asker.deadline_s, cau_role_word(made.asker.role),
@@ -120,7 +120,7 @@ static void drop_client(cau_dds *dds, cau_dds_client *client)
 	cau_hub_detach(dds->hub, client->asker.client, client->connection);
 	while (client->hands)
 		drop_hand(client->hands);
-	cau_dds_client **link = &dds->clients;
+	cau_dds_client **link = &dds->places.clients;
 	while (*link != client)
 		link = &(*link)->next;
 	*link = client->next;
@@ -160,7 +160,7 @@ uint64_t cau_dds_places_most(const cau_config *config)
 static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_error *error)
 {
 	int idle = 0;
-	for (const cau_dds_client *client = dds->clients; client; client = client->next)
+	for (const cau_dds_client *client = dds->places.clients; client; client = client->next)
 		if (is_same(client, writer) && is_idle(client) && ++idle == IDLE_OF_ONE_MOST)
 			return cau_fail(error, CAU_LIMIT, "",
 			                "its participant or identity has %d clients without a tool, the most",
@@ -172,10 +172,10 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 
 // Who makes way: of those that drive nothing one that never had a motion accepted, else the first
 // come. `of`: only one of the same participant or identity; NULL: any.
-static cau_dds_client *find_idle(cau_dds *dds, const cau_dds_writer *of)
+static cau_dds_client *find_idle(const cau_dds_places *places, const cau_dds_writer *of)
 {
-	cau_dds_client *found = NULL;
-	for (cau_dds_client *client = dds->clients; client; client = client->next) // the newest first
+	cau_dds_client *found = NULL; // in a list whose newest comes first
+	for (cau_dds_client *client = places->clients; client; client = client->next)
 		if ((!of || is_same(client, of)) && (!found || found->accepted || !client->accepted) &&
 		    is_idle(client))
 			found = client;
@@ -183,17 +183,17 @@ static cau_dds_client *find_idle(cau_dds *dds, const cau_dds_writer *of)
 }
 
 // Its writers are nobody's.
-static void forget_client(cau_dds *dds, const cau_dds_client *client)
+static void forget_client(const cau_dds_writers *writers, const cau_dds_client *client)
 {
 	for (int i = 0; i < WRITER_BUCKETS; i++)
-		for (cau_dds_writer *writer = dds->writers[i]; writer; writer = writer->next)
+		for (cau_dds_writer *writer = writers->buckets[i]; writer; writer = writer->next)
 			if (writer->client == client)
 				writer->client = NULL;
 }
 
 void cau_dds_end_place(cau_dds *dds, cau_dds_client *client)
 {
-	forget_client(dds, client);
+	forget_client(&dds->writers, client);
 	drop_client(dds, client);
 }
 
@@ -208,14 +208,15 @@ static cau_status deny(cau_dds *dds, cau_dds_writer *writer, cau_error *error)
 	double now_s = cau_monotonic_s();
 	writer->retry_s = now_s + DENIED_S;
 	dds->counts.denied++;
-	dds->denials++;
-	if (now_s - dds->denials_told_s < DENIALS_TOLD_S)
+	dds->places.denials++;
+	if (now_s - dds->places.denials_told_s < DENIALS_TOLD_S)
 		return CAU_LIMIT;
 	cau_log(CAU_LOG_WARNING, NULL, "dds_no_place",
 	        "count=%llu client=\"%s\" subject=\"%s\" reason=\"%s\"",
-	        (unsigned long long)dds->denials, writer->asker.name, writer->subject, error->reason);
-	dds->denials = 0;
-	dds->denials_told_s = now_s;
+	        (unsigned long long)dds->places.denials, writer->asker.name, writer->subject,
+	        error->reason);
+	dds->places.denials = 0;
+	dds->places.denials_told_s = now_s;
 	return CAU_LIMIT;
 }
 
@@ -229,9 +230,9 @@ cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_
 		return NULL;
 	}
 	if (check_quota(dds, writer, error)) {
-		cau_dds_client *idle = drives_now ? find_idle(dds, writer) : NULL;
+		cau_dds_client *idle = drives_now ? find_idle(&dds->places, writer) : NULL;
 		if (drives_now && !idle)
-			idle = find_idle(dds, NULL);
+			idle = find_idle(&dds->places, NULL);
 		if (!idle) {
 			deny(dds, writer, error);
 			return NULL;

@@ -19,24 +19,24 @@ cau_status cau_dds_reload(cau_dds *dds, cau_error *error)
 		free(read);
 		return status;
 	}
-	pthread_mutex_lock(&dds->mutex);
-	free(dds->roles_read); // of a moment ago, not taken yet
-	dds->roles_read = read;
-	pthread_mutex_unlock(&dds->mutex);
-	cau_dds_wake(dds, &dds->roles_changed);
+	pthread_mutex_lock(&dds->mailbox.mutex);
+	free(dds->mailbox.roles); // of a moment ago, not taken yet
+	dds->mailbox.roles = read;
+	pthread_mutex_unlock(&dds->mailbox.mutex);
+	cau_dds_wake(&dds->wakeup, &dds->wakeup.roles_changed);
 	return CAU_OK;
 }
 
-static cau_role role_of(const cau_dds *dds, const char *subject)
+static cau_role role_of(const cau_dds_roles *roles, const char *subject)
 {
-	return cau_dds_roles_find(&dds->roles, *subject ? subject : NULL);
+	return cau_dds_roles_find(roles, *subject ? subject : NULL);
 }
 
 // Whose role is less gives up its place, energy off, and asks for another with its next sample, as
 // what it is now. Whose role is more keeps it.
 static void follow_role(cau_dds *dds, cau_dds_client *client)
 {
-	cau_role role = role_of(dds, client->subject), before = client->asker.role;
+	cau_role role = role_of(&dds->roles, client->subject), before = client->asker.role;
 	if (role == before)
 		return;
 	cau_log(CAU_LOG_NOTICE, NULL, "dds_role_changed", "client=%u subject=\"%s\" before=%s role=%s",
@@ -48,18 +48,18 @@ static void follow_role(cau_dds *dds, cau_dds_client *client)
 
 void cau_dds_take_roles(cau_dds *dds)
 {
-	pthread_mutex_lock(&dds->mutex);
-	cau_dds_roles *read = dds->roles_read;
-	dds->roles_read = NULL;
-	pthread_mutex_unlock(&dds->mutex);
+	pthread_mutex_lock(&dds->mailbox.mutex);
+	cau_dds_roles *read = dds->mailbox.roles;
+	dds->mailbox.roles = NULL;
+	pthread_mutex_unlock(&dds->mailbox.mutex);
 	if (!read)
 		return;
 	dds->roles = *read;
 	free(read);
 	for (int i = 0; i < WRITER_BUCKETS; i++)
-		for (cau_dds_writer *writer = dds->writers[i]; writer; writer = writer->next)
-			writer->asker.role = role_of(dds, writer->subject);
-	for (cau_dds_client *client = dds->clients, *next; client; client = next) {
+		for (cau_dds_writer *writer = dds->writers.buckets[i]; writer; writer = writer->next)
+			writer->asker.role = role_of(&dds->roles, writer->subject);
+	for (cau_dds_client *client = dds->places.clients, *next; client; client = next) {
 		next = client->next;
 		follow_role(dds, client);
 	}

@@ -18,13 +18,13 @@ cau_dds_request cau_dds_describe_request(const cau_dds_writer *writer,
 	return request;
 }
 
-cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_writer *writer,
+cau_dds_request *cau_dds_keep_request(cau_dds_control *control, const cau_dds_writer *writer,
                                       const cautery_SessionRequest *sample)
 {
 	cau_dds_request *unused = NULL;
 	int own = 0;
 	for (int i = 0; i < REQUESTS_MOST; i++) {
-		cau_dds_request *request = &dds->requests[i];
+		cau_dds_request *request = &control->requests[i];
 		if (!request->used)
 			unused = request;
 		else if (request->participant == writer->participant)
@@ -45,17 +45,18 @@ static cautery_SessionReply begin(const cau_dds_request *request)
 }
 
 // Writes the reply and forgets the request.
-static void finish(cau_dds *dds, cau_dds_request *request, const cautery_SessionReply *reply)
+static void finish(const cau_dds_control *control, cau_dds_request *request,
+                   const cautery_SessionReply *reply)
 {
-	dds_return_t code = dds_write(dds->reply_writer, reply);
+	dds_return_t code = dds_write(control->reply_writer, reply);
 	if (code)
 		cau_log(CAU_LOG_WARNING, NULL, "dds_reply_lost", "number=%llu reason=\"%s\"",
 		        (unsigned long long)request->number, dds_strretcode(code));
 	*request = (cau_dds_request){0};
 }
 
-void cau_dds_reply_fail(cau_dds *dds, cau_dds_request *request, const cau_error *error,
-                        int32_t code)
+void cau_dds_reply_fail(const cau_dds_control *control, cau_dds_request *request,
+                        const cau_error *error, int32_t code)
 {
 	static const char prefix[] = "params.";
 	cau_rpc_fault fault;
@@ -71,16 +72,16 @@ void cau_dds_reply_fail(cau_dds *dds, cau_dds_request *request, const cau_error 
 	snprintf(reply.path, sizeof reply.path, "%.159s",
 	         strcmp(path, "client_sequence") == 0 ? "number" : path);
 	snprintf(reply.reason, sizeof reply.reason, "%.319s", fault.reason);
-	finish(dds, request, &reply);
+	finish(control, request, &reply);
 }
 
-void cau_dds_reply_join(cau_dds *dds, cau_dds_request *request,
+void cau_dds_reply_join(const cau_dds_control *control, cau_dds_request *request,
                         const cau_wire_session_summary *summary)
 {
 	cautery_SessionReply reply = begin(request);
 	reply.tick = (uint64_t)summary->tick;
 	reply.epoch = summary->epoch;
-	finish(dds, request, &reply);
+	finish(control, request, &reply);
 }
 
 static int by_id(const void *a, const void *b)
@@ -91,6 +92,7 @@ static int by_id(const void *a, const void *b)
 
 void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 {
+	cau_dds_control *control = &dds->control;
 	cautery_SessionReply reply = begin(request);
 	uint32_t count = 0, capacity = 0;
 	for (const cau_dds_session *s = dds->sessions; s; s = s->next)
@@ -98,7 +100,7 @@ void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 	cautery_SessionStatus *statuses = calloc(capacity + 1, sizeof *statuses);
 	if (!statuses) {
 		cau_error error = {.status = CAU_NO_MEMORY};
-		cau_dds_reply_fail(dds, request, &error, 0);
+		cau_dds_reply_fail(control, request, &error, 0);
 		return;
 	}
 	for (const cau_dds_session *s = dds->sessions; s; s = s->next) {
@@ -114,23 +116,22 @@ void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 	snprintf(reply.session, sizeof reply.session, "%.48s", dds->config->label);
 	reply.sessions._buffer = statuses;
 	reply.sessions._length = reply.sessions._maximum = count;
-	finish(dds, request, &reply);
+	finish(control, request, &reply);
 	free(statuses);
 }
 
 // ---- from posts
 // The number by which frames name a session; 0: it is gone again.
-static uint32_t number_of(const cau_dds *dds, const char *id)
+static uint32_t number_of(cau_hub *hub, const char *id)
 {
-	cau_hosted *hosted = cau_hub_find(dds->hub, id);
+	cau_hosted *hosted = cau_hub_find(hub, id);
 	uint32_t number = hosted ? cau_hosted_number(hosted) : 0;
 	cau_hosted_release(hosted);
 	return number;
 }
 
-static cau_status fill_made(const cau_dds *dds, const cau_dds_post *post,
-                            cautery_SessionReply *reply, cautery_SessionStatus *made,
-                            cau_error *error)
+static cau_status fill_made(cau_hub *hub, const cau_dds_post *post, cautery_SessionReply *reply,
+                            cautery_SessionStatus *made, cau_error *error)
 {
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
 	cau_wire_driver drivers[CAU_MAX_TOOLS];
@@ -139,7 +140,7 @@ static cau_status fill_made(const cau_dds *dds, const cau_dds_post *post,
 	cau_status status = cau_dds_post_result(post, &result, error);
 	if (status)
 		return status;
-	cau_dds_fill_status(made, &result.summary, number_of(dds, result.summary.session),
+	cau_dds_fill_status(made, &result.summary, number_of(hub, result.summary.session),
 	                    &(cau_hosted_counts){0});
 	memcpy(reply->session, result.summary.session, sizeof reply->session);
 	reply->tick = (uint64_t)result.summary.tick;
@@ -149,7 +150,7 @@ static cau_status fill_made(const cau_dds *dds, const cau_dds_post *post,
 	return CAU_OK;
 }
 
-static cau_status fill(const cau_dds *dds, const cau_dds_post *post, cautery_SessionReply *reply,
+static cau_status fill(cau_hub *hub, const cau_dds_post *post, cautery_SessionReply *reply,
                        cautery_SessionStatus *made, cau_error *error)
 {
 	cau_wire_session_summary summary = {0};
@@ -159,7 +160,7 @@ static cau_status fill(const cau_dds *dds, const cau_dds_post *post, cautery_Ses
 	switch (post->method) {
 	case CAU_METHOD_SESSION_CREATE:
 	case CAU_METHOD_SESSION_FORK:
-		return fill_made(dds, post, reply, made, error);
+		return fill_made(hub, post, reply, made, error);
 	case CAU_METHOD_SESSION_PAUSE:
 	case CAU_METHOD_SESSION_RESUME:
 		status = cau_dds_post_result(post, &summary, error);
@@ -184,24 +185,26 @@ void cau_dds_reply_post(cau_dds *dds, const cau_dds_post *post)
 {
 	cau_error error = {0};
 	cautery_SessionStatus made;
+	cau_dds_control *control = &dds->control;
 	int i = 0;
-	while (i < REQUESTS_MOST && (!dds->requests[i].used || dds->requests[i].ticket != post->ticket))
+	while (i < REQUESTS_MOST &&
+	       (!control->requests[i].used || control->requests[i].ticket != post->ticket))
 		i++;
 	if (i == REQUESTS_MOST)
 		return;
-	cau_dds_request *request = &dds->requests[i];
+	cau_dds_request *request = &control->requests[i];
 	cautery_SessionReply reply = begin(request);
 	if (post->failed)
-		cau_dds_reply_fail(dds, request, &post->error, post->code);
-	else if (fill(dds, post, &reply, &made, &error))
-		cau_dds_reply_fail(dds, request, &error, CAU_RPC_INTERNAL);
+		cau_dds_reply_fail(control, request, &post->error, post->code);
+	else if (fill(dds->hub, post, &reply, &made, &error))
+		cau_dds_reply_fail(control, request, &error, CAU_RPC_INTERNAL);
 	else
-		finish(dds, request, &reply);
+		finish(control, request, &reply);
 }
 
-void cau_dds_forget_replies(cau_dds *dds, const dds_guid_t *writer)
+void cau_dds_forget_replies(const cau_dds_control *control, const dds_guid_t *writer)
 {
 	cautery_SessionReply key = {0};
 	memcpy(key.writer, writer->v, sizeof key.writer);
-	dds_unregister_instance(dds->reply_writer, &key);
+	dds_unregister_instance(control->reply_writer, &key);
 }

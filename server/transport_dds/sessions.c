@@ -184,29 +184,29 @@ static void note_read(cau_dds *dds)
 		if (is_session_read(s))
 			cau_dds_set_bit(&read, cau_hosted_number(s->hosted));
 	for (int i = 0; i < BITS_WORDS; i++)
-		atomic_store(&dds->read.words[i], read.words[i]);
+		atomic_store(&dds->wakeup.read.words[i], read.words[i]);
 }
 
 double cau_dds_serve(cau_dds *dds)
 {
 	double now_s = cau_monotonic_s(), look_s = now_s + UNREAD_LOOK_S;
 	cau_dds_bits marked;
-	for (cau_dds_post *post; (post = cau_dds_next_post(dds));) {
+	for (cau_dds_post *post; (post = cau_dds_next_post(&dds->mailbox));) {
 		deliver(dds, post);
 		cau_dds_post_free(post);
 	}
 	note_read(dds); // before the marks are taken: a slice that did not wake the thread left one
-	cau_dds_take_bits(&dds->marked, &marked);
+	cau_dds_take_bits(&dds->wakeup.marked, &marked);
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
 		if (cau_hosted_ended(s->hosted)) // listed anew at once, whoever else tells of it
-			cau_dds_wake(dds, &dds->sessions_changed);
+			cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
 		if (!s->subscriber)
 			continue;
 		if (now_s >= s->look_s || cau_dds_has_bit(&marked, cau_hosted_number(s->hosted)))
 			s->look_s = serve_session(dds, s, now_s);
 		look_s = fmin(look_s, s->look_s);
 	}
-	return fmin(look_s, cau_dds_end_farewells(dds, now_s));
+	return fmin(look_s, cau_dds_end_farewells(&dds->farewells, now_s));
 }
 
 void cau_dds_close_sessions(cau_dds *dds)
@@ -216,5 +216,5 @@ void cau_dds_close_sessions(cau_dds *dds)
 		next = dds->sessions->next;
 		forget_session(dds, dds->sessions);
 	}
-	cau_dds_await_farewells(dds);
+	cau_dds_await_farewells(&dds->farewells);
 }

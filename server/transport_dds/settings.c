@@ -81,7 +81,7 @@ static cau_status find(const cau_dds *dds, const cau_door *door, cau_dds_writer 
 	if (!*hand)
 		return cau_fail(error, CAU_BAD_STATE, "tool",
 		                "only the participant that drives it sets its generator");
-	if (cau_dds_is_too_fast(dds, writer))
+	if (cau_dds_is_too_fast(dds->config, writer))
 		return cau_fail(error, CAU_LIMIT, "tool", "too many settings a second");
 	*definition = state.state.definition;
 	return CAU_OK;

@@ -20,9 +20,9 @@ static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 	cau_dds *dds = user;
 	cau_buffer_release(text);
 	if (audience.kind == CAU_AUDIENCE_SESSION)
-		cau_dds_mark(dds, (uint32_t)audience.id);
+		cau_dds_mark(&dds->wakeup, (uint32_t)audience.id);
 	else if (audience.kind == CAU_AUDIENCE_EVERYBODY)
-		cau_dds_wake(dds, &dds->sessions_changed);
+		cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
 }
 
 static void on_frames(void *user)
@@ -34,9 +34,9 @@ static void on_frames(void *user)
 static void on_sliced(void *user, uint32_t session)
 {
 	cau_dds *dds = user;
-	cau_dds_set_bit(&dds->marked, session);
-	if (cau_dds_has_bit(&dds->read, session))
-		cau_dds_wake(dds, &dds->sliced);
+	cau_dds_set_bit(&dds->wakeup.marked, session);
+	if (cau_dds_has_bit(&dds->wakeup.read, session))
+		cau_dds_wake(&dds->wakeup, &dds->wakeup.sliced);
 }
 
 // ---- samples
@@ -96,21 +96,21 @@ static void *run(void *argument)
 	pthread_setname_np(pthread_self(), CAU_DDS_THREAD_NAME);
 	dds_attach_t triggers[TRIGGERS_MOST];
 	double look_s = 0;
-	while (!dds->ending) {
+	while (!dds->wakeup.ending) {
 		dds_return_t count =
-			dds_waitset_wait(dds->waitset, triggers, TRIGGERS_MOST, patience(look_s));
+			dds_waitset_wait(dds->entities.waitset, triggers, TRIGGERS_MOST, patience(look_s));
 		for (dds_return_t i = 0; i < count && i < TRIGGERS_MOST; i++)
 			if (triggers[i])
 				serve(dds, (cau_door *)triggers[i]);
-		dds_set_guardcondition(dds->wake, false);
-		dds->sliced = false;
-		if (atomic_exchange(&dds->sessions_changed, false))
+		dds_set_guardcondition(dds->wakeup.guard, false);
+		dds->wakeup.sliced = false;
+		if (atomic_exchange(&dds->wakeup.sessions_changed, false))
 			cau_dds_list_sessions(dds);
-		if (atomic_exchange(&dds->roles_changed, false))
+		if (atomic_exchange(&dds->wakeup.roles_changed, false))
 			cau_dds_take_roles(dds);
-		if (atomic_exchange(&dds->fell_silent, false))
+		if (atomic_exchange(&dds->wakeup.fell_silent, false))
 			cau_dds_end_silenced(dds);
-		dds->answered = false;
+		dds->wakeup.answered = false;
 		look_s = cau_dds_serve(dds);
 		cau_dds_look_at_peers(dds);
 	}
@@ -156,9 +156,9 @@ static const char no_linger[] =
 	"<CycloneDDS><Domain Id=\"any\"><Internal>"
 	"<WriterLingerDuration>0 s</WriterLingerDuration></Internal></Domain></CycloneDDS>";
 
-static cau_status open_domain(cau_dds *dds, cau_error *error)
+static cau_status open_domain(cau_dds_entities *entities, const cau_config *config,
+                              cau_error *error)
 {
-	const cau_config *config = dds->config;
 	char given[CONFIG_BYTES], reason[CAU_NAMED_FILE_REASON_BYTES];
 	FILE *settings = *config->dds_config ? cau_named_file_open(config->dds_config,
 	                                                           CAU_NAMED_FILE_BYTES, NULL, reason)
@@ -172,36 +172,38 @@ static cau_status open_domain(cau_dds *dds, cau_error *error)
 		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
 	else
 		snprintf(given, sizeof given, "%s,%s", cau_dds_loopback, no_linger);
-	dds->domain = dds_create_domain((dds_domainid_t)config->dds_domain, given);
-	if (dds->domain < 0)
-		return cau_dds_explain_domain(config, dds_strretcode(dds->domain), error);
+	entities->domain = dds_create_domain((dds_domainid_t)config->dds_domain, given);
+	if (entities->domain < 0)
+		return cau_dds_explain_domain(config, dds_strretcode(entities->domain), error);
 	dds_qos_t *qos = dds_create_qos();
 	cau_status status = *config->dds_config ? CAU_OK : cau_dds_stay_local(error);
 	if (!status)
 		status = cau_dds_secure(qos, config, error);
 	if (!status)
-		dds->participant = dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
+		entities->participant =
+			dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
 	dds_delete_qos(qos);
-	if (!status && dds->participant < 0 && *config->dds_security)
+	if (!status && entities->participant < 0 && *config->dds_security)
 		return cau_fail(error, CAU_IO, "dds_security", "no participant with this dds_security: %s",
-		                dds_strretcode(dds->participant));
-	if (!status && dds->participant < 0)
-		return fail(error, "no participant", dds->participant);
+		                dds_strretcode(entities->participant));
+	if (!status && entities->participant < 0)
+		return fail(error, "no participant", entities->participant);
 	return status;
 }
 
 static cau_status open_entities(cau_dds *dds, cau_error *error)
 {
-	dds_entity_t p = dds->participant;
-	dds->subscriber = dds_create_subscriber(p, NULL, NULL);
-	dds->publisher = dds_create_publisher(p, NULL, NULL);
-	dds->waitset = dds_create_waitset(p);
-	dds->wake = dds_create_guardcondition(p);
-	const dds_entity_t made[] = {dds->subscriber, dds->publisher, dds->waitset, dds->wake};
+	dds_entity_t p = dds->entities.participant;
+	dds->entities.subscriber = dds_create_subscriber(p, NULL, NULL);
+	dds->entities.publisher = dds_create_publisher(p, NULL, NULL);
+	dds->entities.waitset = dds_create_waitset(p);
+	dds->wakeup.guard = dds_create_guardcondition(p);
+	const dds_entity_t made[] = {dds->entities.subscriber, dds->entities.publisher,
+	                             dds->entities.waitset, dds->wakeup.guard};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] < 0)
 			return fail(error, "no entity", made[i]);
-	dds_return_t code = dds_waitset_attach(dds->waitset, dds->wake, 0);
+	dds_return_t code = dds_waitset_attach(dds->entities.waitset, dds->wakeup.guard, 0);
 	return code ? fail(error, "no waitset", code) : CAU_OK;
 }
 
@@ -213,10 +215,10 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no memory for the DDS transport");
 	dds->config = config;
 	dds->hub = hub;
-	pthread_mutex_init(&dds->mutex, NULL);
+	pthread_mutex_init(&dds->mailbox.mutex, NULL);
 	cau_status status = cau_dds_roles_read(&dds->roles, config, error);
 	if (!status)
-		status = open_domain(dds, error);
+		status = open_domain(&dds->entities, config, error);
 	if (!status)
 		status = open_entities(dds, error);
 	if (!status)
@@ -236,7 +238,7 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 
 cau_status cau_dds_start(cau_dds *dds, cau_error *error)
 {
-	cau_dds_wake(dds, &dds->sessions_changed);
+	cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
 	dds->started = pthread_create(&dds->thread, NULL, run, dds) == 0;
 	if (!dds->started)
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no thread");
@@ -251,8 +253,8 @@ void cau_dds_stop(cau_dds *dds)
 {
 	if (!dds || !dds->started)
 		return;
-	dds->ending = true;
-	dds_set_guardcondition(dds->wake, true);
+	dds->wakeup.ending = true;
+	dds_set_guardcondition(dds->wakeup.guard, true);
 	pthread_join(dds->thread, NULL);
 	dds->started = false;
 }
@@ -262,13 +264,13 @@ void cau_dds_destroy(cau_dds *dds)
 	if (!dds)
 		return;
 	cau_dds_stop(dds);
-	if (dds->domain > 0)
-		cau_dds_leave(dds->domain);
-	for (cau_dds_post *post; (post = cau_dds_next_post(dds));)
+	if (dds->entities.domain > 0)
+		cau_dds_leave(dds->entities.domain);
+	for (cau_dds_post *post; (post = cau_dds_next_post(&dds->mailbox));)
 		cau_dds_post_free(post);
 	cau_dds_end_silenced(dds);
-	cau_dds_forget_peers(dds);
-	pthread_mutex_destroy(&dds->mutex);
-	free(dds->roles_read);
+	cau_dds_forget_peers(&dds->peers);
+	pthread_mutex_destroy(&dds->mailbox.mutex);
+	free(dds->mailbox.roles);
 	free(dds);
 }

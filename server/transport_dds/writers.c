@@ -14,11 +14,11 @@ enum { ONLOOKERS_TOLD_MOST = 16 }; // log lines a second
 // Bounds on a declared deadline, s.
 static const double deadline_least_s = 0.02, deadline_most_s = 1;
 
-static double deadline_of(const cau_dds *dds, const dds_qos_t *qos)
+static double deadline_of(const cau_config *config, const dds_qos_t *qos)
 {
 	dds_duration_t deadline = DDS_INFINITY;
 	if (!dds_qget_deadline(qos, &deadline) || deadline == DDS_INFINITY)
-		return dds->config->dds_deadline_s;
+		return config->dds_deadline_s;
 	return fmax(deadline_least_s, fmin(deadline_most_s, 1e-9 * (double)deadline));
 }
 
@@ -34,15 +34,17 @@ static void write_guid(char text[33], const dds_guid_t *guid)
 		snprintf(text + 2 * i, 3, "%02x", guid->v[i]);
 }
 
-static cau_dds_writer **bucket_of(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
+static cau_dds_writer **bucket_of(cau_dds_writers *writers, dds_entity_t reader,
+                                  dds_instance_handle_t handle)
 {
 	uint64_t mixed = (handle ^ (uint64_t)(uint32_t)reader * 2654435761u) * 0x9e3779b97f4a7c15u;
-	return &dds->writers[mixed % WRITER_BUCKETS];
+	return &writers->buckets[mixed % WRITER_BUCKETS];
 }
 
-static cau_dds_writer *find_writer(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
+static cau_dds_writer *find_writer(cau_dds_writers *writers, dds_entity_t reader,
+                                   dds_instance_handle_t handle)
 {
-	cau_dds_writer *writer = *bucket_of(dds, reader, handle);
+	cau_dds_writer *writer = *bucket_of(writers, reader, handle);
 	while (writer && (writer->reader != reader || writer->handle != handle))
 		writer = writer->next;
 	return writer;
@@ -58,21 +60,21 @@ static void describe_asker(const cau_dds *dds, cau_dds_writer *writer,
 	if (!proved)
 		*writer->subject = 0;
 	asker->role = cau_dds_roles_find(&dds->roles, proved ? writer->subject : NULL);
-	asker->deadline_s = deadline_of(dds, endpoint->qos);
+	asker->deadline_s = deadline_of(dds->config, endpoint->qos);
 	write_guid(guid, writer->native ? &endpoint->key : &endpoint->participant_key);
 	snprintf(asker->name, sizeof asker->name, "%s %.32s", writer->native ? "dds" : "ros", guid);
 	snprintf(asker->client_id, sizeof asker->client_id, "dds-%s", guid);
 }
 
 // Who may not drive never gets a place, whose log line would name it: it is named here.
-static void tell_onlooker(cau_dds *dds, const cau_dds_writer *writer)
+static void tell_onlooker(cau_dds_writers *writers, const cau_dds_writer *writer)
 {
 	double now_s = cau_monotonic_s();
-	if (now_s - dds->onlookers_told_s >= 1) {
-		dds->onlookers_told_s = now_s;
-		dds->onlookers_told = 0;
+	if (now_s - writers->onlookers_told_s >= 1) {
+		writers->onlookers_told_s = now_s;
+		writers->onlookers_told = 0;
 	}
-	if (dds->onlookers_told++ < ONLOOKERS_TOLD_MOST)
+	if (writers->onlookers_told++ < ONLOOKERS_TOLD_MOST)
 		cau_log(CAU_LOG_INFO, NULL, "dds_client", "client=0 name=\"%s\" role=%s subject=\"%s\"",
 		        writer->asker.name, cau_role_word(writer->asker.role), writer->subject);
 }
@@ -82,7 +84,7 @@ static cau_dds_writer *add_writer(cau_dds *dds, const cau_door *door, dds_instan
 	dds_builtintopic_endpoint_t *endpoint = dds_get_matched_publication_data(door->reader, handle);
 	cau_dds_writer *made = endpoint ? calloc(1, sizeof *made) : NULL;
 	if (made) {
-		cau_dds_writer **bucket = bucket_of(dds, door->reader, handle);
+		cau_dds_writer **bucket = bucket_of(&dds->writers, door->reader, handle);
 		made->next = *bucket;
 		made->reader = door->reader;
 		made->handle = handle;
@@ -95,7 +97,7 @@ static cau_dds_writer *add_writer(cau_dds *dds, const cau_door *door, dds_instan
 		describe_asker(dds, made, endpoint);
 		*bucket = made;
 		if (made->asker.role < CAU_ROLE_OPERATE)
-			tell_onlooker(dds, made);
+			tell_onlooker(&dds->writers, made);
 	}
 	if (endpoint)
 		dds_builtintopic_free_endpoint(endpoint);
@@ -104,11 +106,11 @@ static cau_dds_writer *add_writer(cau_dds *dds, const cau_door *door, dds_instan
 
 cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle)
 {
-	cau_dds_writer *writer = find_writer(dds, door->reader, handle);
+	cau_dds_writer *writer = find_writer(&dds->writers, door->reader, handle);
 	if (!writer)
 		writer = add_writer(dds, door, handle);
 	if (writer && !writer->client)
-		cau_dds_join_place(dds, writer);
+		cau_dds_join_place(&dds->places, writer);
 	return writer;
 }
 
@@ -166,8 +168,8 @@ cau_dds_writer *cau_dds_find_writer(cau_dds *dds, const cau_door *door, uint64_t
 // ---- going
 static void drop_writer(cau_dds *dds, cau_dds_writer *writer)
 {
-	if (writer->reader == dds->request.reader)
-		cau_dds_forget_replies(dds, &writer->guid);
+	if (writer->reader == dds->control.door.reader)
+		cau_dds_forget_replies(&dds->control, &writer->guid);
 	cau_dds_leave_place(dds, writer);
 	free(writer);
 }
@@ -179,7 +181,7 @@ void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all)
 	if (count)
 		qsort(matched, count, sizeof *matched, by_handle);
 	for (int i = 0; i < WRITER_BUCKETS; i++)
-		for (cau_dds_writer **link = &dds->writers[i]; *link;) {
+		for (cau_dds_writer **link = &dds->writers.buckets[i]; *link;) {
 			cau_dds_writer *writer = *link;
 			bool stays =
 				!all &&
@@ -208,11 +210,11 @@ static void on_liveliness(dds_entity_t reader, const dds_liveliness_changed_stat
 	if (!noted)
 		return; // the watchdog cuts its energy all the same
 	*noted = (cau_dds_silenced){.reader = reader, .handle = status.last_publication_handle};
-	pthread_mutex_lock(&dds->mutex);
-	noted->next = dds->silenced;
-	dds->silenced = noted;
-	pthread_mutex_unlock(&dds->mutex);
-	cau_dds_wake(dds, &dds->fell_silent);
+	pthread_mutex_lock(&dds->mailbox.mutex);
+	noted->next = dds->mailbox.silenced;
+	dds->mailbox.silenced = noted;
+	pthread_mutex_unlock(&dds->mailbox.mutex);
+	cau_dds_wake(&dds->wakeup, &dds->wakeup.fell_silent);
 }
 
 dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds)
@@ -224,13 +226,13 @@ dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds)
 
 void cau_dds_end_silenced(cau_dds *dds)
 {
-	pthread_mutex_lock(&dds->mutex);
-	cau_dds_silenced *next, *first = dds->silenced;
-	dds->silenced = NULL;
-	pthread_mutex_unlock(&dds->mutex);
+	pthread_mutex_lock(&dds->mailbox.mutex);
+	cau_dds_silenced *next, *first = dds->mailbox.silenced;
+	dds->mailbox.silenced = NULL;
+	pthread_mutex_unlock(&dds->mailbox.mutex);
 	for (; first; first = next) {
 		next = first->next;
-		const cau_dds_writer *writer = find_writer(dds, first->reader, first->handle);
+		const cau_dds_writer *writer = find_writer(&dds->writers, first->reader, first->handle);
 		if (writer && writer->client)
 			cau_dds_give_up(writer->client);
 		free(first);
