@@ -47,7 +47,7 @@ void cau_connection_unlink(cau_connection **first, cau_connection *c)
 // in the kernel.
 static void reset(cau_connection *c)
 {
-	c->resetting = true;
+	c->end.resetting = true;
 	struct linger at_once = {.l_onoff = 1, .l_linger = 0};
 	setsockopt(c->descriptor, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
 	lws_set_timeout(c->wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
@@ -58,8 +58,8 @@ static void bound_lingering(cau_network *network)
 	cau_connection *oldest = NULL;
 	int count = 0;
 	for (cau_connection *c = network->lingering; c; c = c->next) {
-		oldest = c->resetting ? oldest : c; // new ones come first
-		count += !c->resetting;
+		oldest = c->end.resetting ? oldest : c; // new ones come first
+		count += !c->end.resetting;
 	}
 	if (count > LINGERING_MOST)
 		reset(oldest);
@@ -68,9 +68,9 @@ static void bound_lingering(cau_network *network)
 void cau_connection_leave(cau_connection *c)
 {
 	cau_network *network = c->network;
-	if (c->left)
+	if (c->end.left)
 		return;
-	c->left = true;
+	c->end.left = true;
 	network->def.handler.closed(network->def.handler.user, c);
 	cau_connection_unlink(&network->connections, c);
 	cau_connection_link(&network->lingering, c);
@@ -84,20 +84,20 @@ void cau_connection_leave(cau_connection *c)
 // timer, a moment later.
 static void begin_closing(cau_connection *c, int code, const char *reason)
 {
-	c->closing = code;
-	snprintf(c->closing_reason, sizeof c->closing_reason, "%s", reason);
+	c->end.code = code;
+	snprintf(c->end.reason, sizeof c->end.reason, "%s", reason);
 	if (c->served)
 		cau_log(CAU_LOG_INFO, NULL, "connection_closing", "connection=%llu code=%d reason=\"%s\"",
-		        (unsigned long long)c->id, c->closing, c->closing_reason);
+		        (unsigned long long)c->id, c->end.code, c->end.reason);
 	else
-		cau_outsiders_note(c->network, c->owner, c->closing_reason);
+		cau_outsiders_note(c->network, c->owner, c->end.reason);
 	lws_set_timer_usecs(c->wsi, 1);
 	lws_callback_on_writable(c->wsi);
 }
 
 void cau_connection_close(cau_connection *c, cau_close_code code, const char *reason)
 {
-	if (c->closing)
+	if (c->end.code)
 		return;
 	if (code == CAU_CLOSE_TOO_SLOW)
 		c->network->counts.closed_slow++;
@@ -108,49 +108,49 @@ void cau_connection_close(cau_connection *c, cau_close_code code, const char *re
 
 void cau_connection_close_late(cau_connection *c, cau_close_code code)
 {
-	c->muted = !c->closing;
+	c->end.muted = !c->end.code;
 	cau_connection_close(c, code, NULL);
 }
 
 void cau_connection_closed_by_peer(cau_connection *c, int code)
 {
-	c->peer_ended = true; // it sends nothing after its close frame
-	if (!c->closing)
+	c->end.peer_ended = true; // it sends nothing after its close frame
+	if (!c->end.code)
 		begin_closing(c, code ? code : CAU_CLOSE_DONE, "");
 }
 
 void cau_connection_ended_by_peer(cau_connection *c)
 {
-	c->peer_ended = true;
+	c->end.peer_ended = true;
 	cau_input_end(c); // else its end would be told again and again
-	if (!c->closing)
+	if (!c->end.code)
 		begin_closing(c, CAU_CLOSE_DONE, "");
 	lws_callback_on_writable(c->wsi);
 }
 
 void cau_connection_timer(cau_connection *c)
 {
-	if (c->muted && c->left) {
-		c->muted = false;
+	if (c->end.muted && c->end.left) {
+		c->end.muted = false;
 		lws_callback_on_writable(c->wsi);
 		lws_set_timer_usecs(c->wsi, CLOSE_WITHIN_S * LWS_US_PER_SEC);
-	} else if (c->closing && c->left) {
+	} else if (c->end.code && c->end.left) {
 		reset(c);
-	} else if (c->closing) {
+	} else if (c->end.code) {
 		cau_connection_leave(c);
-		lws_set_timer_usecs(c->wsi, (c->muted ? MUTED_S : CLOSE_WITHIN_S) * LWS_US_PER_SEC);
+		lws_set_timer_usecs(c->wsi, (c->end.muted ? MUTED_S : CLOSE_WITHIN_S) * LWS_US_PER_SEC);
 	}
 }
 
 // ---- the close frame
-static size_t write_close_frame(const cau_connection *c, unsigned char *at)
+static size_t write_close_frame(const cau_connection_end *end, unsigned char *at)
 {
-	size_t reason_bytes = strlen(c->closing_reason);
+	size_t reason_bytes = strlen(end->reason);
 	at[0] = CLOSE_FRAME;
 	at[1] = (unsigned char)(CODE_BYTES + reason_bytes);
-	at[2] = (unsigned char)(c->closing >> 8);
-	at[3] = (unsigned char)(c->closing & 255);
-	memcpy(at + 4, c->closing_reason, reason_bytes);
+	at[2] = (unsigned char)(end->code >> 8);
+	at[3] = (unsigned char)(end->code & 255);
+	memcpy(at + 4, end->reason, reason_bytes);
 	return 4 + reason_bytes;
 }
 
@@ -160,12 +160,12 @@ static size_t write_close_frame(const cau_connection *c, unsigned char *at)
 int cau_connection_write_close(cau_connection *c)
 {
 	unsigned char frame[LWS_PRE + CAU_CLOSE_FRAME_BYTES];
-	if (c->close_sent) {
+	if (c->end.close_sent) {
 		cau_connection_shut(c);
-		return c->peer_ended ? -1 : 0;
+		return c->end.peer_ended ? -1 : 0;
 	}
-	c->close_sent = true;
-	size_t bytes = write_close_frame(c, frame + LWS_PRE);
+	c->end.close_sent = true;
+	size_t bytes = write_close_frame(&c->end, frame + LWS_PRE);
 	lws_callback_on_writable(c->wsi);
 	return lws_write(c->wsi, frame + LWS_PRE, bytes, LWS_WRITE_RAW) < 0 ? -1 : 0;
 }
@@ -175,11 +175,11 @@ int cau_connection_write_close(cau_connection *c)
 void cau_connection_dropped(cau_connection *c)
 {
 	unsigned char frame[CAU_CLOSE_FRAME_BYTES];
-	if (c->reading >= CAU_READING_OURS || c->close_sent)
+	if (c->input.reading >= CAU_READING_OURS || c->end.close_sent)
 		return;
 	cau_connection_close(c, CAU_CLOSE_PROTOCOL, "data before the handshake was answered");
-	c->close_sent = true;
-	size_t bytes = write_close_frame(c, frame);
+	c->end.close_sent = true;
+	size_t bytes = write_close_frame(&c->end, frame);
 	cau_connection_put(c, frame, bytes);
 }
 
@@ -197,8 +197,8 @@ void cau_connection_watch(cau_connection *c, double now_s)
 {
 	if (!c->served)
 		watch_hello(c, now_s);
-	if (c->waits && !cau_turns_blocked(c)) // what it has sent waits for its turn
-		c->heard_s = now_s;
-	if (now_s - c->heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
+	if (c->turn.waits && !cau_turns_blocked(c)) // what it has sent waits for its turn
+		c->input.heard_s = now_s;
+	if (now_s - c->input.heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
 		cau_connection_close(c, CAU_CLOSE_NO_ANSWER, NULL);
 }

@@ -32,15 +32,16 @@ static cau_connection *make(cau_network *network, struct lws *wsi)
 	c->network = network;
 	c->wsi = wsi;
 	c->descriptor = lws_get_socket_fd(wsi);
-	c->opened_s = c->last_taken_s = c->rate_start_s = c->heard_s = cau_monotonic_s();
-	cau_frame_reader_init(&c->reader, (size_t)network->def.config->max_message_bytes);
+	c->opened_s = c->input.rate_start_s = c->input.heard_s = cau_monotonic_s();
+	cau_frame_reader_init(&c->input.reader, (size_t)network->def.config->max_message_bytes);
 	lws_get_peer_simple(wsi, c->address, sizeof c->address);
 	char forwarded[HEADER_BYTES];
 	bool told = cau_request_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, forwarded, sizeof forwarded);
 	cau_auth_find_address(network->def.config, told ? forwarded : NULL, c->address,
 	                      sizeof c->address);
 	cau_address_owner(c->address, c->owner);
-	if (!cau_share_open(&network->shares, &c->share, c->owner, CAU_STANDING_UNKNOWN, c->opened_s)) {
+	if (!cau_share_open(&network->shares, &c->turn.share, c->owner, CAU_STANDING_UNKNOWN,
+	                    c->opened_s)) {
 		free(c);
 		return NULL;
 	}
@@ -72,13 +73,13 @@ static void closed(cau_network *network, cau_connection *c)
 	cau_input_end(c);
 	cau_connection_leave(c);
 	cau_connection_unlink(&network->lingering, c);
-	for (cau_buffer *b = c->control_first, *next; b; b = next) {
+	for (cau_buffer *b = c->output.first, *next; b; b = next) {
 		next = b->next;
 		cau_buffer_release(b);
 	}
-	cau_frame_reader_finish(&c->reader);
-	cau_share_close(&c->share);
-	free(c->held);
+	cau_frame_reader_finish(&c->input.reader);
+	cau_share_close(&c->turn.share);
+	free(c->input.held);
 	free(c);
 }
 
@@ -90,30 +91,30 @@ static int write_buffer(cau_network *network, cau_connection *c, cau_buffer *buf
 	network->counts.messages_out++;
 	network->counts.frames_out += buffer->binary;
 	network->counts.bytes_out += buffer->byte_count;
-	c->last_taken_s = cau_monotonic_s();
 	return written < (int)buffer->byte_count ? -1 : 0;
 }
 
 static int write_pong(cau_connection *c)
 {
+	cau_connection_output *out = &c->output;
 	unsigned char frame[LWS_PRE + 2 + CAU_CONTROL_FRAME_BYTES];
-	c->pong_due = false;
+	out->pong_due = false;
 	frame[LWS_PRE] = PONG_FRAME;
-	frame[LWS_PRE + 1] = (unsigned char)c->pong_bytes;
-	memcpy(frame + LWS_PRE + 2, c->pong, c->pong_bytes);
+	frame[LWS_PRE + 1] = (unsigned char)out->pong_bytes;
+	memcpy(frame + LWS_PRE + 2, out->pong, out->pong_bytes);
 	lws_callback_on_writable(c->wsi);
-	return lws_write(c->wsi, frame + LWS_PRE, 2 + c->pong_bytes, LWS_WRITE_RAW) < 0 ? -1 : 0;
+	return lws_write(c->wsi, frame + LWS_PRE, 2 + out->pong_bytes, LWS_WRITE_RAW) < 0 ? -1 : 0;
 }
 
-static cau_buffer *take_control(cau_connection *c)
+static cau_buffer *take_reply(cau_connection_output *output)
 {
-	cau_buffer *buffer = c->control_first;
+	cau_buffer *buffer = output->first;
 	if (!buffer)
 		return NULL;
-	c->control_first = buffer->next;
-	if (!c->control_first)
-		c->control_last = NULL;
-	c->control_bytes -= buffer->byte_count;
+	output->first = buffer->next;
+	if (!output->first)
+		output->last = NULL;
+	output->bytes -= buffer->byte_count;
 	return buffer;
 }
 
@@ -122,7 +123,7 @@ static bool take_over(cau_connection *c)
 	if (!cau_input_take_over(c))
 		return false;
 	// The rest of a record of TLS whose beginning was the request.
-	if (c->reading == CAU_READING_OURS && cau_connection_has_more(c))
+	if (c->input.reading == CAU_READING_OURS && cau_connection_has_more(c))
 		cau_connection_close(c, CAU_CLOSE_PROTOCOL, "data before the handshake was answered");
 	return true;
 }
@@ -130,16 +131,16 @@ static bool take_over(cau_connection *c)
 // Replies go first: many viewers must not hold up commands.
 static int writable(cau_network *network, cau_connection *c)
 {
-	if (c->reading < CAU_READING_OURS && !take_over(c))
+	if (c->input.reading < CAU_READING_OURS && !take_over(c))
 		return -1;
-	if (c->muted)
+	if (c->end.muted)
 		return 0;
-	if (c->pong_due && !c->close_sent)
+	if (c->output.pong_due && !c->end.close_sent)
 		return write_pong(c);
 	double began_s = cau_thread_cpu_s();
-	cau_buffer *buffer = take_control(c);
+	cau_buffer *buffer = take_reply(&c->output);
 	bool reply = buffer;
-	if (!buffer && c->closing)
+	if (!buffer && c->end.code)
 		return cau_connection_write_close(c);
 	if (!buffer)
 		buffer = network->def.handler.next_frame(network->def.handler.user, c);
@@ -147,7 +148,7 @@ static int writable(cau_network *network, cau_connection *c)
 		return 0;
 	int failed = write_buffer(network, c, buffer);
 	if (reply) {
-		cau_share_charge(&c->share, cau_thread_cpu_s() - began_s, cau_monotonic_s());
+		cau_share_charge(&c->turn.share, cau_thread_cpu_s() - began_s, cau_monotonic_s());
 		cau_turns_resume(c);
 	}
 	cau_buffer_release(buffer);

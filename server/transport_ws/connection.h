@@ -30,53 +30,65 @@ typedef enum cau_reading {
 	CAU_READING_ENDED,
 } cau_reading;
 
-typedef struct cau_connection {
-	uint64_t id; // never used again
-	cau_network *network;
-	struct lws *wsi;
-	struct cau_connection *previous, *next;
-	void *peer; // the handler's own
-	double opened_s, last_taken_s;
-	bool served;   // hello was accepted: the hello timeout is off
-	bool unplaced; // as many as may be were served when it came: it may only resume
-	int descriptor;
-	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
-	char owner[CAU_ADDRESS_BYTES];   // who has this address, see cau_address_owner
-
-	// what comes in
+// Bytes that come in; the network thread's. input.c, reading.c.
+typedef struct cau_connection_input {
 	cau_reading reading;
 	cau_frame_reader reader;
-	double heard_s; // when something came last
-	// its turns, see turns.c
-	cau_share share;
-	struct cau_connection *next_waiting;
-	bool waits;          // for a turn
+	double heard_s;      // when something came last
 	bool polled;         // epoll reports what comes
-	unsigned char *held; // what was received in a turn and is for the next one; NULL: nothing
+	unsigned char *held; // received in a turn, and left for the next one; NULL: nothing
 	size_t held_at, held_bytes;
 	double empty_s;      // when its socket was known to be empty last
 	double sent_after_s; // what is handled now was sent after this moment
 	// messages, control frames and short fragments of the present second
 	double rate_start_s;
 	int64_t rate_count;
+} cau_connection_input;
 
-	// what goes out: an answer to a ping, then replies, then frames
+// Its place among the connections that are read; the network thread's. turns.c.
+typedef struct cau_connection_turn {
+	cau_share share;
+	struct cau_connection *next; // that waits
+	bool waits;
+} cau_connection_turn;
+
+// An answer to a ping, then replies, then frames go out; the network thread's. sending.c.
+typedef struct cau_connection_output {
 	bool pong_due;
 	unsigned char pong[CAU_CONTROL_FRAME_BYTES];
 	size_t pong_bytes;
-	cau_buffer *control_first, *control_last;
-	size_t control_bytes;
+	cau_buffer *first, *last; // replies
+	size_t bytes;             // of replies
+} cau_connection_output;
 
-	// how it ends, see closing.c
-	int closing; // a close code, 0 while open
-	char closing_reason[CAU_CLOSE_REASON_BYTES];
+// The end of the connection; the network thread's. closing.c.
+typedef struct cau_connection_end {
+	int code; // of the close frame; 0: open
+	char reason[CAU_CLOSE_REASON_BYTES];
 	bool muted;      // nothing is written to it for a second
-	bool close_sent; // what still comes in is read and dropped until the peer has
-	                 // ended
+	bool close_sent; // bytes that still come are dropped until the peer has ended
 	bool peer_ended; // it sends no more
-	bool left;       // the handler has been told; the connection is among the lingering
-	                 // ones
+	bool left;       // the handler was notified; the connection is among the lingering ones
 	bool resetting;
+} cau_connection_end;
+
+// All of it is the network thread's.
+typedef struct cau_connection {
+	uint64_t id; // never used again
+	cau_network *network;
+	struct lws *wsi;
+	struct cau_connection *previous, *next;
+	void *peer; // the handler's own
+	double opened_s;
+	bool served;   // hello was accepted: the hello timeout is off
+	bool unplaced; // as many as may be were served when it came: it may only resume
+	int descriptor;
+	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
+	char owner[CAU_ADDRESS_BYTES];   // who has this address, see cau_address_owner
+	cau_connection_input input;
+	cau_connection_turn turn;
+	cau_connection_output output;
+	cau_connection_end end;
 } cau_connection;
 
 // Whether one more connection may be served; `resumes`: one that comes back to its tools.

@@ -34,21 +34,21 @@ bool cau_input_begin(cau_connection *c)
 
 bool cau_input_take_over(cau_connection *c)
 {
-	if (c->reading == CAU_READING_HELD) {
-		c->reading = CAU_READING_LIBRARY;
+	if (c->input.reading == CAU_READING_HELD) {
+		c->input.reading = CAU_READING_LIBRARY;
 		lws_callback_on_writable(c->wsi);
 		return lws_rx_flow_control(c->wsi, 1) >= 0;
 	}
-	c->reading = CAU_READING_OURS;
+	c->input.reading = CAU_READING_OURS;
 	return lws_rx_flow_control(c->wsi, 0) >= 0 && cau_input_poll(c, true);
 }
 
 bool cau_input_poll(cau_connection *c, bool polled)
 {
 	struct epoll_event event = {.events = EPOLLIN, .data.ptr = c};
-	if (polled == c->polled || c->reading != CAU_READING_OURS)
+	if (polled == c->input.polled || c->input.reading != CAU_READING_OURS)
 		return true;
-	c->polled = polled;
+	c->input.polled = polled;
 	return epoll_ctl(c->network->input, polled ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, c->descriptor,
 	                 &event) == 0;
 }
@@ -57,27 +57,27 @@ void cau_input_end(cau_connection *c)
 {
 	cau_input_poll(c, false);
 	cau_input_forget(c);
-	c->reading = CAU_READING_ENDED;
+	c->input.reading = CAU_READING_ENDED;
 }
 
 // ---- the list of those with something to read
 void cau_input_wait(cau_connection *c)
 {
-	if (c->waits)
+	if (c->turn.waits)
 		return;
-	c->waits = true;
-	c->empty_s = cau_monotonic_s();
-	c->next_waiting = c->network->waiting;
+	c->turn.waits = true;
+	c->input.empty_s = cau_monotonic_s();
+	c->turn.next = c->network->waiting;
 	c->network->waiting = c;
 }
 
 void cau_input_forget(cau_connection *c)
 {
-	if (!c->waits)
+	if (!c->turn.waits)
 		return;
 	cau_connection **place = &c->network->waiting;
 	while (*place != c)
-		place = &(*place)->next_waiting;
-	*place = c->next_waiting;
-	c->waits = false;
+		place = &(*place)->turn.next;
+	*place = c->turn.next;
+	c->turn.waits = false;
 }

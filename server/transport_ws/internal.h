@@ -184,14 +184,14 @@ int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, c
 // driver is read all the same: energy off must not wait for what its client does not read.
 static inline bool cau_turns_blocked(const cau_connection *c)
 {
-	return c->control_bytes > CAU_TURN_REPLY_BYTES && !c->closing &&
-	       c->share.standing < CAU_STANDING_DRIVER;
+	return c->output.bytes > CAU_TURN_REPLY_BYTES && !c->end.code &&
+	       c->turn.share.standing < CAU_STANDING_DRIVER;
 }
 
 // Whether anything was read of it.
 static inline bool cau_connection_has_spoken(const cau_connection *c)
 {
-	return c->heard_s > c->opened_s;
+	return c->input.heard_s > c->opened_s;
 }
 
 static inline cau_network *cau_network_of(struct lws *wsi)

@@ -11,21 +11,21 @@ enum {
 	READ_BYTES = 65536, // at once
 };
 
-static bool within_rate(cau_connection *c)
+static bool within_rate(cau_connection_input *input, int64_t most)
 {
 	double now_s = cau_monotonic_s();
-	if (now_s - c->rate_start_s >= 1) {
-		c->rate_start_s = now_s;
-		c->rate_count = 0;
+	if (now_s - input->rate_start_s >= 1) {
+		input->rate_start_s = now_s;
+		input->rate_count = 0;
 	}
-	return ++c->rate_count <= c->network->def.config->max_requests_per_s;
+	return ++input->rate_count <= most;
 }
 
 static void deliver(cau_connection *c, bool binary)
 {
 	cau_network *network = c->network;
 	const cau_network_handler *handler = &network->def.handler;
-	const cau_frame_reader *r = &c->reader;
+	const cau_frame_reader *r = &c->input.reader;
 	network->counts.messages_in++;
 	network->counts.bytes_in += r->message_bytes;
 	if (binary)
@@ -36,19 +36,20 @@ static void deliver(cau_connection *c, bool binary)
 
 static void handle(cau_connection *c, cau_frame_event event)
 {
+	const cau_frame_reader *r = &c->input.reader;
 	switch (event) {
 	case CAU_FRAME_TEXT:
 	case CAU_FRAME_BINARY:
 		deliver(c, event == CAU_FRAME_BINARY);
 		break;
 	case CAU_FRAME_PING:
-		cau_connection_pong(c, c->reader.control, c->reader.control_bytes);
+		cau_connection_pong(c, r->control, r->control_bytes);
 		break;
 	case CAU_FRAME_CLOSE:
-		cau_connection_closed_by_peer(c, c->reader.close_code);
+		cau_connection_closed_by_peer(c, r->close_code);
 		break;
 	case CAU_FRAME_BROKEN:
-		cau_connection_close(c, (cau_close_code)c->reader.close_code, c->reader.reason);
+		cau_connection_close(c, (cau_close_code)r->close_code, r->reason);
 		break;
 	case CAU_FRAME_PONG:
 		lws_validity_confirmed(c->wsi);
@@ -64,14 +65,14 @@ static size_t take(cau_connection *c, const unsigned char *bytes, size_t count, 
 {
 	const unsigned char *at = bytes, *end = bytes + count;
 	bool in_time = true;
-	c->heard_s = cau_monotonic_s();
+	c->input.heard_s = cau_monotonic_s();
 	// A connection that is being closed is read on, so that its peer gets to the
 	// close frame, but nothing is done for it.
-	while (at < end && !c->closing && in_time) {
-		cau_frame_event event = cau_frame_reader_next(&c->reader, &at, end);
+	while (at < end && !c->end.code && in_time) {
+		cau_frame_event event = cau_frame_reader_next(&c->input.reader, &at, end);
 		bool counts =
 			event != CAU_FRAME_MORE && event != CAU_FRAME_CLOSE && event != CAU_FRAME_BROKEN;
-		if (counts && !within_rate(c))
+		if (counts && !within_rate(&c->input, c->network->def.config->max_requests_per_s))
 			cau_connection_close(c, CAU_CLOSE_RATE, NULL);
 		else
 			handle(c, event);
@@ -80,28 +81,30 @@ static size_t take(cau_connection *c, const unsigned char *bytes, size_t count, 
 		in_time =
 			event == CAU_FRAME_MORE || (cau_thread_cpu_s() < until_s && !cau_turns_blocked(c));
 	}
-	return c->closing ? count : (size_t)(at - bytes);
+	return c->end.code ? count : (size_t)(at - bytes);
 }
 
 static void hold(cau_connection *c, const unsigned char *bytes, size_t count)
 {
-	c->held = malloc(count);
-	if (!c->held) {
+	cau_connection_input *in = &c->input;
+	in->held = malloc(count);
+	if (!in->held) {
 		cau_connection_close(c, CAU_CLOSE_FULL, "no memory for a message");
 		return;
 	}
-	memcpy(c->held, bytes, count);
-	c->held_at = 0;
-	c->held_bytes = count;
+	memcpy(in->held, bytes, count);
+	in->held_at = 0;
+	in->held_bytes = count;
 }
 
 static void take_held(cau_connection *c, double until_s)
 {
-	c->held_at += take(c, c->held + c->held_at, c->held_bytes - c->held_at, until_s);
-	if (c->held_at < c->held_bytes)
+	cau_connection_input *in = &c->input;
+	in->held_at += take(c, in->held + in->held_at, in->held_bytes - in->held_at, until_s);
+	if (in->held_at < in->held_bytes)
 		return;
-	free(c->held);
-	c->held = NULL;
+	free(in->held);
+	in->held = NULL;
 }
 
 static bool receive(cau_connection *c, double until_s)
@@ -113,9 +116,9 @@ static bool receive(cau_connection *c, double until_s)
 			cau_connection_ended_by_peer(c);
 		return false;
 	}
-	c->sent_after_s = c->empty_s;
+	c->input.sent_after_s = c->input.empty_s;
 	if (got < READ_BYTES)
-		c->empty_s = cau_monotonic_s();
+		c->input.empty_s = cau_monotonic_s();
 	size_t taken = take(c, bytes, (size_t)got, until_s);
 	if (taken < (size_t)got)
 		hold(c, bytes + taken, (size_t)got - taken);
@@ -124,9 +127,9 @@ static bool receive(cau_connection *c, double until_s)
 
 bool cau_connection_read(cau_connection *c, double until_s)
 {
-	if (c->held)
+	if (c->input.held)
 		take_held(c, until_s);
 	else if (!receive(c, until_s))
 		return false;
-	return c->held || cau_connection_has_more(c);
+	return c->input.held || cau_connection_has_more(c);
 }

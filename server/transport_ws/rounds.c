@@ -17,8 +17,8 @@ void cau_network_comes_round(cau_network *network)
 
 double cau_connection_sent_after_s(const cau_connection *c, double now_s)
 {
-	double after_s = cau_network_sent_after_s(c->network, now_s);
-	return now_s - c->sent_after_s > WAITED_S ? fmin(after_s, c->sent_after_s) : after_s;
+	double after_s = cau_network_sent_after_s(c->network, now_s), sent_s = c->input.sent_after_s;
+	return now_s - sent_s > WAITED_S ? fmin(after_s, sent_s) : after_s;
 }
 
 double cau_network_sent_after_s(const cau_network *network, double now_s)

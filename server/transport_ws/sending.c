@@ -4,20 +4,25 @@
 
 #include "transport_ws/internal.h"
 
+static void queue(cau_connection_output *output, cau_buffer *reply)
+{
+	reply->next = NULL;
+	if (output->last)
+		output->last->next = reply;
+	else
+		output->first = reply;
+	output->last = reply;
+	output->bytes += reply->byte_count;
+}
+
 void cau_connection_send(cau_connection *c, cau_buffer *buffer)
 {
-	if (!buffer || c->closing) {
+	if (!buffer || c->end.code) {
 		cau_buffer_release(buffer);
 		return;
 	}
-	buffer->next = NULL;
-	if (c->control_last)
-		c->control_last->next = buffer;
-	else
-		c->control_first = buffer;
-	c->control_last = buffer;
-	c->control_bytes += buffer->byte_count;
-	if (c->control_bytes > CAU_CONTROL_BYTES_MAX)
+	queue(&c->output, buffer);
+	if (c->output.bytes > CAU_CONTROL_BYTES_MAX)
 		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, "the client does not read its replies");
 	lws_callback_on_writable(c->wsi);
 }
@@ -29,8 +34,8 @@ void cau_connection_want_frame(cau_connection *c)
 
 void cau_connection_pong(cau_connection *c, const void *payload, size_t bytes)
 {
-	c->pong_due = true; // of several pings the last may be answered alone
-	c->pong_bytes = bytes;
-	memcpy(c->pong, payload, bytes);
+	c->output.pong_due = true; // of several pings the last may be answered alone
+	c->output.pong_bytes = bytes;
+	memcpy(c->output.pong, payload, bytes);
 	lws_callback_on_writable(c->wsi);
 }

@@ -113,7 +113,7 @@ void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 // ---- WebSocket connections without hello
 static bool is_silent(const cau_connection *c, const char *owner)
 {
-	return !c->served && !c->closing && (!owner || strcmp(c->owner, owner) == 0);
+	return !c->served && !c->end.code && (!owner || strcmp(c->owner, owner) == 0);
 }
 
 // New ones come first in the list.
@@ -143,7 +143,7 @@ static bool bound_silent(const cau_network *network, const char *owner, int most
 	cau_connection *oldest = find_silent(network, owner, &count);
 	if (!oldest || count <= bound(most, cau_monotonic_s() - oldest->opened_s))
 		return false;
-	if (count <= bound(most, 0) && (oldest->waits || has_input(oldest->descriptor)))
+	if (count <= bound(most, 0) && (oldest->turn.waits || has_input(oldest->descriptor)))
 		return false;
 	close_silent(oldest);
 	return true;
@@ -173,7 +173,7 @@ bool cau_connection_has_place(const cau_connection *c, bool resumes)
 
 void cau_connection_serve(cau_connection *c, cau_role role)
 {
-	cau_share_promote(&c->share, cau_standing_of_role(role), cau_monotonic_s());
+	cau_share_promote(&c->turn.share, cau_standing_of_role(role), cau_monotonic_s());
 	c->network->counts.served += !c->served;
 	c->served = true;
 }

@@ -21,17 +21,18 @@ enum { EVENTS_AT_ONCE = 64 };
 // of its address have used up.
 static double wait_s(cau_connection *c, double now_s)
 {
-	double seconds = cau_share_wait_s(&c->share, now_s);
+	double seconds = cau_share_wait_s(&c->turn.share, now_s);
 	if (cau_turns_blocked(c))
 		return INFINITY;
-	return c->closing || !cau_connection_has_spoken(c) ? 0 : seconds;
+	return c->end.code || !cau_connection_has_spoken(c) ? 0 : seconds;
 }
 
 static cau_connection *find_next(const cau_network *network, double now_s)
 {
 	cau_connection *next = NULL;
-	for (cau_connection *c = network->waiting; c; c = c->next_waiting)
-		if (wait_s(c, now_s) <= 0 && (!next || cau_share_precedes(&c->share, &next->share)))
+	for (cau_connection *c = network->waiting; c; c = c->turn.next)
+		if (wait_s(c, now_s) <= 0 &&
+		    (!next || cau_share_precedes(&c->turn.share, &next->turn.share)))
 			next = c;
 	return next;
 }
@@ -40,7 +41,7 @@ static void give_turn(cau_connection *c)
 {
 	double began_s = cau_thread_cpu_s();
 	bool more = cau_connection_read(c, began_s + TURN_S);
-	cau_share_charge(&c->share, cau_thread_cpu_s() - began_s, cau_monotonic_s());
+	cau_share_charge(&c->turn.share, cau_thread_cpu_s() - began_s, cau_monotonic_s());
 	if (!more) {
 		cau_input_forget(c);
 		cau_input_poll(c, true);
@@ -53,7 +54,7 @@ static void run_again(lws_sorted_usec_list_t *turns);
 static void wait_for_turns(cau_network *network, double now_s)
 {
 	double soonest_s = INFINITY;
-	for (cau_connection *c = network->waiting; c; c = c->next_waiting) {
+	for (cau_connection *c = network->waiting; c; c = c->turn.next) {
 		cau_input_poll(c, false);
 		soonest_s = fmin(soonest_s, wait_s(c, now_s));
 	}
@@ -85,7 +86,7 @@ static void run_again(lws_sorted_usec_list_t *turns)
 
 void cau_turns_resume(cau_connection *c)
 {
-	if (c->waits && !cau_turns_blocked(c))
+	if (c->turn.waits && !cau_turns_blocked(c))
 		lws_sul_schedule(c->network->context, 0, &c->network->turns, run_again, 1);
 }
 

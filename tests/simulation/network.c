@@ -109,7 +109,7 @@ void sim_link_read(sim_link *link, bool reads, int frames)
 
 size_t sim_link_waiting(const sim_link *link)
 {
-	return link->connection.control_bytes;
+	return link->connection.output.bytes;
 }
 
 // ---- one round of the network thread
@@ -126,9 +126,9 @@ static void drop_queues(sim_link *link)
 		next = link->first->next;
 		free(link->first);
 	}
-	for (cau_buffer *next; link->connection.control_first; link->connection.control_first = next) {
-		next = link->connection.control_first->next;
-		cau_buffer_release(link->connection.control_first);
+	for (cau_buffer *next; link->connection.output.first; link->connection.output.first = next) {
+		next = link->connection.output.first->next;
+		cau_buffer_release(link->connection.output.first);
 	}
 }
 
@@ -146,7 +146,7 @@ static void admit(cau_network *network, sim_link *link)
 {
 	cau_connection *c = &link->connection;
 	c->id = ++network->last_id;
-	c->opened_s = c->heard_s = cau_monotonic_s();
+	c->opened_s = c->input.heard_s = cau_monotonic_s();
 	snprintf(c->address, sizeof c->address, "127.0.0.1");
 	c->next = network->connections;
 	if (c->next)
@@ -194,12 +194,12 @@ static void read_one(cau_network *network, sim_link *link)
 static void write_replies(sim_link *link)
 {
 	cau_connection *c = &link->connection;
-	while (link->reads && c->control_first) {
-		cau_buffer *buffer = c->control_first;
-		c->control_first = buffer->next;
-		if (!c->control_first)
-			c->control_last = NULL;
-		c->control_bytes -= buffer->byte_count;
+	while (link->reads && c->output.first) {
+		cau_buffer *buffer = c->output.first;
+		c->output.first = buffer->next;
+		if (!c->output.first)
+			c->output.last = NULL;
+		c->output.bytes -= buffer->byte_count;
 		net.end.text(link->client, (const char *)cau_buffer_bytes(buffer), buffer->byte_count);
 		cau_buffer_release(buffer);
 	}
@@ -221,7 +221,7 @@ static void write_frames(cau_network *network, sim_link *link)
 static bool serve_link(cau_network *network, sim_link *link, int64_t now_ns)
 {
 	cau_connection *c = &link->connection;
-	while (!link->lost && !c->closing && link->first && link->first->due_ns <= now_ns)
+	while (!link->lost && !c->end.code && link->first && link->first->due_ns <= now_ns)
 		read_one(network, link);
 	link->empty_ns = now_ns;
 	if (link->lost) {
@@ -229,11 +229,11 @@ static bool serve_link(cau_network *network, sim_link *link, int64_t now_ns)
 		return false;
 	}
 	write_replies(link);
-	if (c->closing && (!link->reads || !c->control_first)) {
-		end_link(network, link, c->closing);
+	if (c->end.code && (!link->reads || !c->output.first)) {
+		end_link(network, link, c->end.code);
 		return false;
 	}
-	if (!c->closing)
+	if (!c->end.code)
 		write_frames(network, link);
 	return true;
 }
@@ -356,7 +356,7 @@ cau_connection *cau_network_find(cau_network *network, uint64_t id)
 	cau_connection *c = network->connections;
 	while (c && c->id != id)
 		c = c->next;
-	return c && !c->closing ? c : NULL;
+	return c && !c->end.code ? c : NULL;
 }
 
 cau_network_counts cau_network_count(cau_network *network)
@@ -386,16 +386,16 @@ double cau_connection_sent_after_s(const cau_connection *connection, double now_
 
 void cau_connection_send(cau_connection *c, cau_buffer *buffer)
 {
-	if (!buffer || c->closing) {
+	if (!buffer || c->end.code) {
 		cau_buffer_release(buffer);
 		return;
 	}
 	buffer->next = NULL;
-	*(c->control_last ? &c->control_last->next : &c->control_first) = buffer;
-	c->control_last = buffer;
-	c->control_bytes += buffer->byte_count;
+	*(c->output.last ? &c->output.last->next : &c->output.first) = buffer;
+	c->output.last = buffer;
+	c->output.bytes += buffer->byte_count;
 	link_of(c)->wants_frame = true; // a socket that takes replies is asked for frames, too
-	if (c->control_bytes > CAU_CONTROL_BYTES_MAX)
+	if (c->output.bytes > CAU_CONTROL_BYTES_MAX)
 		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, NULL);
 }
 
@@ -407,8 +407,8 @@ void cau_connection_want_frame(cau_connection *connection)
 void cau_connection_close(cau_connection *connection, cau_close_code code, const char *reason)
 {
 	(void)reason;
-	if (!connection->closing)
-		connection->closing = (int)code;
+	if (!connection->end.code)
+		connection->end.code = (int)code;
 }
 
 void cau_connection_close_late(cau_connection *connection, cau_close_code code)
