@@ -29,71 +29,77 @@ static bool is_own_fault(cau_status status)
 	       status == CAU_BAD_VALUE;
 }
 
-static cau_status write_batch(struct cau_store *store, struct cau_store_batch *batch,
+static cau_status write_batch(struct cau_store_committer *committer, struct cau_store_batch *batch,
                               int64_t now_ms, cau_error *error)
 {
-	struct cau_store_uncounted before = store->writer.uncounted;
-	cau_status status = cau_store_execute(store->writing, "SAVEPOINT batch", "writing", error);
+	struct cau_store_uncounted before = committer->writer.uncounted;
+	cau_status status = cau_store_execute(committer->database, "SAVEPOINT batch", "writing", error);
 	for (const struct record *record = batch->first; record && !status; record = record->next)
-		status = cau_store_writer_apply(&store->writer, record, now_ms, error);
+		status = cau_store_writer_apply(&committer->writer, record, now_ms, error);
 	if (is_own_fault(status)) {
 		batch->error = *error;
 		batch->error.status = status; // whatever the record's function has filled in
-		store->writer.uncounted = before;
-		status = cau_store_execute(store->writing, "ROLLBACK TO batch", "writing", error);
+		committer->writer.uncounted = before;
+		status = cau_store_execute(committer->database, "ROLLBACK TO batch", "writing", error);
 	}
 	if (!status)
-		status = cau_store_execute(store->writing, "RELEASE batch", "writing", error);
+		status = cau_store_execute(committer->database, "RELEASE batch", "writing", error);
 	return status;
 }
 
-static void roll_back(struct cau_store *store, const struct cau_store_uncounted *before)
+static void roll_back(struct cau_store_committer *committer,
+                      const struct cau_store_uncounted *before)
 {
-	store->writer.uncounted = *before;
+	committer->writer.uncounted = *before;
 	// SQLite has done so itself after some failures.
-	if (!sqlite3_get_autocommit(store->writing))
-		sqlite3_exec(store->writing, "ROLLBACK", NULL, NULL, NULL);
+	if (!sqlite3_get_autocommit(committer->database))
+		sqlite3_exec(committer->database, "ROLLBACK", NULL, NULL, NULL);
 }
 
-// Writes and commits store->committing. Batches with a fault of their own have it in batch->error.
+// Writes and commits the group that was taken. Batches with a fault of their own have it in
+// batch->error.
 static cau_status write_group(struct cau_store *store, cau_error *error)
 {
+	struct cau_store_committer *committer = &store->committer;
+	struct cau_store_queue *queue = &store->queue;
 	uint64_t bytes = 0;
-	CAU_ASSERT(store->committing != NULL, "nothing to write, in state %d", (int)store->state);
+	CAU_ASSERT(queue->committing != NULL, "nothing to write, in state %d", (int)queue->state);
 	int64_t now_ms = store->config.wall_clock_ms();
 	int count = 0;
-	struct cau_store_uncounted before = store->writer.uncounted;
-	cau_status status = cau_store_execute(store->writing, "BEGIN IMMEDIATE", "writing", error);
-	for (struct cau_store_batch *batch = store->committing; batch && !status; batch = batch->next) {
-		status = write_batch(store, batch, now_ms, error);
+	struct cau_store_uncounted before = committer->writer.uncounted;
+	cau_status status = cau_store_execute(committer->database, "BEGIN IMMEDIATE", "writing", error);
+	for (struct cau_store_batch *batch = queue->committing; batch && !status; batch = batch->next) {
+		status = write_batch(committer, batch, now_ms, error);
 		bytes += batch->bytes;
 		count++;
 	}
 	double start_s = cau_store_monotonic_s();
 	if (!status)
-		status = cau_store_execute(store->writing, "COMMIT", "writing", error);
+		status = cau_store_execute(committer->database, "COMMIT", "writing", error);
 	if (status)
-		roll_back(store, &before);
+		roll_back(committer, &before);
 	else
-		cau_store_count_commit(store, count, cau_store_monotonic_s() - start_s);
-	store->unseen_bytes += status ? 0 : bytes;
+		cau_store_count_commit(queue, count, cau_store_monotonic_s() - start_s);
+	committer->unseen_bytes += status ? 0 : bytes;
 	return status;
 }
 
 // Nothing can be written: fails the group and all that waits, and takes no more.
 static void block(struct cau_store *store, const cau_error *error)
 {
-	CAU_ASSERT(error->status != CAU_OK, "blocked without a reason, in state %d", (int)store->state);
+	struct cau_store_committer *committer = &store->committer;
+	const struct cau_store_queue *queue = &store->queue;
+	CAU_ASSERT(error->status != CAU_OK, "blocked without a reason, in state %d", (int)queue->state);
 	uint64_t bytes = 0;
-	for (const struct cau_store_batch *batch = store->committing; batch; batch = batch->next)
+	for (const struct cau_store_batch *batch = queue->committing; batch; batch = batch->next)
 		bytes += batch->bytes;
-	store->wanted_bytes = (bytes < MAX_FAILED_BYTES ? bytes : MAX_FAILED_BYTES) + SPARE_BYTES;
-	CAU_ASSERT(store->wanted_bytes >= SPARE_BYTES, "%llu bytes are wanted",
-	           (unsigned long long)store->wanted_bytes);
-	store->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
+	committer->wanted_bytes = (bytes < MAX_FAILED_BYTES ? bytes : MAX_FAILED_BYTES) + SPARE_BYTES;
+	CAU_ASSERT(committer->wanted_bytes >= SPARE_BYTES, "%llu bytes are wanted",
+	           (unsigned long long)committer->wanted_bytes);
+	committer->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 	cau_store_queue_set_state(
 		store, error->status == CAU_CORRUPT ? CAU_STORE_DAMAGED : CAU_STORE_FULL, error->reason);
-	for (struct cau_store_batch *batch = store->committing; batch; batch = batch->next)
+	for (struct cau_store_batch *batch = queue->committing; batch; batch = batch->next)
 		batch->error = *error;
 }
 
@@ -104,7 +110,7 @@ static void commit_group(struct cau_store *store)
 		block(store, &error);
 	if (store->config.on_commit)
 		store->config.on_commit(store->config.user);
-	cau_store_queue_answer(store);
+	cau_store_queue_answer(&store->queue);
 }
 
 // ---- chores ---------------------------------------------------------------------------
@@ -113,80 +119,84 @@ static void commit_group(struct cau_store *store)
 // the bound on, commits wait for a fold.
 static void fold_log(struct cau_store *store)
 {
+	struct cau_store_committer *committer = &store->committer;
 	double now_s = cau_store_monotonic_s();
-	size_t log_bytes = (size_t)store->wal_pages * store->page_bytes;
+	size_t log_bytes = (size_t)committer->wal_pages * committer->page_bytes;
 	if (log_bytes < store->config.wal_bytes)
 		return;
 	cau_store_folder_ask(&store->folder);
-	if (log_bytes / FOLD_PATIENCE < store->config.wal_bytes || now_s < store->fold_due_s)
+	if (log_bytes / FOLD_PATIENCE < store->config.wal_bytes || now_s < committer->fold_due_s)
 		return;
 	if (!cau_store_folder_wait(&store->folder)) // not repeated at once
-		store->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
+		committer->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 }
 
 // Whether commits wait for more removal. The bound of time alone would let a slow machine write
 // faster than it removes.
-static bool must_shrink(const struct cau_store *store, double until_s)
+static bool must_shrink(const cau_store_config *config, const struct cau_store_budget *budget,
+                        double until_s)
 {
-	int64_t most = store->config.store_bytes, bytes = store->budget.bytes;
+	int64_t most = config->store_bytes, bytes = budget->bytes;
 	return bytes > most + most / BEYOND_SHARE ||
 	       (bytes > most && cau_store_monotonic_s() < until_s);
 }
 
 // One step; while the budget is exceeded more of them, so that removal keeps pace with what is
 // written.
-static cau_status take_steps(struct cau_store *store, int64_t *rows, cau_error *error)
+static cau_status take_steps(struct cau_store_committer *committer, const cau_store_config *config,
+                             int64_t *rows, cau_error *error)
 {
 	double until_s = cau_store_monotonic_s() + 1e-3 * OVERDRAWN_MS;
 	int64_t more = 0;
-	cau_store_budget_state before = store->budget.state;
+	cau_store_budget_state before = committer->budget.state;
 	cau_status status;
 	do {
 		status =
-			cau_store_retention_step(store->writing, &store->config, &store->budget, &more, error);
+			cau_store_retention_step(committer->database, config, &committer->budget, &more, error);
 		*rows += more;
 	} while (!status && more && before == CAU_STORE_BUDGET_SHRINKING &&
-	         store->budget.state == before && must_shrink(store, until_s));
+	         committer->budget.state == before && must_shrink(config, &committer->budget, until_s));
 	return status;
 }
 
 static void retire(struct cau_store *store)
 {
-	CAU_ASSERT(store->state == CAU_STORE_READY, "retention in state %d", (int)store->state);
+	struct cau_store_queue *queue = &store->queue;
+	struct cau_store_committer *committer = &store->committer;
+	CAU_ASSERT(queue->state == CAU_STORE_READY, "retention in state %d", (int)queue->state);
 	cau_error error = {0};
 	int64_t rows = 0;
 	int pause_ms = store->config.retention_interval_ms;
-	cau_store_budget_state before = store->budget.state;
-	store->unseen_bytes = 0;
-	cau_status status = take_steps(store, &rows, &error);
+	cau_store_budget_state before = committer->budget.state;
+	committer->unseen_bytes = 0;
+	cau_status status = take_steps(committer, &store->config, &rows, &error);
 	if (status == CAU_CORRUPT) {
 		block(store, &error);
-		cau_store_queue_answer(store);
+		cau_store_queue_answer(queue);
 	}
 	CAU_ASSERT(rows >= 0, "%lld rows retired", (long long)rows);
 	if (!status) {
-		pthread_mutex_lock(&store->mutex);
-		store->metrics.retired_rows += (uint64_t)rows;
-		store->metrics.kept_bytes = (uint64_t)store->budget.bytes;
-		store->metrics.budget_dropped = (uint64_t)store->budget.dropped;
-		store->metrics.budget = store->budget.state;
-		pthread_mutex_unlock(&store->mutex);
+		pthread_mutex_lock(&queue->mutex);
+		queue->metrics.retired_rows += (uint64_t)rows;
+		queue->metrics.kept_bytes = (uint64_t)committer->budget.bytes;
+		queue->metrics.budget_dropped = (uint64_t)committer->budget.dropped;
+		queue->metrics.budget = committer->budget.state;
+		pthread_mutex_unlock(&queue->mutex);
 	}
 	if (!status && rows)
 		pause_ms = CHORE_PAUSE_MS;
-	if (!status && store->budget.state != before && store->config.on_budget)
-		store->config.on_budget(store->config.user, store->budget.state, store->budget.bytes,
-		                        store->budget.dropped);
-	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * pause_ms;
+	if (!status && committer->budget.state != before && store->config.on_budget)
+		store->config.on_budget(store->config.user, committer->budget.state,
+		                        committer->budget.bytes, committer->budget.dropped);
+	committer->chore_due_s = cau_store_monotonic_s() + 1e-3 * pause_ms;
 }
 
 // Whether it is time to look for what may go. Much that was written is looked at sooner, so that
 // the budget is not overdrawn between two looks.
-static bool chore_is_due(const struct cau_store *store, double now_s)
+static bool chore_is_due(const struct cau_store_committer *committer, int64_t most, double now_s)
 {
-	int64_t most = store->config.store_bytes;
-	return now_s >= store->chore_due_s ||
-	       (most && store->unseen_bytes >= (uint64_t)most / UNSEEN_SHARE);
+	return now_s >= committer->chore_due_s ||
+	       (most && committer->unseen_bytes >= (uint64_t)most / UNSEEN_SHARE);
 }
 
 static bool has_room(const struct cau_store *store)
@@ -195,25 +205,27 @@ static bool has_room(const struct cau_store *store)
 	if (store->config.memory) // removal may have made room
 		return true;
 	return statvfs(store->path, &disk) == 0 &&
-	       (uint64_t)disk.f_bavail * disk.f_frsize >= store->wanted_bytes;
+	       (uint64_t)disk.f_bavail * disk.f_frsize >= store->committer.wanted_bytes;
 }
 
 // One attempt while full. A commit that failed may have left the log long: folding gives that back.
 static void try_again(struct cau_store *store)
 {
-	CAU_ASSERT(store->state == CAU_STORE_FULL, "tried again in state %d", (int)store->state);
+	struct cau_store_queue *queue = &store->queue;
+	sqlite3 *database = store->committer.database;
+	CAU_ASSERT(queue->state == CAU_STORE_FULL, "tried again in state %d", (int)queue->state);
 	cau_error error = {0};
 	char sql[128];
-	store->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
-	pthread_mutex_lock(&store->mutex);
-	store->metrics.full_attempts++;
-	pthread_mutex_unlock(&store->mutex);
-	sqlite3_wal_checkpoint_v2(store->writing, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+	store->committer.retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
+	pthread_mutex_lock(&queue->mutex);
+	queue->metrics.full_attempts++;
+	pthread_mutex_unlock(&queue->mutex);
+	sqlite3_wal_checkpoint_v2(database, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
 	if (!has_room(store))
 		return;
 	snprintf(sql, sizeof sql, "REPLACE INTO meta VALUES('recovered_ms', %lld)",
 	         (long long)store->config.wall_clock_ms());
-	cau_status status = cau_store_execute(store->writing, sql, "trying again", &error);
+	cau_status status = cau_store_execute(database, sql, "trying again", &error);
 	if (status == CAU_CORRUPT)
 		cau_store_queue_set_state(store, CAU_STORE_DAMAGED, error.reason);
 	else if (!status)
@@ -236,12 +248,12 @@ void *cau_store_commit_run(void *context)
 		}
 		// The state changes on this thread only.
 		double now_s = cau_store_monotonic_s();
-		if (store->state == CAU_STORE_FULL && now_s >= store->retry_due_s)
+		if (store->queue.state == CAU_STORE_FULL && now_s >= store->committer.retry_due_s)
 			try_again(store);
-		if (store->state != CAU_STORE_READY)
+		if (store->queue.state != CAU_STORE_READY)
 			continue;
 		fold_log(store);
-		if (chore_is_due(store, now_s))
+		if (chore_is_due(&store->committer, store->config.store_bytes, now_s))
 			retire(store);
 	}
 }

@@ -20,17 +20,17 @@ int cau_store_time_bucket(double seconds)
 	return bucket < CAU_STORE_TIME_BUCKETS - 1 ? (int)bucket : CAU_STORE_TIME_BUCKETS - 1;
 }
 
-void cau_store_count_commit(struct cau_store *store, int batches, double seconds)
+void cau_store_count_commit(struct cau_store_queue *queue, int batches, double seconds)
 {
 	int size = 0;
 	while (size < CAU_STORE_SIZE_BUCKETS - 1 && (1 << size) < batches)
 		size++;
-	pthread_mutex_lock(&store->mutex);
-	store->metrics.commits++;
-	store->metrics.group_size[size]++;
-	store->metrics.commit_s += seconds;
-	store->metrics.commit_time[cau_store_time_bucket(seconds)]++;
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_lock(&queue->mutex);
+	queue->metrics.commits++;
+	queue->metrics.group_size[size]++;
+	queue->metrics.commit_s += seconds;
+	queue->metrics.commit_time[cau_store_time_bucket(seconds)]++;
+	pthread_mutex_unlock(&queue->mutex);
 }
 
 // Upper end of the bucket that holds the given share of all; 0 if there are none.
@@ -58,10 +58,10 @@ static uint64_t file_bytes(const char *path, const char *suffix)
 void cau_store_get_metrics(cau_store *store, cau_store_metrics *metrics)
 {
 	uint64_t answer_time[CAU_STORE_TIME_BUCKETS];
-	pthread_mutex_lock(&store->mutex);
-	*metrics = store->metrics;
-	memcpy(answer_time, store->answer_time, sizeof answer_time);
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_lock(&store->queue.mutex);
+	*metrics = store->queue.metrics;
+	memcpy(answer_time, store->queue.answer_time, sizeof answer_time);
+	pthread_mutex_unlock(&store->queue.mutex);
 	metrics->commit_p50_s = quantile(metrics->commit_time, 0.50);
 	metrics->commit_p99_s = quantile(metrics->commit_time, 0.99);
 	metrics->answer_p50_s = quantile(answer_time, 0.50);

@@ -8,4 +8,4 @@
 int cau_store_time_bucket(double seconds);
 
 // Counts one commit of a group of `batches`.
-void cau_store_count_commit(struct cau_store *store, int batches, double seconds);
+void cau_store_count_commit(struct cau_store_queue *queue, int batches, double seconds);

@@ -9,22 +9,22 @@
 
 // ---- submitters' side -----------------------------------------------------------------
 // Called with the mutex held.
-static cau_status refuse(const struct cau_store *store, size_t bytes, cau_error *error)
+static cau_status refuse(const struct cau_store_queue *queue, const cau_store_config *config,
+                         size_t bytes, cau_error *error)
 {
-	const cau_store_config *config = &store->config;
-	CAU_ASSERT(store->metrics.queue_bytes <= config->queue_bytes, "%zu bytes wait, at most %zu may",
-	           store->metrics.queue_bytes, config->queue_bytes);
-	if (store->closing)
+	CAU_ASSERT(queue->metrics.queue_bytes <= config->queue_bytes, "%zu bytes wait, at most %zu may",
+	           queue->metrics.queue_bytes, config->queue_bytes);
+	if (queue->closing)
 		return cau_fail(error, CAU_BAD_STATE, NULL, "the store is closing");
-	if (store->state == CAU_STORE_FULL)
-		return cau_fail(error, CAU_IO, NULL, "%s", store->reason);
-	if (store->state == CAU_STORE_DAMAGED)
-		return cau_fail(error, CAU_CORRUPT, NULL, "%s", store->reason);
-	if (store->metrics.queue_batches >= config->queue_batches)
+	if (queue->state == CAU_STORE_FULL)
+		return cau_fail(error, CAU_IO, NULL, "%s", queue->reason);
+	if (queue->state == CAU_STORE_DAMAGED)
+		return cau_fail(error, CAU_CORRUPT, NULL, "%s", queue->reason);
+	if (queue->metrics.queue_batches >= config->queue_batches)
 		return cau_fail(error, CAU_LIMIT, NULL, "%d batches wait already", config->queue_batches);
-	if (bytes > config->queue_bytes - store->metrics.queue_bytes)
+	if (bytes > config->queue_bytes - queue->metrics.queue_bytes)
 		return cau_fail(error, CAU_LIMIT, NULL, "%zu bytes on top of %zu waiting; at most %zu",
-		                bytes, store->metrics.queue_bytes, config->queue_bytes);
+		                bytes, queue->metrics.queue_bytes, config->queue_bytes);
 	return CAU_OK;
 }
 
@@ -33,107 +33,112 @@ cau_status cau_store_submit(cau_store *store, cau_store_batch *batch, cau_store_
 {
 	CAU_ASSERT(batch->next == NULL && batch->error.status == CAU_OK,
 	           "a batch of %zu bytes is submitted twice", batch->bytes);
-	pthread_mutex_lock(&store->mutex);
-	cau_status status = refuse(store, batch->bytes, error);
+	struct cau_store_queue *queue = &store->queue;
+	pthread_mutex_lock(&queue->mutex);
+	cau_status status = refuse(queue, &store->config, batch->bytes, error);
 	if (status) {
-		store->metrics.refused_batches++;
+		queue->metrics.refused_batches++;
 	} else {
 		batch->callback = callback;
 		batch->user = user;
 		batch->submitted_s = cau_store_monotonic_s();
 		batch->next = NULL;
-		if (store->last)
-			store->last->next = batch;
+		if (queue->last)
+			queue->last->next = batch;
 		else
-			store->first = batch;
-		store->last = batch;
-		store->submitted++;
-		store->metrics.queue_batches++;
-		store->metrics.queue_bytes += batch->bytes;
-		pthread_cond_signal(&store->work);
+			queue->first = batch;
+		queue->last = batch;
+		queue->submitted++;
+		queue->metrics.queue_batches++;
+		queue->metrics.queue_bytes += batch->bytes;
+		pthread_cond_signal(&queue->work);
 	}
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_unlock(&queue->mutex);
 	return status;
 }
 
 void cau_store_flush(cau_store *store)
 {
-	pthread_mutex_lock(&store->mutex);
-	uint64_t target = store->submitted;
-	store->flushing++;
-	pthread_cond_signal(&store->work);
-	while (store->answered < target)
-		pthread_cond_wait(&store->answer, &store->mutex);
-	store->flushing--;
-	CAU_ASSERT(store->flushing >= 0, "%d batches wait for the disk", (int)store->flushing);
-	pthread_mutex_unlock(&store->mutex);
+	struct cau_store_queue *queue = &store->queue;
+	pthread_mutex_lock(&queue->mutex);
+	uint64_t target = queue->submitted;
+	queue->flushing++;
+	pthread_cond_signal(&queue->work);
+	while (queue->answered < target)
+		pthread_cond_wait(&queue->answer, &queue->mutex);
+	queue->flushing--;
+	CAU_ASSERT(queue->flushing >= 0, "%d batches wait for the disk", (int)queue->flushing);
+	pthread_mutex_unlock(&queue->mutex);
 }
 
 bool cau_store_moves(cau_store *store)
 {
-	pthread_mutex_lock(&store->mutex);
-	bool moved = !store->asked_to_move;
-	store->asked_to_move = true;
-	pthread_cond_signal(&store->work);
-	pthread_mutex_unlock(&store->mutex);
+	struct cau_store_queue *queue = &store->queue;
+	pthread_mutex_lock(&queue->mutex);
+	bool moved = !queue->asked_to_move;
+	queue->asked_to_move = true;
+	pthread_cond_signal(&queue->work);
+	pthread_mutex_unlock(&queue->mutex);
 	return moved;
 }
 
 // ---- the thread's side ----------------------------------------------------------------
-static bool group_is_ripe(const struct cau_store *store, double now_s, double *due_s)
+static bool group_is_ripe(const struct cau_store_queue *queue, int delay_ms, double now_s,
+                          double *due_s)
 {
-	CAU_ASSERT(store->first != NULL, "no group to be ripe at %g s", now_s);
-	*due_s = store->first->submitted_s + 1e-3 * store->config.commit_delay_ms;
-	return store->closing || store->flushing || now_s >= *due_s ||
-	       store->metrics.queue_batches >= GROUP_BATCHES ||
-	       store->metrics.queue_bytes >= GROUP_BYTES;
+	CAU_ASSERT(queue->first != NULL, "no group to be ripe at %g s", now_s);
+	*due_s = queue->first->submitted_s + 1e-3 * delay_ms;
+	return queue->closing || queue->flushing || now_s >= *due_s ||
+	       queue->metrics.queue_batches >= GROUP_BATCHES ||
+	       queue->metrics.queue_bytes >= GROUP_BYTES;
 }
 
 static double chore_due_s(const struct cau_store *store, double now_s)
 {
-	switch (store->state) {
+	switch (store->queue.state) {
 	case CAU_STORE_READY:
-		return store->chore_due_s;
+		return store->committer.chore_due_s;
 	case CAU_STORE_FULL:
-		return store->retry_due_s;
+		return store->committer.retry_due_s;
 	default: // damaged: only a close is left
 		return now_s + 3600.0;
 	}
 }
 
-static void take_group(struct cau_store *store)
+static void take_group(struct cau_store_queue *queue)
 {
-	CAU_ASSERT(store->first && !store->committing,
-	           "a group is taken before the last is answered, in state %d", (int)store->state);
-	struct cau_store_batch *last = store->first;
+	CAU_ASSERT(queue->first && !queue->committing,
+	           "a group is taken before the last is answered, in state %d", (int)queue->state);
+	struct cau_store_batch *last = queue->first;
 	size_t bytes = last->bytes;
 	for (int count = 1; last->next && count < GROUP_BATCHES && bytes < GROUP_BYTES; count++) {
 		last = last->next;
 		bytes += last->bytes;
 	}
-	store->committing = store->first;
-	store->first = last->next;
-	if (!store->first)
-		store->last = NULL;
+	queue->committing = queue->first;
+	queue->first = last->next;
+	if (!queue->first)
+		queue->last = NULL;
 	last->next = NULL;
-	CAU_ASSERT(!store->first == !store->last, "a queue without an end, in state %d",
-	           (int)store->state);
+	CAU_ASSERT(!queue->first == !queue->last, "a queue without an end, in state %d",
+	           (int)queue->state);
 }
 
 enum cau_store_turn cau_store_queue_await(struct cau_store *store)
 {
+	struct cau_store_queue *queue = &store->queue;
 	enum cau_store_turn turn;
-	pthread_mutex_lock(&store->mutex);
+	pthread_mutex_lock(&queue->mutex);
 	for (;;) {
 		double now_s = cau_store_monotonic_s(), due_s;
-		store->asked_to_move = false;
-		if (store->first) {
-			if (group_is_ripe(store, now_s, &due_s)) {
-				take_group(store);
+		queue->asked_to_move = false;
+		if (queue->first) {
+			if (group_is_ripe(queue, store->config.commit_delay_ms, now_s, &due_s)) {
+				take_group(queue);
 				turn = TURN_GROUP;
 				break;
 			}
-		} else if (store->closing) {
+		} else if (queue->closing) {
 			turn = TURN_END;
 			break;
 		} else {
@@ -144,43 +149,44 @@ enum cau_store_turn cau_store_queue_await(struct cau_store *store)
 			}
 		}
 		struct timespec until = cau_store_timespec(due_s);
-		pthread_cond_timedwait(&store->work, &store->mutex, &until);
+		pthread_cond_timedwait(&queue->work, &queue->mutex, &until);
 	}
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_unlock(&queue->mutex);
 	return turn;
 }
 
 void cau_store_queue_set_state(struct cau_store *store, cau_store_state state, const char *reason)
 {
-	pthread_mutex_lock(&store->mutex);
-	bool changed = store->state != state;
-	store->state = state;
-	snprintf(store->reason, sizeof store->reason, "%s", reason);
+	struct cau_store_queue *queue = &store->queue;
+	pthread_mutex_lock(&queue->mutex);
+	bool changed = queue->state != state;
+	queue->state = state;
+	snprintf(queue->reason, sizeof queue->reason, "%s", reason);
 	if (changed && state == CAU_STORE_FULL)
-		store->metrics.full_count++;
+		queue->metrics.full_count++;
 	if (state != CAU_STORE_READY) {
-		struct cau_store_batch **end = &store->committing;
+		struct cau_store_batch **end = &queue->committing;
 		while (*end)
 			end = &(*end)->next;
-		*end = store->first;
-		store->first = store->last = NULL;
+		*end = queue->first;
+		queue->first = queue->last = NULL;
 	}
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_unlock(&queue->mutex);
 	if (changed && store->config.on_state)
 		store->config.on_state(store->config.user, state, reason);
 }
 
 // Takes the first batch out of the queue's account.
-static struct cau_store_batch *pop_answered(struct cau_store *store)
+static struct cau_store_batch *pop_answered(struct cau_store_queue *queue)
 {
-	pthread_mutex_lock(&store->mutex);
-	struct cau_store_batch *batch = store->committing;
+	pthread_mutex_lock(&queue->mutex);
+	struct cau_store_batch *batch = queue->committing;
 	if (batch) {
-		cau_store_metrics *metrics = &store->metrics;
+		cau_store_metrics *metrics = &queue->metrics;
 		CAU_ASSERT(metrics->queue_batches > 0 && metrics->queue_bytes >= batch->bytes,
 		           "%d batches of %zu bytes wait, and one of %zu is answered",
 		           (int)metrics->queue_batches, metrics->queue_bytes, batch->bytes);
-		store->committing = batch->next;
+		queue->committing = batch->next;
 		metrics->queue_batches--;
 		metrics->queue_bytes -= batch->bytes;
 		if (batch->error.status) {
@@ -191,24 +197,24 @@ static struct cau_store_batch *pop_answered(struct cau_store *store)
 			metrics->bytes += batch->bytes;
 		}
 		double waited_s = cau_store_monotonic_s() - batch->submitted_s;
-		store->answer_time[cau_store_time_bucket(waited_s)]++;
+		queue->answer_time[cau_store_time_bucket(waited_s)]++;
 	}
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_unlock(&queue->mutex);
 	return batch;
 }
 
-void cau_store_queue_answer(struct cau_store *store)
+void cau_store_queue_answer(struct cau_store_queue *queue)
 {
 	struct cau_store_batch *batch;
-	while ((batch = pop_answered(store)) != NULL) {
+	while ((batch = pop_answered(queue)) != NULL) {
 		if (batch->callback)
 			batch->callback(batch->user, batch->error.status, batch->error.reason);
 		cau_store_batch_destroy(batch);
-		pthread_mutex_lock(&store->mutex);
-		store->answered++;
-		CAU_ASSERT(store->answered <= store->submitted, "%llu answered of %llu",
-		           (unsigned long long)store->answered, (unsigned long long)store->submitted);
-		pthread_cond_broadcast(&store->answer);
-		pthread_mutex_unlock(&store->mutex);
+		pthread_mutex_lock(&queue->mutex);
+		queue->answered++;
+		CAU_ASSERT(queue->answered <= queue->submitted, "%llu answered of %llu",
+		           (unsigned long long)queue->answered, (unsigned long long)queue->submitted);
+		pthread_cond_broadcast(&queue->answer);
+		pthread_mutex_unlock(&queue->mutex);
 	}
 }

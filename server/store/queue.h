@@ -5,7 +5,7 @@
 #include "store_state.h"
 
 enum cau_store_turn {
-	TURN_GROUP, // store->committing holds a group
+	TURN_GROUP, // queue.committing holds a group
 	TURN_CHORE, // nothing to commit; a chore or an attempt while full is due
 	TURN_END,   // closing, and the queue is empty
 };
@@ -14,8 +14,8 @@ enum cau_store_turn {
 // submitted.
 enum cau_store_turn cau_store_queue_await(struct cau_store *store);
 
-// Changes the state. Unless READY, moves every waiting batch behind store->committing.
+// Changes the state. Unless READY, moves every waiting batch behind queue.committing.
 void cau_store_queue_set_state(struct cau_store *store, cau_store_state state, const char *reason);
 
-// Calls back for every batch in store->committing, in order, and frees it.
-void cau_store_queue_answer(struct cau_store *store);
+// Calls back for every batch in queue.committing, in order, and frees it.
+void cau_store_queue_answer(struct cau_store_queue *queue);

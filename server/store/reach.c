@@ -9,12 +9,13 @@
 static cau_status read_course(cau_store *store, const char *session, int64_t branch,
                               struct cau_store_course *course, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	int64_t key;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_find_session(store, session, &key, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_find_session(reader, session, &key, error);
 	if (!status)
-		status = cau_store_course_read(store->reading, key, branch, course, error);
-	pthread_mutex_unlock(&store->reading_mutex);
+		status = cau_store_course_read(reader->database, key, branch, course, error);
+	pthread_mutex_unlock(&reader->mutex);
 	return status;
 }
 

@@ -15,20 +15,21 @@ enum {
 };
 
 // ---- small pieces ---------------------------------------------------------------------
-cau_status cau_store_prepare(cau_store *store, const char *sql, sqlite3_stmt **statement,
-                             cau_error *error)
+cau_status cau_store_prepare(struct cau_store_reader *reader, const char *sql,
+                             sqlite3_stmt **statement, cau_error *error)
 {
-	int code = sqlite3_prepare_v2(store->reading, sql, -1, statement, NULL);
-	return code ? cau_store_fault(store->reading, code, "reading", error) : CAU_OK;
+	int code = sqlite3_prepare_v2(reader->database, sql, -1, statement, NULL);
+	return code ? cau_store_fault(reader->database, code, "reading", error) : CAU_OK;
 }
 
-cau_status cau_store_next_row(cau_store *store, sqlite3_stmt *statement, cau_error *error)
+cau_status cau_store_next_row(struct cau_store_reader *reader, sqlite3_stmt *statement,
+                              cau_error *error)
 {
 	int code = sqlite3_step(statement);
 	if (code == SQLITE_ROW)
 		return CAU_OK;
 	return code == SQLITE_DONE ? CAU_NOT_FOUND
-	                           : cau_store_fault(store->reading, code, "reading", error);
+	                           : cau_store_fault(reader->database, code, "reading", error);
 }
 
 cau_status cau_store_end_is_fine(cau_status status)
@@ -48,14 +49,15 @@ const char *cau_store_column_text(sqlite3_stmt *statement, int column)
 	return (const char *)sqlite3_column_text(statement, column);
 }
 
-cau_status cau_store_find_session(cau_store *store, const char *id, int64_t *key, cau_error *error)
+cau_status cau_store_find_session(struct cau_store_reader *reader, const char *id, int64_t *key,
+                                  cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
 	cau_status status = cau_store_prepare(
-		store, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0", &statement, error);
+		reader, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0", &statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	}
 	if (!status)
 		*key = sqlite3_column_int64(statement, 0);
@@ -68,17 +70,18 @@ cau_status cau_store_find_session(cau_store *store, const char *id, int64_t *key
 cau_status cau_store_read_generation(cau_store *store, char text[CAU_STORE_ID_BYTES],
                                      cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	*text = 0;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_prepare(store, "SELECT value FROM meta WHERE name = 'generation'",
-	                                      &statement, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_prepare(
+		reader, "SELECT value FROM meta WHERE name = 'generation'", &statement, error);
 	if (!status)
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	if (!status)
 		snprintf(text, CAU_STORE_ID_BYTES, "%s", cau_store_column_text(statement, 0));
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return cau_store_end_is_fine(status);
 }
 
@@ -97,38 +100,40 @@ static void fill_session(sqlite3_stmt *statement, cau_store_session *session)
 cau_status cau_store_read_sessions(cau_store *store, cau_store_visit_session visit, void *user,
                                    cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	cau_store_session session;
-	pthread_mutex_lock(&store->reading_mutex);
+	pthread_mutex_lock(&reader->mutex);
 	cau_status status =
-		cau_store_prepare(store,
+		cau_store_prepare(reader,
 	                      "SELECT id, name, state, branch, created_ms, definition, x''"
 	                      " FROM sessions WHERE deleted = 0 ORDER BY key",
 	                      &statement, error);
 	cau_status visited = CAU_OK;
-	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
+	while (!status && !visited && !(status = cau_store_next_row(reader, statement, error))) {
 		fill_session(statement, &session);
 		visited = visit(user, &session);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return visited ? visited : cau_store_end_is_fine(status);
 }
 
 cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_visit_session visit,
                                   void *user, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	cau_store_session session;
-	pthread_mutex_lock(&store->reading_mutex);
+	pthread_mutex_lock(&reader->mutex);
 	cau_status status =
-		cau_store_prepare(store,
+		cau_store_prepare(reader,
 	                      "SELECT id, name, state, branch, created_ms, definition, mesh"
 	                      " FROM sessions WHERE id = ?1 AND deleted = 0",
 	                      &statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 		if (status == CAU_NOT_FOUND)
 			cau_fail(error, status, "session", "no session '%s'", id);
 	}
@@ -137,7 +142,7 @@ cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_vi
 		status = visit(user, &session);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return status;
 }
 
@@ -145,20 +150,21 @@ cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_vi
 cau_status cau_store_read_branches(cau_store *store, const char *session,
                                    cau_store_visit_branch visit, void *user, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	int64_t key;
 	cau_status visited = CAU_OK;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_find_session(store, session, &key, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_find_session(reader, session, &key, error);
 	cau_status found = status;
 	if (!status)
-		status = cau_store_prepare(store,
+		status = cau_store_prepare(reader,
 		                           "SELECT branch, parent, fork_tick, opened_ms, left_ms, end_tick"
 		                           " FROM branches WHERE session = ?1 ORDER BY branch",
 		                           &statement, error);
 	if (!status)
 		sqlite3_bind_int64(statement, 1, key);
-	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
+	while (!status && !visited && !(status = cau_store_next_row(reader, statement, error))) {
 		cau_store_branch branch = {
 			.session = session,
 			.branch = sqlite3_column_int64(statement, 0),
@@ -171,46 +177,47 @@ cau_status cau_store_read_branches(cau_store *store, const char *session,
 		visited = visit(user, &branch);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return found ? found : visited ? visited : cau_store_end_is_fine(status);
 }
 
 cau_status cau_store_read_clients(cau_store *store, const char *session,
                                   cau_store_visit_client visit, void *user, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	int64_t key;
 	cau_status visited = CAU_OK;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_find_session(store, session, &key, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_find_session(reader, session, &key, error);
 	cau_status found = status;
 	if (!status)
 		status = cau_store_prepare(
-			store, "SELECT client, sequence FROM clients WHERE session = ?1 ORDER BY client",
+			reader, "SELECT client, sequence FROM clients WHERE session = ?1 ORDER BY client",
 			&statement, error);
 	if (!status)
 		sqlite3_bind_int64(statement, 1, key);
-	while (!status && !visited && !(status = cau_store_next_row(store, statement, error)))
+	while (!status && !visited && !(status = cau_store_next_row(reader, statement, error)))
 		visited = visit(user, cau_store_column_text(statement, 0),
 		                (uint64_t)sqlite3_column_int64(statement, 1));
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return found ? found : visited ? visited : cau_store_end_is_fine(status);
 }
 
 // ---- what a branch sees ---------------------------------------------------------------
 // The branch's parent (-1: none) and fork tick. CAU_NOT_FOUND.
-static cau_status find_branch(cau_store *store, int64_t key, int64_t branch, int64_t *parent,
-                              int64_t *fork_tick, cau_error *error)
+static cau_status find_branch(struct cau_store_reader *reader, int64_t key, int64_t branch,
+                              int64_t *parent, int64_t *fork_tick, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
 	cau_status status = cau_store_prepare(
-		store, "SELECT parent, fork_tick FROM branches WHERE session = ?1 AND branch = ?2",
+		reader, "SELECT parent, fork_tick FROM branches WHERE session = ?1 AND branch = ?2",
 		&statement, error);
 	if (!status) {
 		sqlite3_bind_int64(statement, 1, key);
 		sqlite3_bind_int64(statement, 2, branch);
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
 		cau_fail(error, status, "branch", "no branch %lld", (long long)branch);
@@ -222,7 +229,7 @@ static cau_status find_branch(cau_store *store, int64_t key, int64_t branch, int
 	return status;
 }
 
-cau_status cau_store_find_line(cau_store *store, int64_t key, int64_t branch,
+cau_status cau_store_find_line(struct cau_store_reader *reader, int64_t key, int64_t branch,
                                struct cau_store_stretch **line, int *count, cau_error *error)
 {
 	int64_t before_tick = INT64_MAX, parent = -1;
@@ -240,7 +247,7 @@ cau_status cau_store_find_line(cau_store *store, int64_t key, int64_t branch,
 			*line = grown;
 		}
 		struct cau_store_stretch *stretch = &(*line)[*count];
-		cau_status status = find_branch(store, key, branch, &parent, &stretch->from_tick, error);
+		cau_status status = find_branch(reader, key, branch, &parent, &stretch->from_tick, error);
 		if (status)
 			return status;
 		stretch->branch = branch;
@@ -255,17 +262,18 @@ cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int6
                                      uint64_t tick, cau_store_visit_checkpoint visit, void *user,
                                      cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	struct cau_store_stretch *line = NULL;
 	int count = 0;
 	int64_t key, newest = tick < INT64_MAX ? (int64_t)tick : INT64_MAX;
 	cau_store_checkpoint checkpoint = {.session = session};
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_find_session(store, session, &key, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_find_session(reader, session, &key, error);
 	if (!status)
-		status = cau_store_find_line(store, key, branch, &line, &count, error);
+		status = cau_store_find_line(reader, key, branch, &line, &count, error);
 	if (!status)
-		status = cau_store_prepare(store,
+		status = cau_store_prepare(reader,
 		                           "SELECT tick, hash, snapshot FROM checkpoints WHERE session = ?1"
 		                           " AND branch = ?2 AND tick <= ?3 ORDER BY tick DESC LIMIT 1",
 		                           &statement, error);
@@ -280,7 +288,7 @@ cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int6
 		sqlite3_bind_int64(statement, 1, key);
 		sqlite3_bind_int64(statement, 2, line[i].branch);
 		sqlite3_bind_int64(statement, 3, newest);
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
 		cau_fail(error, status, "tick", "no checkpoint at or before tick %llu",
@@ -293,7 +301,7 @@ cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int6
 	status = visit(user, &checkpoint);
 out:
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	free(line);
 	return status;
 }
@@ -306,13 +314,13 @@ struct cursor {
 
 // Copies one piece of a stretch into `piece` and moves the cursor behind it. *more: there may be
 // another.
-static cau_status read_piece(cau_store *store, int64_t key, const char *session,
+static cau_status read_piece(struct cau_store_reader *reader, int64_t key, const char *session,
                              const struct cau_store_stretch *stretch, struct cursor *cursor,
                              cau_store_batch *piece, bool *more, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
 	int rows = 0;
-	cau_status status = cau_store_prepare(store,
+	cau_status status = cau_store_prepare(reader,
 	                                      "SELECT tick, position, kind, client, sequence, payload"
 	                                      " FROM commands WHERE session = ?1 AND branch = ?2"
 	                                      " AND (tick, position) >= (?3, ?4) AND tick < ?5"
@@ -323,7 +331,7 @@ static cau_status read_piece(cau_store *store, int64_t key, const char *session,
 	for (int i = 0; !status && i < 5; i++)
 		sqlite3_bind_int64(statement, i + 1, parameter[i]);
 	while (!status && cau_store_batch_bytes(piece) < PIECE_BYTES) {
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 		if (status)
 			break;
 		cau_store_command command = {
@@ -346,7 +354,7 @@ static cau_status read_piece(cau_store *store, int64_t key, const char *session,
 	return cau_store_end_is_fine(status);
 }
 
-static cau_status read_stretch(cau_store *store, int64_t key, const char *session,
+static cau_status read_stretch(struct cau_store_reader *reader, int64_t key, const char *session,
                                const struct cau_store_stretch *stretch,
                                cau_store_visit_command visit, void *user, cau_error *error)
 {
@@ -356,9 +364,9 @@ static cau_status read_stretch(cau_store *store, int64_t key, const char *sessio
 		cau_store_batch *piece = cau_store_batch_create();
 		if (!piece)
 			return cau_fail(error, CAU_NO_MEMORY, NULL, "reading the log");
-		pthread_mutex_lock(&store->reading_mutex);
-		status = read_piece(store, key, session, stretch, &cursor, piece, &more, error);
-		pthread_mutex_unlock(&store->reading_mutex);
+		pthread_mutex_lock(&reader->mutex);
+		status = read_piece(reader, key, session, stretch, &cursor, piece, &more, error);
+		pthread_mutex_unlock(&reader->mutex);
 		for (const struct record *record = piece->first; record && !status; record = record->next)
 			status = visit(user, &record->as.command);
 		cau_store_batch_destroy(piece);
@@ -370,23 +378,24 @@ cau_status cau_store_read_log(cau_store *store, const char *session, int64_t bra
                               uint64_t from_tick, uint64_t before_tick,
                               cau_store_visit_command visit, void *user, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	struct cau_store_stretch *line = NULL;
 	int count = 0;
 	int64_t key;
 	int64_t from = from_tick < INT64_MAX ? (int64_t)from_tick : INT64_MAX;
 	int64_t before = before_tick < INT64_MAX ? (int64_t)before_tick : INT64_MAX;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_find_session(store, session, &key, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_find_session(reader, session, &key, error);
 	if (!status)
-		status = cau_store_find_line(store, key, branch, &line, &count, error);
-	pthread_mutex_unlock(&store->reading_mutex);
+		status = cau_store_find_line(reader, key, branch, &line, &count, error);
+	pthread_mutex_unlock(&reader->mutex);
 	for (int i = count - 1; i >= 0 && !status; i--) {
 		if (line[i].from_tick < from)
 			line[i].from_tick = from;
 		if (line[i].before_tick > before)
 			line[i].before_tick = before;
 		if (line[i].from_tick < line[i].before_tick)
-			status = read_stretch(store, key, session, &line[i], visit, user, error);
+			status = read_stretch(reader, key, session, &line[i], visit, user, error);
 	}
 	free(line);
 	return status;
@@ -408,42 +417,26 @@ static bool list_answers(const struct cau_store_batch *batch, const char *client
 	return false;
 }
 
-static bool is_pending(cau_store *store, const char *client, uint64_t sequence)
+static bool is_pending(struct cau_store_queue *queue, const char *client, uint64_t sequence)
 {
-	pthread_mutex_lock(&store->mutex);
-	bool pending = list_answers(store->committing, client, sequence) ||
-	               list_answers(store->first, client, sequence);
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_lock(&queue->mutex);
+	bool pending = list_answers(queue->committing, client, sequence) ||
+	               list_answers(queue->first, client, sequence);
+	pthread_mutex_unlock(&queue->mutex);
 	return pending;
 }
 
-static cau_status prepare_answer(cau_store *store, const char *sql, sqlite3_stmt **statement,
-                                 cau_error *error)
-{
-	int code = sqlite3_prepare_v2(store->answers, sql, -1, statement, NULL);
-	return code ? cau_store_fault(store->answers, code, "reading", error) : CAU_OK;
-}
-
-static cau_status next_answer(cau_store *store, sqlite3_stmt *statement, cau_error *error)
-{
-	int code = sqlite3_step(statement);
-	if (code == SQLITE_ROW)
-		return CAU_OK;
-	return code == SQLITE_DONE ? CAU_NOT_FOUND
-	                           : cau_store_fault(store->answers, code, "reading", error);
-}
-
 // Why there is no answer: CAU_NOT_FOUND or CAU_ALREADY_EXISTS.
-static cau_status look_for_forgotten(cau_store *store, const char *client, uint64_t sequence,
-                                     cau_error *error)
+static cau_status look_for_forgotten(struct cau_store_reader *reader, const char *client,
+                                     uint64_t sequence, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
-	cau_status status = prepare_answer(
-		store, "SELECT 1 FROM forgotten WHERE client = ?1 AND sequence >= ?2", &statement, error);
+	cau_status status = cau_store_prepare(
+		reader, "SELECT 1 FROM forgotten WHERE client = ?1 AND sequence >= ?2", &statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
-		status = next_answer(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	}
 	sqlite3_finalize(statement);
 	if (status == CAU_NOT_FOUND)
@@ -459,22 +452,23 @@ static cau_status look_for_forgotten(cau_store *store, const char *client, uint6
 cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t sequence,
                                  cau_store_visit_answer visit, void *user, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->answers;
 	sqlite3_stmt *statement = NULL;
 	// The queue first: what leaves it meanwhile is in the database.
-	if (is_pending(store, client, sequence))
+	if (is_pending(&store->queue, client, sequence))
 		return cau_fail(error, CAU_BAD_STATE, "sequence", "request %llu is being stored",
 		                (unsigned long long)sequence);
-	pthread_mutex_lock(&store->answers_mutex);
-	cau_status status = prepare_answer(
-		store, "SELECT session, result FROM answers WHERE client = ?1 AND sequence = ?2",
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_prepare(
+		reader, "SELECT session, result FROM answers WHERE client = ?1 AND sequence = ?2",
 		&statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
-		status = next_answer(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
-		status = look_for_forgotten(store, client, sequence, error);
+		status = look_for_forgotten(reader, client, sequence, error);
 	if (!status) {
 		cau_store_answer answer = {
 			.client = client,
@@ -485,6 +479,6 @@ cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t 
 		status = visit(user, &answer);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->answers_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return status;
 }

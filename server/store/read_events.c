@@ -20,10 +20,11 @@ typedef struct wanted {
 	void *user;
 } wanted;
 
-static cau_status visit_rows(cau_store *store, sqlite3_stmt *statement, wanted *w, cau_error *error)
+static cau_status visit_rows(struct cau_store_reader *reader, sqlite3_stmt *statement, wanted *w,
+                             cau_error *error)
 {
 	cau_status status = CAU_OK;
-	while (!status && !(status = cau_store_next_row(store, statement, error))) {
+	while (!status && !(status = cau_store_next_row(reader, statement, error))) {
 		cau_store_event event = {
 			.session = w->session,
 			.branch = sqlite3_column_int64(statement, 0),
@@ -41,10 +42,10 @@ static cau_status visit_rows(cau_store *store, sqlite3_stmt *statement, wanted *
 	return cau_store_end_is_fine(status);
 }
 
-static cau_status read_some(cau_store *store, wanted *w, cau_error *error)
+static cau_status read_some(struct cau_store_reader *reader, wanted *w, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
-	cau_status status = cau_store_prepare(store, newest_events, &statement, error);
+	cau_status status = cau_store_prepare(reader, newest_events, &statement, error);
 	if (!status) {
 		sqlite3_bind_int64(statement, 1, w->key);
 		sqlite3_bind_text(statement, 2, w->kind, -1, SQLITE_STATIC); // NULL: NULL
@@ -52,7 +53,7 @@ static cau_status read_some(cau_store *store, wanted *w, cau_error *error)
 		sqlite3_bind_int64(statement, 4, w->from_tick);
 		sqlite3_bind_int64(statement, 5, w->to_tick);
 		sqlite3_bind_int64(statement, 6, w->count > 0 ? w->count : 0);
-		status = visit_rows(store, statement, w, error);
+		status = visit_rows(reader, statement, w, error);
 	}
 	sqlite3_finalize(statement);
 	return status;
@@ -62,12 +63,13 @@ cau_status cau_store_read_events(cau_store *store, const char *session, const ch
                                  int32_t count, cau_store_visit_event visit, void *user,
                                  cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	wanted w = {0, session, kind, -1, 0, INT64_MAX, count, visit, user};
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = session ? cau_store_find_session(store, session, &w.key, error) : CAU_OK;
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = session ? cau_store_find_session(reader, session, &w.key, error) : CAU_OK;
 	if (!status)
-		status = read_some(store, &w, error);
-	pthread_mutex_unlock(&store->reading_mutex);
+		status = read_some(reader, &w, error);
+	pthread_mutex_unlock(&reader->mutex);
 	return status;
 }
 
@@ -80,19 +82,20 @@ cau_status cau_store_read_timeline(cau_store *store, const char *session, int64_
                                    uint64_t from_tick, uint64_t to_tick, int32_t count,
                                    cau_store_visit_event visit, void *user, cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	struct cau_store_stretch *line = NULL;
 	int stretches = 0;
 	wanted w = {0, session, NULL, branch, least(from_tick, INT64_MAX), 0, count, visit, user};
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_find_session(store, session, &w.key, error);
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_find_session(reader, session, &w.key, error);
 	if (!status)
-		status = cau_store_find_line(store, w.key, branch, &line, &stretches, error);
+		status = cau_store_find_line(reader, w.key, branch, &line, &stretches, error);
 	for (int i = 0; i < stretches && !status && w.count > 0; i++) {
 		w.branch = line[i].branch;
 		w.to_tick = least(to_tick, line[i].before_tick);
-		status = read_some(store, &w, error);
+		status = read_some(reader, &w, error);
 	}
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	free(line);
 	return status;
 }

@@ -8,13 +8,14 @@
 cau_status cau_store_read_moved(cau_store *store, cau_store_visit_moved visit, void *user,
                                 cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	cau_status visited = CAU_OK;
-	pthread_mutex_lock(&store->reading_mutex);
+	pthread_mutex_lock(&reader->mutex);
 	cau_status status = cau_store_prepare(
-		store, "SELECT id, move, target, label, url, proof, time_ms FROM moved ORDER BY id",
+		reader, "SELECT id, move, target, label, url, proof, time_ms FROM moved ORDER BY id",
 		&statement, error);
-	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
+	while (!status && !visited && !(status = cau_store_next_row(reader, statement, error))) {
 		cau_store_moved moved = {.id = cau_store_column_text(statement, 0),
 		                         .move = cau_store_column_text(statement, 1),
 		                         .target = cau_store_column_text(statement, 2),
@@ -25,22 +26,23 @@ cau_status cau_store_read_moved(cau_store *store, cau_store_visit_moved visit, v
 		visited = visit(user, &moved);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return visited ? visited : cau_store_end_is_fine(status);
 }
 
 cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival visit, void *user,
                                    cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
 	cau_status visited = CAU_OK;
-	pthread_mutex_lock(&store->reading_mutex);
+	pthread_mutex_lock(&reader->mutex);
 	cau_status status = cau_store_prepare(
-		store,
+		reader,
 		"SELECT id, move, lock, source, label, pieces, state, time_ms, unlock, seal FROM arrivals"
 		" ORDER BY id",
 		&statement, error);
-	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
+	while (!status && !visited && !(status = cau_store_next_row(reader, statement, error))) {
 		cau_store_arrival arrival = {.id = cau_store_column_text(statement, 0),
 		                             .move = cau_store_column_text(statement, 1),
 		                             .lock = cau_store_column_text(statement, 2),
@@ -55,21 +57,22 @@ cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival vis
 		visited = visit(user, &arrival);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return visited ? visited : cau_store_end_is_fine(status);
 }
 
 cau_status cau_store_move_secret(cau_store *store, char secret[65], cau_error *error)
 {
+	struct cau_store_reader *reader = &store->reading;
 	sqlite3_stmt *statement = NULL;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_prepare(store, "SELECT value FROM secrets WHERE name = 'move'",
+	pthread_mutex_lock(&reader->mutex);
+	cau_status status = cau_store_prepare(reader, "SELECT value FROM secrets WHERE name = 'move'",
 	                                      &statement, error);
 	if (!status)
-		status = cau_store_next_row(store, statement, error);
+		status = cau_store_next_row(reader, statement, error);
 	if (!status)
 		snprintf(secret, 65, "%s", cau_store_column_text(statement, 0));
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&reader->mutex);
 	return status;
 }

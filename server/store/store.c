@@ -115,18 +115,19 @@ static cau_status find_path(const char *given, char path[4096], cau_error *error
 static int count_wal_pages(void *context, sqlite3 *database, const char *name, int pages)
 {
 	(void)database, (void)name;
-	((struct cau_store *)context)->wal_pages = pages;
+	((struct cau_store_committer *)context)->wal_pages = pages;
 	return SQLITE_OK;
 }
 
 // Stores the label if none is stored, and keeps the one that is.
 static cau_status settle_label(struct cau_store *store, cau_error *error)
 {
+	sqlite3 *database = store->committer.database;
 	sqlite3_stmt *statement = NULL;
 	int code = SQLITE_OK;
 	if (store->config.label) {
-		code = sqlite3_prepare_v2(store->writing, "INSERT OR IGNORE INTO meta VALUES('label', ?1)",
-		                          -1, &statement, NULL);
+		code = sqlite3_prepare_v2(database, "INSERT OR IGNORE INTO meta VALUES('label', ?1)", -1,
+		                          &statement, NULL);
 		if (!code) {
 			sqlite3_bind_text(statement, 1, store->config.label, -1, SQLITE_STATIC);
 			sqlite3_step(statement);
@@ -134,21 +135,22 @@ static cau_status settle_label(struct cau_store *store, cau_error *error)
 		}
 	}
 	if (!code)
-		code = sqlite3_prepare_v2(store->writing, "SELECT value FROM meta WHERE name = 'label'", -1,
+		code = sqlite3_prepare_v2(database, "SELECT value FROM meta WHERE name = 'label'", -1,
 		                          &statement, NULL);
 	if (!code && sqlite3_step(statement) == SQLITE_ROW)
 		snprintf(store->label, sizeof store->label, "%s",
 		         (const char *)sqlite3_column_text(statement, 0));
 	if (!code)
 		code = sqlite3_finalize(statement);
-	return code ? cau_store_fault(store->writing, code, "the label", error) : CAU_OK;
+	return code ? cau_store_fault(database, code, "the label", error) : CAU_OK;
 }
 
 // The name under which the write-ahead log stands, for one who comes after a crash by another name.
 static cau_status note_path(struct cau_store *store, cau_error *error)
 {
+	sqlite3 *database = store->committer.database;
 	sqlite3_stmt *statement = NULL;
-	int code = sqlite3_prepare_v2(store->writing,
+	int code = sqlite3_prepare_v2(database,
 	                              "INSERT INTO meta VALUES('path', ?1) ON CONFLICT(name) DO UPDATE"
 	                              " SET value = excluded.value WHERE value <> excluded.value",
 	                              -1, &statement, NULL);
@@ -157,7 +159,7 @@ static cau_status note_path(struct cau_store *store, cau_error *error)
 	if (!code)
 		sqlite3_step(statement);
 	code = code ? code : sqlite3_finalize(statement);
-	return code ? cau_store_fault(store->writing, code, "the path", error) : CAU_OK;
+	return code ? cau_store_fault(database, code, "the path", error) : CAU_OK;
 }
 
 // Ids of sessions are LABEL-NAME: where the label ends must be plain, and ROS 2's names, which know
@@ -173,30 +175,32 @@ static cau_status check_new_label(const char *label, cau_error *error)
 // What both kinds of store want once it is open for writing.
 static cau_status prepare(struct cau_store *store, cau_error *error)
 {
+	sqlite3 *database = store->committer.database;
 	int64_t page_bytes = 0;
-	cau_status status = cau_store_migrate(store->writing, error);
+	cau_status status = cau_store_migrate(database, error);
 	if (!status)
 		status = settle_label(store, error);
 	if (!status)
 		status = note_path(store, error);
 	if (!status)
-		status = cau_store_integer(store->writing, "PRAGMA page_size", &page_bytes, error);
-	store->page_bytes = (size_t)page_bytes;
+		status = cau_store_integer(database, "PRAGMA page_size", &page_bytes, error);
+	store->committer.page_bytes = (size_t)page_bytes;
 	return status;
 }
 
 // Its connections share a database of the library's, which has no log to fold.
 static cau_status open_memory(struct cau_store *store, cau_error *error)
 {
-	sqlite3 **const further[] = {&store->reading, &store->answers};
+	struct cau_store_committer *committer = &store->committer;
+	sqlite3 **const further[] = {&store->reading.database, &store->answers.database};
 	// The budget keeps it below twice its bytes.
 	int64_t most = 2 * store->config.store_bytes;
 	snprintf(store->path, sizeof store->path, "file:/cautery-%p?vfs=memdb", (void *)store);
-	cau_status status = cau_store_memory_open(store->path, most, &store->writing, error);
+	cau_status status = cau_store_memory_open(store->path, most, &committer->database, error);
 	if (!status)
 		status = prepare(store, error);
 	if (!status)
-		status = cau_store_writer_init(&store->writer, store->writing, error);
+		status = cau_store_writer_init(&committer->writer, committer->database, error);
 	for (size_t i = 0; i < sizeof further / sizeof *further && !status; i++)
 		status = cau_store_memory_open(store->path, most, further[i], error);
 	return status;
@@ -205,6 +209,7 @@ static cau_status open_memory(struct cau_store *store, cau_error *error)
 // The lock is held: makes or checks the file, opens the connections, migrates.
 static cau_status open_database(struct cau_store *store, cau_error *error)
 {
+	struct cau_store_committer *committer = &store->committer;
 	enum cau_store_found found;
 	cau_status status = cau_store_lock_database(&store->lock, store->path, error);
 	if (!status)
@@ -217,21 +222,23 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 			status = cau_store_lock_database(&store->lock, store->path, error);
 	}
 	if (!status)
-		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->writing, error);
+		status =
+			cau_store_file_open(store->path, store->config.wal_bytes, &committer->database, error);
 	if (status)
 		return status;
-	sqlite3_wal_hook(store->writing, count_wal_pages, store);
+	sqlite3_wal_hook(committer->database, count_wal_pages, committer);
 	status = prepare(store, error);
 	// Best effort, so that the file alone tells its schema and a full disk does not prevent a
 	// start.
 	if (!status)
-		sqlite3_wal_checkpoint_v2(store->writing, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+		sqlite3_wal_checkpoint_v2(committer->database, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL,
+		                          NULL);
 	if (!status)
-		status = cau_store_writer_init(&store->writer, store->writing, error);
+		status = cau_store_writer_init(&committer->writer, committer->database, error);
 	if (!status)
-		status = cau_store_file_open_reader(store->path, &store->reading, error);
+		status = cau_store_file_open_reader(store->path, &store->reading.database, error);
 	if (!status)
-		status = cau_store_file_open_reader(store->path, &store->answers, error);
+		status = cau_store_file_open_reader(store->path, &store->answers.database, error);
 	if (!status)
 		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->folding, error);
 	return status;
@@ -247,11 +254,11 @@ static cau_status open_on_disk(struct cau_store *store, cau_error *error)
 
 static void close_database(struct cau_store *store)
 {
-	cau_store_writer_finish(&store->writer);
-	sqlite3_close(store->reading);
-	sqlite3_close(store->answers);
+	cau_store_writer_finish(&store->committer.writer);
+	sqlite3_close(store->reading.database);
+	sqlite3_close(store->answers.database);
 	sqlite3_close(store->folding);
-	sqlite3_close(store->writing); // the last connection folds the log and removes it
+	sqlite3_close(store->committer.database); // the last connection folds the log and removes it
 	cau_store_lock_release(&store->lock);
 }
 
@@ -260,22 +267,22 @@ static void init_locks(struct cau_store *store)
 	pthread_condattr_t monotonic;
 	pthread_condattr_init(&monotonic);
 	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-	pthread_cond_init(&store->work, &monotonic);
+	pthread_cond_init(&store->queue.work, &monotonic);
 	pthread_condattr_destroy(&monotonic);
-	pthread_cond_init(&store->answer, NULL);
-	pthread_mutex_init(&store->mutex, NULL);
-	pthread_mutex_init(&store->reading_mutex, NULL);
-	pthread_mutex_init(&store->answers_mutex, NULL);
+	pthread_cond_init(&store->queue.answer, NULL);
+	pthread_mutex_init(&store->queue.mutex, NULL);
+	pthread_mutex_init(&store->reading.mutex, NULL);
+	pthread_mutex_init(&store->answers.mutex, NULL);
 }
 
 static void destroy(struct cau_store *store)
 {
 	close_database(store);
-	pthread_cond_destroy(&store->work);
-	pthread_cond_destroy(&store->answer);
-	pthread_mutex_destroy(&store->mutex);
-	pthread_mutex_destroy(&store->reading_mutex);
-	pthread_mutex_destroy(&store->answers_mutex);
+	pthread_cond_destroy(&store->queue.work);
+	pthread_cond_destroy(&store->queue.answer);
+	pthread_mutex_destroy(&store->queue.mutex);
+	pthread_mutex_destroy(&store->reading.mutex);
+	pthread_mutex_destroy(&store->answers.mutex);
 	free(store);
 }
 
@@ -312,7 +319,8 @@ cau_status cau_store_open(const cau_store_config *config, cau_store **out, cau_e
 	status = config->memory ? open_memory(store, error) : open_on_disk(store, error);
 	store->config.path = store->path;
 	store->config.label = store->label;
-	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * store->config.retention_interval_ms;
+	store->committer.chore_due_s =
+		cau_store_monotonic_s() + 1e-3 * store->config.retention_interval_ms;
 	if (!status)
 		status = start_threads(store, error);
 	if (status)
@@ -326,10 +334,10 @@ void cau_store_close(cau_store *store)
 {
 	if (!store)
 		return;
-	pthread_mutex_lock(&store->mutex);
-	store->closing = true;
-	pthread_cond_signal(&store->work);
-	pthread_mutex_unlock(&store->mutex);
+	pthread_mutex_lock(&store->queue.mutex);
+	store->queue.closing = true;
+	pthread_cond_signal(&store->queue.work);
+	pthread_mutex_unlock(&store->queue.mutex);
 	pthread_join(store->thread, NULL);
 	if (!store->config.memory)
 		cau_store_folder_stop(&store->folder);
@@ -343,9 +351,10 @@ const char *cau_store_label(const cau_store *store)
 
 void cau_store_get_health(cau_store *store, cau_store_health *health)
 {
-	pthread_mutex_lock(&store->mutex);
+	struct cau_store_queue *queue = &store->queue;
+	pthread_mutex_lock(&queue->mutex);
 	health->state =
-		store->closing && store->state == CAU_STORE_READY ? CAU_STORE_CLOSING : store->state;
-	snprintf(health->reason, sizeof health->reason, "%s", store->reason);
-	pthread_mutex_unlock(&store->mutex);
+		queue->closing && queue->state == CAU_STORE_READY ? CAU_STORE_CLOSING : queue->state;
+	snprintf(health->reason, sizeof health->reason, "%s", queue->reason);
+	pthread_mutex_unlock(&queue->mutex);
 }

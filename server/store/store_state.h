@@ -16,6 +16,44 @@ enum {
 	GROUP_BYTES = 16 * 1000000, // a commit ends with the batch that reaches this
 };
 
+// A connection for reading, under the lock `mutex`.
+struct cau_store_reader {
+	pthread_mutex_t mutex;
+	sqlite3 *database;
+};
+
+// Commits, retention, and attempts while the disk is full; the store thread's alone. commit.c.
+struct cau_store_committer {
+	sqlite3 *database;
+	struct cau_store_writer writer;
+	size_t page_bytes;
+	int wal_pages;      // in the log after the last commit
+	double fold_due_s;  // monotonic: the log is not folded here before
+	double chore_due_s; // monotonic: next look for something to remove
+	struct cau_store_budget budget;
+	uint64_t unseen_bytes; // committed since retention's last look
+	double retry_due_s;    // monotonic: next attempt while full
+	uint64_t wanted_bytes; // free space that an attempt while full asks for
+};
+
+// Batches on their way to the disk, and the store's state and metrics, under the lock `mutex`. The
+// store thread alone changes `committing` and `state`, and reads both without the lock. queue.c.
+struct cau_store_queue {
+	pthread_mutex_t mutex;
+	pthread_cond_t work;                  // a batch, a flush, a close
+	pthread_cond_t answer;                // a batch was answered
+	struct cau_store_batch *first, *last; // waiting
+	struct cau_store_batch *committing;   // taken by the store thread, not yet answered
+	uint64_t submitted, answered;         // since open
+	int flushing;                         // callers inside cau_store_flush()
+	bool asked_to_move;                   // cau_store_moves(): not come round since
+	bool closing;
+	cau_store_state state; // READY, FULL or DAMAGED
+	char reason[320];
+	cau_store_metrics metrics; // its counters and histograms, queue_batches and queue_bytes
+	uint64_t answer_time[CAU_STORE_TIME_BUCKETS];
+};
+
 struct cau_store {
 	// Fixed after open.
 	cau_store_config config;
@@ -26,34 +64,8 @@ struct cau_store {
 	struct cau_store_folder folder;
 	sqlite3 *folding; // the folder's connection
 
-	// The store's thread alone.
-	sqlite3 *writing;
-	struct cau_store_writer writer;
-	size_t page_bytes;
-	int wal_pages;      // in the log after the last commit
-	double fold_due_s;  // monotonic: the log is not folded here before
-	double chore_due_s; // monotonic: next look for something to remove
-	struct cau_store_budget budget;
-	uint64_t unseen_bytes; // committed since retention's last look
-	double retry_due_s;    // monotonic: next attempt while full
-	uint64_t wanted_bytes; // free space that an attempt while full asks for
-
-	pthread_mutex_t reading_mutex; // guards reading
-	sqlite3 *reading;
-	pthread_mutex_t answers_mutex; // guards answers
-	sqlite3 *answers;              // whoever looks for one waits for no long reading
-
-	pthread_mutex_t mutex;                // guards all that follows
-	pthread_cond_t work;                  // a batch, a flush, a close
-	pthread_cond_t answer;                // a batch was answered
-	struct cau_store_batch *first, *last; // waiting
-	struct cau_store_batch *committing;   // taken by the thread, not yet answered
-	uint64_t submitted, answered;         // since open
-	int flushing;                         // callers inside cau_store_flush()
-	bool asked_to_move;                   // cau_store_moves(): not come round since
-	bool closing;
-	cau_store_state state; // READY, FULL or DAMAGED
-	char reason[320];
-	cau_store_metrics metrics; // its counters and histograms, queue_batches and queue_bytes
-	uint64_t answer_time[CAU_STORE_TIME_BUCKETS];
+	struct cau_store_committer committer;
+	struct cau_store_reader reading;
+	struct cau_store_reader answers; // looking for an answer never waits for a long reading
+	struct cau_store_queue queue;
 };
