@@ -165,13 +165,13 @@ void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 // Energy at x, J, friction's included; the gradient is kept.
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x);
 
-// Finds the pairs for x (m, n x 3) and for any motion of `count` vertices by at most way_m. False: they
-// exceed the capacity. Not while a step is filtered.
+// Finds the pairs for x (m, n x 3) and for any motion of `count` vertices by at most way_m. False:
+// they exceed the capacity. Not while a step is filtered.
 bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
                           const int32_t *vertex, int32_t count, double way_m);
 
-// Energy of one pair at x, J, its slope (N) and its curvature (N/m). All are 0 where the pair is apart;
-// then *gap may be left as it is.
+// Energy of one pair at x, J, its slope (N) and its curvature (N/m). All are 0 where the pair is
+// apart; then *gap may be left as it is.
 double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
                          double *slope, double *curvature);
 // Energy of one grip at x, J. Its force is -*present (N/m) times *slip (m).

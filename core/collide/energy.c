@@ -120,8 +120,8 @@ static void unload(cau_collide *collide)
 	collide->loaded_count = 0;
 }
 
-// Elastic up to the most that friction bears, and of that force beyond. The force is `present` times
-// the slip.
+// Elastic up to the most that friction bears, and of that force beyond. The force is `present`
+// times the slip.
 double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip, const double *x,
                         cau_vec3 *slip, double *present)
 {

@@ -15,6 +15,9 @@ static const double SETTLED = 0.1, SETTLED_M = 5e-8;
 static const double SETTLED_EXACTLY_M = 1e-12; // where a step has no accuracy to reach: rounding
 // A motion that is none, m: it may be off by half a micrometre, which is 1 % of this.
 static const double NOTHING_M = 5e-5;
+// With tissue contact a vertex moves at most as far while R settles once as the fastest one of R
+// has moved in the tick, within these bounds, m. Pairs have to be searched that far.
+static const double LEAST_WAY_M = 1e-4, MOST_WAY_M = 1e-3;
 // Newton's steps of R in one iteration, and of the part that still moves after each. A tab that
 // comes free and buckles takes up to 25.
 enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
@@ -127,8 +130,8 @@ static bool take_step(cau_newton *newton, cau_step_solver *solver)
 	return false;
 }
 
-// Shortens a row's step to `most`, m, and where other tissue is to CAU_SETTLED_WAY_M from where the
-// settling began.
+// Shortens a row's step to `most`, m, and with tissue contact to way_m from where the settling
+// began.
 static void keep_within(const cau_step_solver *solver, double *way, int32_t vertex, double most)
 {
 	double length = sqrt(length2(way)), whole[3];
@@ -140,7 +143,7 @@ static void keep_within(const cau_step_solver *solver, double *way, int32_t vert
 	const double *from = solver->position_before + 3 * (int64_t)vertex;
 	for (int c = 0; c < 3; c++)
 		whole[c] = x[c] + way[c] - from[c];
-	double share = CAU_SETTLED_WAY_M / sqrt(length2(whole));
+	double share = solver->loose.way_m / sqrt(length2(whole));
 	for (int c = 0; c < 3 && share < 1; c++)
 		way[c] = from[c] + share * whole[c] - x[c];
 }
@@ -218,13 +221,29 @@ static double left_to_do(const cau_step_solver *solver)
 	return sqrt(last / region->n) / fmax(motion_of(solver), NOTHING_M);
 }
 
+// Longest motion of a vertex of R since the tick began, m.
+static double longest_motion(const cau_step_solver *solver)
+{
+	const cau_newton *region = &solver->loose.region;
+	double most2 = 0;
+	for (int32_t i = 0; i < region->n && solver->position_start; i++) {
+		size_t at = 3 * (size_t)region->vertex[i];
+		cau_vec3 from = cau_vec3_of(solver->position_start + at);
+		cau_vec3 way = cau_sub(cau_vec3_of(solver->position + at), from);
+		most2 = fmax(most2, cau_dot(way, way));
+	}
+	return sqrt(most2);
+}
+
 // Has the pairs of tissue contact be known as far as R may move. False: they exceed the capacity.
 static bool surround(cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
-	return !solver->collide ||
-	       cau_collide_surround(solver->collide, solver->pool, solver->position, region->vertex,
-	                            region->n, CAU_SETTLED_WAY_M);
+	if (!solver->collide)
+		return true;
+	solver->loose.way_m = fmin(fmax(longest_motion(solver), LEAST_WAY_M), MOST_WAY_M);
+	return cau_collide_surround(solver->collide, solver->pool, solver->position, region->vertex,
+	                            region->n, solver->loose.way_m);
 }
 
 static outcome settle(cau_step_solver *solver)
@@ -270,8 +289,8 @@ static bool has_moved(const cau_step_solver *solver)
 	return false;
 }
 
-// R has come from position_before: as far as it crosses no other tissue. Keeps trial_increment. Returns
-// whether it had to be stopped.
+// R has come from position_before: as far as it crosses no other tissue. Keeps trial_increment.
+// Returns whether it had to be stopped.
 static bool keep_apart(cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;

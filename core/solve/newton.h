@@ -48,10 +48,6 @@ enum {
 	CAU_NEWTON_WORK = 24000,
 };
 
-// How far R's vertices may move while they are settled once, m, in scenes with tissue contact. Pairs
-// are known that far.
-static const double CAU_SETTLED_WAY_M = 3e-4;
-
 // A slot of a share of the local step.
 typedef struct cau_newton_element {
 	int32_t work, slot;
@@ -84,7 +80,7 @@ typedef struct cau_newton {
 	int32_t element_count, coupling_count;
 	cau_newton_element *element; // those with a vertex in R
 	cau_newton_coupling *coupling;
-	int32_t *pair, *grip;      // of tissue contact, with a vertex in R
+	int32_t *pair, *grip; // of tissue contact, with a vertex in R
 	int32_t pair_count, pair_room, grip_count, grip_room;
 	double *room;    // m, (n): how far each may move in a step; INFINITY: it touches nothing
 	double energy;   // J: R's share of E, all elements with a vertex in it, its inertia and drag
@@ -105,6 +101,7 @@ typedef struct cau_loose {
 	double left;    // else how far the last step moved it, relative to its motion in the tick
 	bool fresh;     // H is factored where R is
 	bool given_up;  // in this step: R is left to A
+	double way_m;   // with tissue contact: how far R's vertices may move while R settles once
 	double still_m; // R is settled once no vertex moves farther in a step of Newton's method
 } cau_loose;
 
@@ -127,8 +124,8 @@ void cau_newton_finish(cau_newton *newton);
 // memory.
 bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver);
 void cau_newton_measure(cau_newton *newton, const cau_step_solver *solver);
-// newton_touch.c: lists the pairs and grips of tissue contact that have a row: those of `from`, NULL:
-// all. False: no memory.
+// newton_touch.c: lists the pairs and grips of tissue contact that have a row: those of `from`,
+// NULL: all. False: no memory.
 bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
                               const cau_newton *from);
 // Adds their energy, gradient and stiffness, and finds `room`.

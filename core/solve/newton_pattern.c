@@ -266,12 +266,11 @@ bool cau_newton_create(cau_newton *newton, const cau_step_solver *solver, const 
 
 void cau_newton_finish(cau_newton *newton)
 {
-	void *arrays[] = {newton->chosen,  newton->place, newton->vertex,   newton->first,
-	                  newton->row,     newton->block, newton->pivot,    newton->inverse,
-	                  newton->column,  newton->field, newton->gradient, newton->from,
-	                  newton->next,    newton->head,  newton->at,       newton->element,
-	                  newton->pair,    newton->grip,  newton->room,
-	                  newton->coupling};
+	void *arrays[] = {newton->chosen, newton->place, newton->vertex,   newton->first,
+	                  newton->row,    newton->block, newton->pivot,    newton->inverse,
+	                  newton->column, newton->field, newton->gradient, newton->from,
+	                  newton->next,   newton->head,  newton->at,       newton->element,
+	                  newton->pair,   newton->grip,  newton->room,     newton->coupling};
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
 		free(arrays[i]);
 	*newton = (cau_newton){0};

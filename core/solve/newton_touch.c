@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue contact of a region: the energy of its pairs and grips, their force, and their stiffness. And
-// how far each vertex may move in one of Newton's steps, so that no pair crosses.
+// Tissue contact of a region: the energy of its pairs and grips, their force, and their stiffness.
+// And how far each vertex may move in one of Newton's steps, so that no pair crosses.
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,8 +8,8 @@
 #include "solve/newton.h"
 #include "solve/solver.h"
 
-// In one step of Newton's method a vertex that touches moves at most this share of the gap. Both parts
-// of a pair may move, so one step does not close the gap.
+// In one step of Newton's method a vertex that touches moves at most this share of the gap. Both
+// parts of a pair may move, so one step does not close the gap.
 static const double ROOM_SHARE = 0.45;
 
 static bool has_row(const cau_newton *newton, const int32_t vertex[4])
@@ -31,13 +31,13 @@ static bool add_to(int32_t **list, int32_t *count, int32_t *room, int32_t item)
 	return true;
 }
 
-// Pairs that can touch where no vertex is farther than CAU_SETTLED_WAY_M from where it is now.
-static bool find_pairs(cau_newton *newton, const cau_collide *collide)
+// Pairs that can touch where no vertex is farther than way_m from where it is now.
+static bool find_pairs(cau_newton *newton, const cau_collide *collide, double way_m)
 {
 	for (int32_t k = 0; k < collide->pair_count; k++) {
 		const cau_collide_pair *pair = &collide->pair[k];
 		if (has_row(newton, pair->vertex) && !cau_collide_is_exempt(collide, pair) &&
-		    !cau_collide_is_far(collide, k, collide->away_m + CAU_SETTLED_WAY_M, pair->thickness_m) &&
+		    !cau_collide_is_far(collide, k, collide->away_m + way_m, pair->thickness_m) &&
 		    !add_to(&newton->pair, &newton->pair_count, &newton->pair_room, k))
 			return false;
 	}
@@ -61,7 +61,7 @@ bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
 	if (!collide)
 		return true;
 	if (!from)
-		return find_pairs(newton, collide) && find_grips(newton, collide);
+		return find_pairs(newton, collide, solver->loose.way_m) && find_grips(newton, collide);
 	for (int32_t k = 0; k < from->pair_count; k++)
 		if (has_row(newton, collide->pair[from->pair[k]].vertex) &&
 		    !add_to(&newton->pair, &newton->pair_count, &newton->pair_room, from->pair[k]))

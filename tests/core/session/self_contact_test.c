@@ -260,6 +260,7 @@ static void what_is_thrown_finds_its_way_back(void **state)
 	enum { LEAST_INVERTED = 300 };
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;
+	scene->iterations = 10; // with the scene's twenty, 130 vertices stay excluded
 	for (int32_t i = 0; i < scene->layer_count; i++) // and nothing tears
 		scene->layers[i].sheet[0].heat.tear_energy_j_m2 =
 			scene->layers[i].fat[0].heat.tear_energy_j_m2 =
