@@ -253,6 +253,26 @@ double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *
 	return energy;
 }
 
+bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
+                          const int32_t *vertex, int32_t count, double way_m)
+{
+	memset(collide->step, 0, 3 * (size_t)collide->tissue->vertex_count * sizeof *collide->step);
+	for (int32_t i = 0; i < count; i++) {
+		collide->step[3 * (size_t)vertex[i]] = way_m;
+		collide->pushed[vertex[i]] = 1;
+	}
+	bool all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
+	if (!all) {
+		cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
+		cau_collide_see(collide, pool, x);
+		cau_collide_evaluate(collide, pool, x); // the pairs are others: cau_collide_apply
+		all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
+	}
+	for (int32_t i = 0; i < count; i++)
+		collide->pushed[vertex[i]] = 0;
+	return all;
+}
+
 // stiffness * normal (normal . way) and, across the normal, across * the rest of the way
 static void apply(cau_collide *collide, const int32_t vertex[4], const double weight[4],
                   cau_vec3 normal, double stiffness, double across)

@@ -147,26 +147,6 @@ bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide
 	return true;
 }
 
-bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
-                          const int32_t *vertex, int32_t count, double way_m)
-{
-	memset(collide->step, 0, 3 * (size_t)collide->tissue->vertex_count * sizeof *collide->step);
-	for (int32_t i = 0; i < count; i++) {
-		collide->step[3 * (size_t)vertex[i]] = way_m / room_of_step;
-		collide->pushed[vertex[i]] = 1;
-	}
-	bool all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
-	if (!all) {
-		cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
-		cau_collide_see(collide, pool, x);
-		cau_collide_evaluate(collide, pool, x); // the pairs are others: cau_collide_apply
-		all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
-	}
-	for (int32_t i = 0; i < count; i++)
-		collide->pushed[vertex[i]] = 0;
-	return all;
-}
-
 bool cau_collide_covers_pushed(const cau_collide *collide, const double *x)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;

@@ -205,10 +205,12 @@ static void end_solve_stages(cau_session *session)
 static cau_status move(cau_session *session, cau_status status, cau_error *error)
 {
 	for (int32_t k = 0; k < session->substep.count; k++) {
-		if (k)
+		if (k) {
 			cau_session_next_substep(session);
-		else
+			cau_session_lead_tools_on(session); // tool_motion.c
+		} else {
 			cau_solver_take_strain(&session->solver, 1);
+		}
 		cau_session_predict(session);       // eq. 4: motion.c
 		cau_session_lead_driven(session);   // drive.c
 		cau_session_begin_collide(session); // meet.c
@@ -223,6 +225,8 @@ static cau_status move(cau_session *session, cau_status status, cau_error *error
 			break;
 	}
 	cau_session_end_substeps(session);
+	if (session->substep.index)
+		cau_session_keep_tick_poses(session); // tool_motion.c
 	return status;
 }
 

@@ -214,7 +214,6 @@ void cau_session_next_substep(cau_session *session)
 	substep->index = 1;
 	substep->part = 1 - CAU_SDIRK2_GAMMA;
 	substep->length_s = substep->part * session->solver.step_s;
-	cau_session_lead_tools_on(session); // tool_motion.c
 }
 
 void cau_session_predict_on(cau_session *session)
@@ -254,7 +253,6 @@ void cau_session_end_substeps(cau_session *session)
 	session->collide.start_energy_j = substep->touching_j;
 	memcpy(session->position_start, substep->tick_start,
 	       3 * (size_t)session->tissue.vertex_count * sizeof(double));
-	cau_session_keep_tick_poses(session); // tool_motion.c
 	if (!substep->disturbed)
 		cau_session_keep_momentum(session); // spin.c
 	// tick_start has served: it keeps base from here on

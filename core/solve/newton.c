@@ -281,11 +281,10 @@ static void give_up(cau_step_solver *solver, double *objective)
 static bool has_moved(const cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
-	for (int32_t i = 0; i < region->n; i++) {
-		size_t at = 3 * (size_t)region->vertex[i];
-		if (memcmp(solver->position + at, solver->position_before + at, 3 * sizeof(double)) != 0)
-			return true;
-	}
+	for (int32_t i = 0; i < region->n; i++)
+		for (size_t at = 3 * (size_t)region->vertex[i], c = at; c < at + 3; c++)
+			if (solver->position[c] != solver->position_before[c])
+				return true;
 	return false;
 }
 

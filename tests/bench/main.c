@@ -180,20 +180,82 @@ static void print_machine(const bench_options *options, const bench_steps_result
 	               : bench_machine_write)(stdout, &machine, result->instruction_set, &disturbance);
 }
 
+typedef struct results {
+	bench_steps_result steps;
+	bench_limit_result limit;
+	bench_cut_result cut;
+	bench_error_result error;
+	bench_accuracy_result accuracy;
+	bench_along_result along;
+	bench_scaling_result scaling;
+	bench_update_result update;
+	bench_remesh_result remesh;
+	bench_classroom_result classroom;
+} results;
+
+static bool wants_accuracy(const bench_options *options)
+{
+	return options->accuracy > 0 || options->rest;
+}
+
+static bool wants_along(const bench_options *options)
+{
+	return options->accuracy > 0 && options->cut;
+}
+
+// Returns 0, or 1 after a line on standard error.
+static int measure(const bench_options *options, results *of)
+{
+	return bench_steps(options, &of->steps) || bench_limit(options, &of->limit) ||
+	       (options->cut && bench_cut(options, &of->cut)) ||
+	       (options->error && bench_error(options, &of->error)) ||
+	       (wants_accuracy(options) && bench_accuracy(options, &of->accuracy)) ||
+	       (wants_along(options) && bench_along(options, &of->along)) ||
+	       (options->scaling && bench_scaling(options, &of->scaling)) ||
+	       (options->update && bench_update(options, &of->update)) ||
+	       (options->remesh && bench_remesh(options, &of->remesh)) ||
+	       (options->classroom && bench_classroom(options, &of->classroom));
+}
+
+// Whether a part was measured; separates it from the part before.
+static bool has_part(const bench_options *options, bool measured)
+{
+	fputs(measured && options->json ? "," : "", stdout);
+	return measured;
+}
+
+static void print(const bench_options *options, const results *of)
+{
+	if (options->json)
+		printf("{\"scene\":\"%s\",\"threads\":%d,\"iterations\":%d,", options->scene,
+		       options->threads, options->iterations);
+	print_steps(options, &of->steps);
+	fputs(options->json ? "," : "", stdout);
+	print_limit(options, &of->limit);
+	if (has_part(options, options->cut))
+		print_cut(options, &of->cut);
+	if (has_part(options, options->error))
+		print_error(options, &of->error);
+	if (has_part(options, wants_accuracy(options)))
+		print_accuracy(options, &of->accuracy);
+	if (has_part(options, wants_along(options)))
+		print_along(options, &of->along);
+	if (has_part(options, options->scaling))
+		print_scaling(options, &of->scaling);
+	if (has_part(options, options->update))
+		print_update(options, &of->update);
+	if (has_part(options, options->remesh))
+		print_remesh(options, &of->remesh);
+	if (has_part(options, options->classroom))
+		print_classroom(options, &of->classroom);
+	fputs(options->json ? "," : "", stdout);
+}
+
 int main(int argc, char **argv)
 {
 	bench_options options;
 	bench_cpu_time before;
-	bench_steps_result steps;
-	bench_cut_result cut = {0};
-	bench_error_result error = {0};
-	bench_scaling_result scaling = {0};
-	bench_limit_result limit;
-	bench_accuracy_result accuracy = {0};
-	bench_along_result along = {0};
-	bench_update_result update = {0};
-	bench_remesh_result remesh = {0};
-	bench_classroom_result classroom = {0};
+	results of = {0};
 	if (!bench_options_read(argc, argv, &options, stderr))
 		return 2;
 	if (options.help) {
@@ -201,56 +263,10 @@ int main(int argc, char **argv)
 		return 0;
 	}
 	bench_cpu_time_read("", &before);
-	if (bench_steps(&options, &steps) || bench_limit(&options, &limit) ||
-	    (options.cut && bench_cut(&options, &cut)) ||
-	    (options.error && bench_error(&options, &error)) ||
-	    ((options.accuracy > 0 || options.rest) && bench_accuracy(&options, &accuracy)) ||
-	    (options.accuracy > 0 && options.cut && bench_along(&options, &along)) ||
-	    (options.scaling && bench_scaling(&options, &scaling)) ||
-	    (options.update && bench_update(&options, &update)) ||
-	    (options.remesh && bench_remesh(&options, &remesh)) ||
-	    (options.classroom && bench_classroom(&options, &classroom)))
+	if (measure(&options, &of))
 		return 1;
-	if (options.json)
-		printf("{\"scene\":\"%s\",\"threads\":%d,\"iterations\":%d,", options.scene,
-		       options.threads, options.iterations);
-	print_steps(&options, &steps);
-	fputs(options.json ? "," : "", stdout);
-	print_limit(&options, &limit);
-	if (options.cut) {
-		fputs(options.json ? "," : "", stdout);
-		print_cut(&options, &cut);
-	}
-	if (options.error) {
-		fputs(options.json ? "," : "", stdout);
-		print_error(&options, &error);
-	}
-	if (options.accuracy > 0 || options.rest) {
-		fputs(options.json ? "," : "", stdout);
-		print_accuracy(&options, &accuracy);
-	}
-	if (options.accuracy > 0 && options.cut) {
-		fputs(options.json ? "," : "", stdout);
-		print_along(&options, &along);
-	}
-	if (options.scaling) {
-		fputs(options.json ? "," : "", stdout);
-		print_scaling(&options, &scaling);
-	}
-	if (options.update) {
-		fputs(options.json ? "," : "", stdout);
-		print_update(&options, &update);
-	}
-	if (options.remesh) {
-		fputs(options.json ? "," : "", stdout);
-		print_remesh(&options, &remesh);
-	}
-	if (options.classroom) {
-		fputs(options.json ? "," : "", stdout);
-		print_classroom(&options, &classroom);
-	}
-	fputs(options.json ? "," : "", stdout);
-	print_machine(&options, &steps, &before);
+	print(&options, &of);
+	print_machine(&options, &of.steps, &before);
 	puts(options.json ? "}" : "");
 	return 0;
 }

@@ -249,7 +249,7 @@ bool carry_piece(cau_wire_move_received *received)
 	t.last_bytes = bytes;
 	memcpy(t.last, piece, bytes);
 	memcpy(t.seal, piece + bytes - CAU_SEAL_BYTES, CAU_SEAL_BYTES);
-	assert_int_equal(ASK(target, RECEIVE, .piece = piece, .piece_bytes = bytes), CAU_OK);
+	assert_int_equal(ASK_WITH(target, RECEIVE, .piece = piece, .piece_bytes = bytes), CAU_OK);
 	*received = (cau_wire_move_received){0};
 	read_result(CAU_METHOD_MOVE_RECEIVE, received);
 	return true;

@@ -70,8 +70,9 @@ cau_status make_session(side *s, const char *name);
 // Asks about the move, and does not wait for the answer.
 void send_request(side *s, cau_move_asked asked, cau_method method, answer *a);
 cau_status ask(side *s, cau_move_asked asked, cau_method method);
-#define ASK(side, NAME, ...)                                                                       \
+#define ASK_WITH(side, NAME, ...)                                                                  \
 	ask(&t.side, (cau_move_asked){.what = CAU_MOVE_##NAME, __VA_ARGS__}, CAU_METHOD_MOVE_##NAME)
+#define ASK(side, NAME) ASK_WITH(side, NAME, .piece = NULL)
 
 void read_result(cau_method method, void *result);
 bool serves(side *s, const char *id);
