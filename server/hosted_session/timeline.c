@@ -74,7 +74,7 @@ void cau_timeline_add(cau_hosted_timeline *timeline, int kind, const char *tool,
 		event_at(timeline, *open)->count += count;
 		return;
 	}
-	if (!open)
+	if (kind != CAU_EVENT_CUT && kind != CAU_EVENT_TEAR)
 		cau_timeline_end_cuts(timeline);
 	cau_wire_timeline_event *event = &timeline->events[timeline->count++ % EVENT_COUNT];
 	*event = (cau_wire_timeline_event){.tick = (int64_t)timeline->core->tick,
