@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
@@ -69,12 +70,14 @@ void cau_timeline_settle(cau_hosted_timeline *timeline)
 void cau_timeline_add(cau_hosted_timeline *timeline, int kind, const char *tool, const char *client,
                       int64_t count, const char *detail)
 {
+	CAU_ASSERT(timeline != NULL && timeline->core != NULL, "an event of kind %d without a session",
+	           kind);
 	uint64_t *open = open_of(timeline, kind);
 	if (open && *open) {
 		event_at(timeline, *open)->count += count;
 		return;
 	}
-	if (kind != CAU_EVENT_CUT && kind != CAU_EVENT_TEAR)
+	if (!open)
 		cau_timeline_end_cuts(timeline);
 	cau_wire_timeline_event *event = &timeline->events[timeline->count++ % EVENT_COUNT];
 	*event = (cau_wire_timeline_event){.tick = (int64_t)timeline->core->tick,
