@@ -30,7 +30,7 @@ static double potential(double stiffness, double thickness, double distance, dou
 }
 
 // A direction that keeps the parts further apart than the thickness spares the search for the
-// nearest places: by more than rounding, so that who has no such direction comes to the same.
+// nearest places: by more than rounding, so the result is the same without such a direction.
 static const double surely = 1 + 1e-9;
 
 double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
@@ -262,11 +262,13 @@ bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
 		collide->pushed[vertex[i]] = 1;
 	}
 	bool all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
+	int32_t cut_short = collide->cut_short_count;
 	if (!all) {
 		cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
 		cau_collide_see(collide, pool, x);
 		cau_collide_evaluate(collide, pool, x); // the pairs are others: cau_collide_apply
 		all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
+		collide->cut_short_count = cut_short; // no step is shortened for this
 	}
 	for (int32_t i = 0; i < count; i++)
 		collide->pushed[vertex[i]] = 0;

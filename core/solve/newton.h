@@ -20,8 +20,8 @@
 // Where tissue touches tissue, E has the energy of the pairs and grips of R (newton_touch.c). A
 // vertex that touches moves by less than half of the gap in a step of Newton's method. The settled
 // positions are filtered as every step is (apart.c), so nothing crosses. In a tick in which tissue
-// is inside out, thrown or crossed, R is empty: only A's steps, which lag, were seen to lead such
-// tissue back.
+// is inverted, diverges or crosses other tissue, R is empty. Such tissue was seen to come back by
+// A's steps, and not by Newton's.
 //
 // H has a block of 3 x 3 for each pair of vertices. A negative eigenvalue of an element's part is
 // replaced by its size, or by 0 if the last step was too short [Chen, Xu and Jacobson 2024]. A tab

@@ -52,7 +52,7 @@ struct cau_step_solver {
 	bool diagonal;      // CAU_SOLVER_DIAGONAL
 	bool conservative;  // every law is the gradient of an energy
 	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are taken for loose
-	bool none_loose;    // in this tick: tissue is inside out, thrown or crossed (exempt.c)
+	bool none_loose;    // in this tick: tissue is inverted, diverges or crosses (exempt.c)
 	int32_t iterations; // at most
 	double tolerance;
 	double step_s;    // one tick

@@ -9,7 +9,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// What a step takes until the first is measured, s for each vertex: of 250,000 in a sheet 0.12 s.
+// Time of a step, s for each vertex, until the first is measured: 0.12 s for a sheet of 250,000.
 #define STEPPED_VERTEX_S 5e-7
 
 // ---- the job

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slice's batch on its way to the disk, and what follows its commit: answers, or what is lost. A
+// A slice's batch on its way to the disk, and what follows its commit: answers, or a loss. A
 // request that is sent again gets the stored answer.
 #include <stdlib.h>
 
@@ -11,8 +11,9 @@
 typedef struct commit {
 	cau_hosted *hosted;
 	cau_pending *pending;
-	uint64_t from_tick; // what is lost if it fails
+	uint64_t from_tick; // if it fails, the log is lost from here on
 	bool making;        // the session's first rows: without them there is no session
+	bool made;          // and the answer to its creator
 } commit;
 
 static cau_pending *reversed(cau_pending *list)
@@ -72,6 +73,8 @@ static void committed(void *user, cau_status status, const char *reason)
 		if (done->making)
 			end_making(done->hosted, status, reason);
 	}
+	if (done->made && !status) // before its creator knows, who may ask for it at once
+		done->hosted->creation.unanswered = false;
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {
 		cau_decide(done->hosted,
@@ -105,7 +108,9 @@ void cau_record_commit(cau_hosted *h)
 	if (!status) {
 		uint64_t from = h->record.batch_tick < h->record.batch_lost ? h->record.batch_tick
 		                                                            : h->record.batch_lost;
-		*travelling = (commit){cau_hosted_share(h), pending, from, is_being_made(&h->creation)};
+		bool making = is_being_made(&h->creation);
+		*travelling =
+			(commit){cau_hosted_share(h), pending, from, making, making && !h->creation.starting};
 		atomic_fetch_add(&h->commits.under_way, 1);
 		status = cau_store_submit(h->identity.around->store, h->record.batch, committed, travelling,
 		                          &error);

@@ -37,7 +37,7 @@ void cau_decisions_finish(cau_hosted_decisions *decisions);
 void cau_decisions_open_trace(cau_hosted_decisions *decisions, const cau_hosted_identity *identity);
 void cau_decisions_flush_trace(cau_hosted_decisions *decisions, const char *id); // after a slice
 
-// ---- what is decided, as any thread may read it
+// ---- decisions, as any thread may read them
 
 // CAU_SESSION_*. Any thread whose event breaks a safety rule makes it CAU_SESSION_FAULTED.
 int cau_decisions_state(cau_hosted_decisions *decisions);
@@ -56,7 +56,7 @@ bool cau_decisions_broken(cau_hosted_decisions *decisions, char *reason, size_t 
 // ---- effects.c: events of any thread, and the worker's next act. These may wake the session,
 // answer orders and notify clients, so they take all of it.
 
-// Takes one event, and does what it leads to but for what is the worker's.
+// Takes one event, and carries out its effects, except those of the worker.
 void cau_decide(cau_hosted *h, const cau_logic_event *event);
 // The same for an order, which is taken on CAU_OK.
 cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *asked,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clients are told of drivers and energy, and of motion that was refused.
+// Notices to clients: drivers, energy, and refused motion.
 #include <string.h>
 
 #include "hosted_session/answer.h"

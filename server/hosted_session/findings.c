@@ -143,8 +143,8 @@ void cau_hosted_fault(cau_hosted *h, const cau_error *error)
 	cau_hosted_tell_fault(h, error);
 }
 
-// The core would heat a tool that is not on by the machine's books. Nobody can say how that came
-// about, so nothing of it goes on: all tools go dark, and the session is faulted, alone.
+// The core would heat a tool whose energy the state machine has off. The cause is not known, so all
+// energy goes off, and this session alone is faulted.
 void cau_fault_stop_unsound(cau_hosted *h)
 {
 	cau_error error = {0};

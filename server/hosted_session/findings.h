@@ -16,13 +16,13 @@ typedef struct cau_hosted_findings {
 
 // Takes what the core has cut, and its vessels, as reported: after a replay or a rewind.
 void cau_findings_know(cau_hosted_findings *findings, const cau_session *core);
-// Reports what a step did: cuts, tears, vessels, layers, refused commands.
+// Reports the findings of a step: cuts, tears, vessels, layers, refused commands.
 void cau_findings_note(cau_hosted *h, const cau_frame *frame);
 
 // Numerical trouble outside a step. The session is faulted; all clients are notified.
 void cau_hosted_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);
-// The core would heat decisions.odd_tool, which has no energy on by the machine's books.
+// The core would heat decisions.odd_tool, whose energy the state machine has off.
 void cau_fault_stop_unsound(cau_hosted *h);
 // Reports a safety rule of the decisions that was broken, once.
 void cau_fault_report_broken_rule(cau_hosted *h);

@@ -33,7 +33,7 @@ struct cau_hosted {
 	cau_hosted_record record;
 	cau_replay replay;
 
-	// of that thread too, but for what is atomic or under a lock of theirs
+	// of that thread too, except members that are atomic or under their own lock
 	cau_hosted_creation creation;
 	cau_hosted_suspension suspension;
 	cau_hosted_frames frames;

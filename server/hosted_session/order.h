@@ -49,7 +49,7 @@ typedef enum cau_order_kind { CAU_ORDER_TABLE(KIND, KIND) CAU_ORDER_COUNT } cau_
 
 typedef struct cau_tool_order {
 	char tool[CAU_NAME_BYTES];
-	uint32_t to; // HAND_OVER: this client; 0: nobody
+	uint32_t to; // HAND_OVER: to this client; 0: to none
 	char to_name[65];
 	double to_deadline_s;
 	cau_role to_role;

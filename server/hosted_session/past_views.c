@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nobody is rewound and no worker waits: a second core (past_core.c) goes there on the builder, in
-// turns. A session has one such core, and views wait for it in line, one for each client: a client
-// that asks again gives up the one before. Between turns a view is given up whose client cancelled,
-// is gone, or has no session any more.
+// A view of the past rewinds no session, and no worker waits for it: a second core (past_core.c)
+// goes there on the builder, in turns. A session has one such core, and views wait for it in line,
+// one for each client: a client that asks again gives up the one before. Between turns a view is
+// given up whose client cancelled, is gone, or has no session any more.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -202,7 +202,7 @@ static void advance(cau_past_views *views)
 static void let_go(cau_past_views *views)
 {
 	cau_hosted *h = views->hosted;
-	cau_worker_pool_wake(h->identity.around->pool, &h->task); // to learn when the core is to go
+	cau_worker_pool_wake(h->identity.around->pool, &h->task); // it frees the core in time
 	cau_hosted_release(h);
 }
 

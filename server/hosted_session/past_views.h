@@ -16,7 +16,7 @@ typedef struct cau_past_views {
 	cau_order *present; // what the core is after; NULL: nothing
 	bool busy;          // with the builder
 	bool given_up;      // the present one
-	bool tired;         // the core is to go
+	bool tired;         // the core shall be freed
 	double idle_since_s;
 
 	cau_past_core core; // the builder's while busy, like the stage
@@ -24,9 +24,9 @@ typedef struct cau_past_views {
 } cau_past_views;
 
 void cau_past_views_init(cau_past_views *views, cau_hosted *hosted);
-// Gives up what a client waits for. Any thread.
+// Drops the requests of a client. Any thread.
 void cau_past_views_give_up(cau_past_views *views, uint32_t client);
-// When a core that shows nothing is to go; INFINITY: never, as things are.
+// When a core without requests shall be freed; INFINITY: no time is set.
 double cau_past_views_due_s(cau_past_views *views);
 // Has the builder free the core, if it is time.
 void cau_past_views_tire(cau_past_views *views, double now_s);

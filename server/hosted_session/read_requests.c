@@ -65,7 +65,7 @@ static bool border_is_near(cau_hosted *h)
 
 cau_status cau_reads_submit(cau_hosted *h, cau_order *order, cau_error *error)
 {
-	if (!order->reply.answer) { // nobody would hear the answer
+	if (!order->reply.answer) { // the asker is gone
 		free(order);
 		return CAU_OK;
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session gives to the store: one batch a slice, and answers after its commit. The record
+// The session's side of the store: one batch a slice, and answers after its commit. The record
 // belongs to the thread that has the session; what any thread may see of the commits is apart.
 #pragma once
 

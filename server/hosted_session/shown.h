@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a core shows of its tick, as streams carry it.
+// The frame, tools and statistics of a core's tick, as streams carry them.
 #pragma once
 
 #include "cautery/session.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slice of a session on a worker: what it does, and how it ends.
+// A slice of a session on a worker: its steps, and its end.
 #pragma once
 
 #include "cautery/session.h"

@@ -18,9 +18,9 @@ typedef struct cau_hosted_suspension {
 	cau_order *cancelling; // lock: session.destroy that came meanwhile
 
 	cau_order *destroyers; // of those the ones that are no resends, in their order
-	cau_job *job; // what the builder is to do with it once this slice has ended; NULL: nothing
-	cau_holding *holding; // it is suspended to be moved; NULL: it is not
-	char stage[32];       // what the builder does with it; else ""
+	cau_job *job;          // the builder's, once this slice has ended; NULL: none
+	cau_holding *holding;  // it is suspended to be moved; NULL: it is not
+	char stage[32];        // what the builder does with it; else ""
 } cau_hosted_suspension;
 
 // Lets the builder have a session whose slice has ended, for suspension.job. From here on it is the

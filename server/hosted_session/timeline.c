@@ -29,8 +29,8 @@ static void publish(cau_hosted_timeline *timeline, const cau_wire_timeline_event
 }
 
 // ---- cuts and tears -----------------------------------------------------------------------------
-// Those of neighbouring ticks are one event, which is told and stored once it is whole. One of each
-// may grow at a time.
+// Cuts of neighbouring ticks are one event, and so are tears. It is sent and stored once it is
+// whole. One of each may grow at a time.
 static cau_wire_timeline_event *event_at(cau_hosted_timeline *timeline, uint64_t open)
 {
 	return &timeline->events[(open - 1) % EVENT_COUNT];

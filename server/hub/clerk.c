@@ -104,16 +104,10 @@ cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, 
 	cau_status status = check_place(hub, creation, id, error);
 	if (status)
 		return status;
-	cau_hosted_def def = {.id = id,
-	                      .number = ++hub->last_session,
-	                      .scene = creation->scene,
-	                      .meshes = creation->meshes,
-	                      .mesh_bytes = creation->mesh_bytes,
-	                      .paused = creation->paused,
-	                      .origin = creation->origin,
-	                      .creator = creation->asker,
-	                      .client_sequence = creation->client_sequence,
-	                      .reply = creation->reply};
+	cau_hosted_def def = cau_hub_define(hub, creation, id);
+	def.creator = creation->asker;
+	def.client_sequence = creation->client_sequence;
+	def.reply = creation->reply;
 	pthread_mutex_lock(&hub->mutex);
 	bool room = (size_t)hub->session_count < SLOTS(hub->def.config);
 	const cau_surroundings *around = creation->ephemeral ? &hub->around_ephemeral : &hub->around;

@@ -58,5 +58,7 @@ void cau_clerk_answer_missing(cau_hub *hub, const cau_reply *reply, const char *
 void cau_clerk_discard(cau_hub *hub, const cau_creation *asked, bool arrives);
 
 // ---- sessions.c
+// The definition of a new session from its creation, which keeps scene and meshes. Any thread.
+cau_hosted_def cau_hub_define(cau_hub *hub, const cau_creation *creation, const char *id);
 // Whether this session is on its way here from another daemon, and is not this daemon's yet.
 bool cau_hub_arrives(cau_hub *hub, const char *id);

@@ -19,10 +19,11 @@ void cau_hub_set_elsewhere(cau_hub *hub, const cau_elsewhere *elsewhere);
 
 // ---- sessions of the store
 
-// Session `id` of the store, as what is needed to make it; freed by cau_creation_free.
+// The creation of session `id` of the store; freed by cau_creation_free.
 cau_status cau_hub_read_session(cau_hub *hub, const char *id, cau_creation **creation,
                                 cau_error *error);
-// Brings session `id` of the store up; answers `reply` (may be of nobody) with its description.
+// Brings session `id` of the store up; answers `reply` (which may have no asker) with its
+// description.
 cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *reply,
                               cau_error *error);
 // Has session `id` built beforehand: it waits, is none of the hub's sessions, and is the caller's.
@@ -36,7 +37,7 @@ bool cau_hub_place(cau_hub *hub, cau_hosted *hosted);
 
 // ---- drivers of a session that moves
 
-// What a client comes back with to its tools. False: it cannot.
+// The token with which client `number` gets its tools back. False: it has none.
 bool cau_hub_resume_token(cau_hub *hub, uint32_t number, char token[CAU_RESUME_BYTES]);
 // Registers a lost client that may come back by its token, as another daemon reported it; its
 // number. 0: too many clients.

@@ -52,18 +52,23 @@ bool cau_hub_arrives(cau_hub *hub, const char *id)
 	return hub->elsewhere.arrives && hub->elsewhere.arrives(hub->elsewhere.user, id);
 }
 
+cau_hosted_def cau_hub_define(cau_hub *hub, const cau_creation *creation, const char *id)
+{
+	return (cau_hosted_def){.id = id,
+	                        .number = ++hub->last_session,
+	                        .scene = creation->scene,
+	                        .meshes = creation->meshes,
+	                        .mesh_bytes = creation->mesh_bytes,
+	                        .paused = creation->paused,
+	                        .origin = creation->origin};
+}
+
 cau_status cau_hub_make_incoming(cau_hub *hub, cau_creation *creation, const char *id,
                                  const cau_reply *reply, cau_hosted **hosted, cau_error *error)
 {
-	cau_hosted_def def = {.id = id,
-	                      .number = ++hub->last_session,
-	                      .scene = creation->scene,
-	                      .meshes = creation->meshes,
-	                      .mesh_bytes = creation->mesh_bytes,
-	                      .paused = creation->paused,
-	                      .incoming = true,
-	                      .origin = creation->origin,
-	                      .reply = *reply};
+	cau_hosted_def def = cau_hub_define(hub, creation, id);
+	def.incoming = true;
+	def.reply = *reply;
 	cau_status status = cau_hosted_create(hosted, &hub->around, &def, error);
 	if (!status) {
 		creation->scene = NULL;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a courier carries between the two daemons of a move, and what it is answered.
+// Pieces and receipts that a courier carries between the two daemons of a move, and its answers.
 #include "move/courier.h"
 
 #include <stdio.h>
@@ -59,7 +59,8 @@ void cau_move_answer(const cau_reply *reply, const void *result)
 {
 	cau_error error = {0};
 	cau_outcome outcome = {0};
-	if (!reply->answer) // nobody waits: its method is none, whose message would be another's
+	if (!reply
+	         ->answer) // no asker: the request has no method, so its message would have a wrong one
 		return;
 	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
 	outcome.text = text;

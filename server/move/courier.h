@@ -29,6 +29,6 @@ bool cau_move_release(const char *secret, const char *move, cau_move_hash releas
 bool cau_move_seal(const char *before, const void *piece, size_t byte_count, cau_move_hash seal);
 bool cau_move_receipt(const char *move, const char *seal, cau_move_hash receipt);
 
-// A place between what is on the disk and what a courier is answered. Here it does nothing; a test
-// puts a function of its own in this one's place, which ends the process there.
+// A place after a commit to the disk and before the answer to the courier. Here it does nothing; a
+// test puts a function of its own in this one's place, which ends the process there.
 void cau_fault_point(const char *name);

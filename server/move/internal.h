@@ -94,7 +94,7 @@ typedef struct cau_move_job {
 	cau_reply reply;
 } cau_move_job;
 
-// ---- courier.c: what a courier is answered
+// ---- courier.c: answers to a courier
 void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
                    const char *reason);
 void cau_move_answer(const cau_reply *reply, const void *result);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions that move between daemons (protocol/README.md, "Moving a session"): those that leave,
-// those that arrive, and where the ones are that have left. A courier asks; jobs of the mover do
-// what it asks. What is decided is session/handover.h's.
+// those that arrive, and where the ones are that have left. Jobs of the mover serve the
+// requests of a courier. session/handover.h decides.
 //
 // This room knows the hub. The hub asks it by two functions (hub/moving.h): whether an id has moved
 // away, and whether it is on its way here.
@@ -19,7 +19,7 @@ typedef struct cau_moves cau_moves;
 typedef struct cau_moves_def {
 	const cau_config *config; // borrowed, like all here
 	cau_store *store;
-	cau_builder *mover; // does what couriers ask
+	cau_builder *mover; // runs the jobs
 	cau_hub *hub;
 } cau_moves_def;
 
@@ -57,7 +57,7 @@ typedef enum {
 	CAU_MOVE_LIST,
 } cau_move_what;
 
-// What a courier asks.
+// A request of a courier.
 typedef struct cau_move_asked {
 	cau_move_what what;
 	char session[CAU_NAME_BYTES], move[CAU_NAME_BYTES];

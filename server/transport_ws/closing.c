@@ -197,7 +197,7 @@ void cau_connection_watch(cau_connection *c, double now_s)
 {
 	if (!c->served)
 		watch_hello(c, now_s);
-	if (c->turn.waits && !cau_turns_blocked(c)) // what it has sent waits for its turn
+	if (c->turn.waits && !cau_turns_blocked(c)) // its messages wait for their turn
 		c->input.heard_s = now_s;
 	if (now_s - c->input.heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
 		cau_connection_close(c, CAU_CLOSE_NO_ANSWER, NULL);

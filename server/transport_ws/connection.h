@@ -83,8 +83,8 @@ typedef struct cau_connection {
 	bool served;   // hello was accepted: the hello timeout is off
 	bool unplaced; // as many as may be were served when it came: it may only resume
 	int descriptor;
-	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
-	char owner[CAU_ADDRESS_BYTES];   // who has this address, see cau_address_owner
+	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "": not known
+	char owner[CAU_ADDRESS_BYTES];   // owner of this address: cau_address_owner
 	cau_connection_input input;
 	cau_connection_turn turn;
 	cau_connection_output output;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion in time: what a swing keeps a period by the integrator and by the tissue's viscosity, and
+// Motion in time: the amplitude that a swing keeps a period, by integrator and viscosity, and
 // that ticks with two substeps keep what other ticks do: momentum, bits, and tissue that does not
 // rebound from tools.
 #include <stdio.h>
@@ -160,9 +160,9 @@ static double kept_by_kelvin_and_voigt(double hz, double viscosity_s)
 	return exp(-2 * pi * ratio / sqrt(1 - ratio * ratio));
 }
 
-// What a viscous swing keeps at 60 and 240 steps/s differs by less than 5 %, and is what the
-// closed form says. Bounds, set before the first run: 2 % of the closed form at 60 steps/s, where
-// the integrator itself takes 0.4 %, and 1 % at 240.
+// The amplitude that a viscous swing keeps at 60 and 240 steps/s differs by less than 5 %, and is
+// what the closed form says. Bounds, set before the first run: 2 % of the closed form at 60
+// steps/s, where the integrator itself takes 0.4 %, and 1 % at 240.
 static void check_viscous_swing(cau_scene_def *scene, const double *shape, double hz)
 {
 	double kept[2], viscosity_s = scene->layers[0].viscosity_s = damping_ratio / (acos(-1.0) * hz);
