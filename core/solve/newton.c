@@ -252,10 +252,8 @@ static outcome settle(cau_step_solver *solver)
 	outcome last = MOVED;
 	loose->left = 0;
 	loose->region.negative = loose->part.negative = 1;
-	if (!surround(solver)) {
-		loose->given_up = true;
+	if (!surround(solver))
 		return STUCK;
-	}
 	if (!cau_newton_find_touching(&loose->region, solver, NULL))
 		return NO_MEMORY;
 	loose->still_m = solver->accuracy.wanted > 0
