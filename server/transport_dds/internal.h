@@ -145,9 +145,9 @@ typedef struct cau_dds_session {
 	cau_dds_outlet state, grasp, power, force;
 	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last seen
 	uint64_t states_tick;
-	double states_s;  // when they were last written for nobody
-	bool states_owed; // they have changed since
-	double look_s;    // when to look at it again, whether it had a slice or not
+	double states_s;                 // when unread states were last written
+	bool states_owed[CAU_MAX_TOOLS]; // more than the tick has changed since
+	double look_s;                   // when to look at it again, whether it had a slice or not
 	cau_dds_stream stream;
 	cau_dds_status status;
 	cau_dds_tool tools[CAU_MAX_TOOLS];

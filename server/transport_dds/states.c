@@ -198,7 +198,10 @@ static bool is_news(const cau_hosted_tool *was, const cau_hosted_tool *now)
 
 double cau_dds_states_due(const cau_dds_session *session)
 {
-	return session->states_owed ? session->states_s + UNREAD_PERIOD_S : INFINITY;
+	for (int32_t i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->states_owed[i])
+			return session->states_s + UNREAD_PERIOD_S;
+	return INFINITY;
 }
 
 // A topic of tools beside cautery/tool_state.
@@ -222,28 +225,30 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 	const own_topic own[] = {own_topic_of(&session->grasp, cau_dds_has_jaws, publish_grasp),
 	                         own_topic_of(&session->power, has_energy, publish_power),
 	                         own_topic_of(&session->force, NULL, publish_force)};
-	bool all = cau_dds_take_newcomers(&session->state) || now_s >= cau_dds_states_due(session);
-	if (all) {
-		session->states_owed = false;
+	bool newcomers = cau_dds_take_newcomers(&session->state);
+	bool due = now_s >= cau_dds_states_due(session);
+	if (newcomers || due)
 		session->states_s = now_s;
-	}
 	for (int32_t i = 0; i < count; i++) {
 		cau_hosted_tool *last = &session->states[i];
 		cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);
 		// Padding may differ: then it is written once more.
 		// NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
-		bool changed = session->states_tick != tick || memcmp(last, &tools[i], sizeof *last) != 0;
+		bool moved = memcmp(last, &tools[i], sizeof *last) != 0;
+		bool changed = moved || session->states_tick != tick;
+		bool all = newcomers || (due && session->states_owed[i]);
+		session->states_owed[i] &= !all;
 		if (all || (changed && (is_read || is_news(last, &tools[i]))))
 			publish_state(session, &tools[i], tick, time_s);
 		else
-			session->states_owed |= changed;
+			session->states_owed[i] |= moved;
 		for (size_t k = 0; k < sizeof own / sizeof *own; k++) {
 			if (own[k].has && !own[k].has(&tools[i].state))
 				continue;
 			if (all || own[k].newcomers || (changed && own[k].is_read))
 				own[k].publish(session, &tools[i].state, tick);
 			else
-				session->states_owed |= changed;
+				session->states_owed[i] |= moved;
 		}
 		*last = tools[i];
 		if (wire)
