@@ -19,6 +19,10 @@ struct cau_domain {
 	// The label at x. Labels with passed[label] set are not candidates. passed[0] does the same for
 	// the outside. Where no candidate is near, the answer is 0. passed NULL: all are candidates.
 	int32_t (*label_at)(const cau_domain *domain, const double x[3], const bool *passed);
+	// Whether label_at() surely answers *label at every place of a box, with all candidates. False
+	// where that is not known: asking for a box must cost less than asking for its places.
+	bool (*is_uniform)(const cau_domain *domain, const double least[3], const double most[3],
+	                   int32_t *label);
 	void (*finish)(cau_domain *domain);
 	void *own;
 };

@@ -8,14 +8,24 @@
 #include "solid/tets.h"
 
 static const double cells_most = 16e6;
+// Cells of a block along an axis. Of 2, 3, 4 and 8, blocks of 2 ask most boxes, those of 8 most
+// places; 3 and 4 take the same time for balls, shells and slivers.
+enum { BLOCK = 4 };
+enum { STACK = 64 }; // spans: 16 million cells are halved 24 times, and once more along each axis
 
 typedef struct grid {
 	const cau_domain *domain;
 	double spacing, origin[3];
-	int64_t cells[3];
+	int64_t cells[3], blocks[3];
+	bool *empty;        // (blocks): no cell of the block has a tetrahedron
 	uint8_t *label[2];  // of corners, of centres
-	int32_t *vertex[2]; // their numbers, -1: not used yet
+	int32_t *vertex[2]; // their numbers from 1; 0: not used yet
 } grid;
+
+// Cells, or blocks, of a box.
+typedef struct span {
+	int64_t begin[3], end[3];
+} span;
 
 static size_t place_of(const grid *of, int kind, const int64_t index[3])
 {
@@ -33,29 +43,101 @@ static void position_of(const grid *of, int kind, const int64_t index[3], double
 		x[c] = of->origin[c] + of->spacing * ((double)index[c] + (kind ? 0.5 : 0));
 }
 
-static void label_all(grid *of, int kind)
+// ---- labels
+// The corners and centres that belong to some cells: those at the cells' low sides, and at the end
+// of the lattice also those at its high side. `label` < 0: each place is asked for.
+static void label_cells(grid *of, const span *cells, int32_t label)
 {
-	int64_t index[3], *i = index;
-	for (i[2] = 0; i[2] < of->cells[2] + !kind; i[2]++)
-		for (i[1] = 0; i[1] < of->cells[1] + !kind; i[1]++)
-			for (i[0] = 0; i[0] < of->cells[0] + !kind; i[0]++) {
-				double x[3];
-				size_t place = place_of(of, kind, index);
-				position_of(of, kind, index, x);
-				of->label[kind][place] = (uint8_t)of->domain->label_at(of->domain, x, NULL);
-				of->vertex[kind][place] = -1;
-			}
+	for (int kind = 0; kind < 2; kind++) {
+		int64_t end[3], index[3], *i = index;
+		for (int c = 0; c < 3; c++)
+			end[c] = cells->end[c] + (!kind && cells->end[c] == of->cells[c]);
+		for (i[2] = cells->begin[2]; i[2] < end[2]; i[2]++)
+			for (i[1] = cells->begin[1]; i[1] < end[1]; i[1]++)
+				for (i[0] = cells->begin[0]; i[0] < end[0]; i[0]++) {
+					double x[3];
+					position_of(of, kind, index, x);
+					of->label[kind][place_of(of, kind, index)] =
+						(uint8_t)(label < 0 ? of->domain->label_at(of->domain, x, NULL) : label);
+				}
+	}
 }
 
+static size_t block_of(const grid *of, const int64_t block[3])
+{
+	size_t place = 0;
+	for (int c = 2; c >= 0; c--) {
+		CAU_ASSERT_INDEX(block[c], of->blocks[c]);
+		place = place * (size_t)of->blocks[c] + (size_t)block[c];
+	}
+	return place;
+}
+
+static void mark_empty(grid *of, const span *blocks)
+{
+	int64_t block[3], *b = block;
+	for (b[2] = blocks->begin[2]; b[2] < blocks->end[2]; b[2]++)
+		for (b[1] = blocks->begin[1]; b[1] < blocks->end[1]; b[1]++)
+			for (b[0] = blocks->begin[0]; b[0] < blocks->end[0]; b[0]++)
+				of->empty[block_of(of, block)] = true;
+}
+
+// Whether all places have one label that the tetrahedra of some blocks' cells may use. These reach
+// to the centres of the next cells.
+static bool blocks_are_uniform(const grid *of, const span *cells, int32_t *label)
+{
+	double least[3], most[3], next[3];
+	position_of(of, 0, cells->begin, least);
+	position_of(of, 0, cells->end, most);
+	position_of(of, 1, cells->end, next);
+	for (int c = 0; c < 3; c++)
+		most[c] = cells->end[c] < of->cells[c] ? next[c] : most[c];
+	return of->domain->is_uniform(of->domain, least, most, label);
+}
+
+// By halves, down to blocks: the cost follows the surface of the tissue, and not the box around it.
+static void label_all(grid *of)
+{
+	span stack[STACK] = {{.end = {of->blocks[0], of->blocks[1], of->blocks[2]}}};
+	for (int depth = 1; depth;) {
+		span blocks = stack[--depth], cells;
+		int32_t label = 0;
+		int axis = 0;
+		for (int c = 0; c < 3; c++) {
+			cells.begin[c] = blocks.begin[c] * BLOCK;
+			cells.end[c] =
+				blocks.end[c] * BLOCK < of->cells[c] ? blocks.end[c] * BLOCK : of->cells[c];
+			if (blocks.end[c] - blocks.begin[c] > blocks.end[axis] - blocks.begin[axis])
+				axis = c;
+		}
+		int64_t half = (blocks.end[axis] - blocks.begin[axis]) / 2;
+		if (blocks_are_uniform(of, &cells, &label)) {
+			if (label)
+				label_cells(of, &cells, label);
+			else
+				mark_empty(of, &blocks);
+		} else if (!half) {
+			label_cells(of, &cells, -1);
+		} else {
+			CAU_ASSERT(depth + 2 <= STACK, "a stack of more than %d", STACK);
+			stack[depth++] = blocks;
+			stack[depth - 1].end[axis] = blocks.begin[axis] + half;
+			stack[depth++] = blocks;
+			stack[depth - 1].begin[axis] = blocks.begin[axis] + half;
+		}
+	}
+}
+
+// ---- tetrahedra
 static int32_t vertex_at(grid *of, int kind, const int64_t index[3], cau_tets *tets)
 {
 	int32_t *number = &of->vertex[kind][place_of(of, kind, index)];
-	if (*number < 0) {
+	if (!*number) {
 		double x[3];
 		position_of(of, kind, index, x);
-		*number = cau_tets_vertex(tets, x, false);
+		*number = cau_tets_vertex(tets, x, false) + 1;
 	}
-	return *number;
+	return *number - 1;
 }
 
 // The four tetrahedra around the edge from the centre of a cell to that of the next one along an
@@ -81,15 +163,25 @@ static void add_around(grid *of, const int64_t cell[3], int axis, cau_tets *tets
 	}
 }
 
+static bool is_empty(const grid *of, const int64_t cell[3])
+{
+	return of->empty[block_of(of, (int64_t[3]){cell[0] / BLOCK, cell[1] / BLOCK, cell[2] / BLOCK})];
+}
+
 static void add_all(grid *of, cau_tets *tets)
 {
 	int64_t cell[3], *i = cell;
 	for (i[2] = 0; i[2] < of->cells[2]; i[2]++)
 		for (i[1] = 0; i[1] < of->cells[1]; i[1]++)
-			for (i[0] = 0; i[0] < of->cells[0]; i[0]++)
+			for (i[0] = 0; i[0] < of->cells[0]; i[0]++) {
+				if (i[0] % BLOCK == 0 && is_empty(of, cell)) {
+					i[0] += BLOCK - 1;
+					continue;
+				}
 				for (int axis = 0; axis < 3; axis++)
 					if (cell[axis] + 1 < of->cells[axis])
 						add_around(of, cell, axis, tets);
+			}
 }
 
 // A cell more on each side than the domain needs, so that no tetrahedron is missing at its border.
@@ -110,6 +202,27 @@ static cau_status lay_out(grid *of, cau_error *error)
 	return CAU_OK;
 }
 
+// All is zero at first: pages of empty blocks are then never touched.
+static bool make_arrays(grid *of)
+{
+	size_t blocks = 1;
+	bool made = true;
+	for (int c = 0; c < 3; c++) {
+		of->blocks[c] = (of->cells[c] + BLOCK - 1) / BLOCK;
+		blocks *= (size_t)of->blocks[c];
+	}
+	of->empty = calloc(blocks, sizeof *of->empty);
+	for (int kind = 0; kind < 2; kind++) {
+		size_t count = 1;
+		for (int c = 0; c < 3; c++)
+			count *= (size_t)(of->cells[c] + !kind);
+		of->label[kind] = calloc(count, 1);
+		of->vertex[kind] = calloc(count, sizeof *of->vertex[kind]);
+		made &= of->label[kind] && of->vertex[kind];
+	}
+	return made && of->empty;
+}
+
 cau_status cau_lattice(const cau_domain *domain, double spacing, cau_tets *tets, cau_error *error)
 {
 	grid of = {.domain = domain, .spacing = spacing};
@@ -117,18 +230,13 @@ cau_status cau_lattice(const cau_domain *domain, double spacing, cau_tets *tets,
 	cau_status status = lay_out(&of, error);
 	if (status)
 		return status;
-	for (int kind = 0; kind < 2; kind++) {
-		size_t count = 1;
-		for (int c = 0; c < 3; c++)
-			count *= (size_t)(of.cells[c] + !kind);
-		of.label[kind] = malloc(count);
-		of.vertex[kind] = malloc(count * sizeof *of.vertex[kind]);
-		tets->failed |= !of.label[kind] || !of.vertex[kind];
-	}
-	for (int kind = 0; kind < 2 && !tets->failed; kind++)
-		label_all(&of, kind);
-	if (!tets->failed)
+	if (make_arrays(&of)) {
+		label_all(&of);
 		add_all(&of, tets);
+	} else {
+		tets->failed = true;
+	}
+	free(of.empty);
 	for (int kind = 0; kind < 2; kind++) {
 		free(of.label[kind]);
 		free(of.vertex[kind]);

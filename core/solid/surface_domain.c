@@ -12,6 +12,7 @@
 
 enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // 8 keeps the depth below 125
 static const double far_radii = 2.5;        // a node so many radii away counts as one dipole
+static const double rounding = 1e-6; // of lengths and winding numbers; sums err by some 1e-10
 
 typedef struct node {
 	double centre[3];     // mean of the triangles' centres by area
@@ -163,6 +164,164 @@ static int32_t label_at(const cau_domain *domain, const double x[3], const bool 
 	return winding_number(domain->own, x) > 0.5;
 }
 
+// ---- asking for a box
+// An interval that holds each answer of winding_number() in a box. It bounds the dipoles where
+// those answer, and so needs no bound for how far they are from the exact winding number.
+typedef struct interval {
+	double low, high;
+} interval;
+
+typedef struct box {
+	double least[3], most[3], middle[3];
+	double half;  // of the diagonal: no place is farther from the middle
+	double doubt; // sum of the half widths of all intervals so far
+} box;
+
+static interval around(box *in, double value, double change)
+{
+	in->doubt += change;
+	return (interval){value - change, value + change};
+}
+
+// How near the edge from a to b comes to zero.
+static double edge_distance(const double a[3], const double b[3])
+{
+	double along[3], nearest[3];
+	cau_subtract3(b, a, along);
+	double length2 = cau_dot3(along, along);
+	double share = length2 > 0 ? fmin(fmax(-cau_dot3(a, along) / length2, 0), 1) : 0;
+	for (int c = 0; c < 3; c++)
+		nearest[c] = a[c] + share * along[c];
+	return sqrt(cau_dot3(nearest, nearest));
+}
+
+// Whether the place of the triangle's plane that is nearest to zero lies in the triangle.
+static bool is_over(double corner[3][3], const double normal[3])
+{
+	for (int k = 0; k < 3; k++) {
+		double along[3], across[3];
+		cau_subtract3(corner[(k + 1) % 3], corner[k], along);
+		cau_cross3(normal, along, across);
+		if (cau_dot3(across, corner[k]) > 0)
+			return false;
+	}
+	return true;
+}
+
+// The share of a triangle. Let r be the least distance to the box. The share is at most
+// area / 4 pi r^2. Its gradient has two bounds: 2 area / 4 pi r^3, as of a layer of dipoles; and
+// the sum of 2 / 4 pi r over the edges, each with its own r, as of a current along them (law of
+// Biot and Savart). The second is for large triangles.
+static interval triangle_in(box *in, const tree *of, int32_t triangle)
+{
+	double corner[3][3], side[2][3], normal[3], r = INFINITY, per_length = 0;
+	for (int k = 0; k < 3; k++) {
+		int32_t vertex = of->surface->triangle[3 * (size_t)triangle + (size_t)k];
+		cau_subtract3(of->surface->position + 3 * (size_t)vertex, in->middle, corner[k]);
+	}
+	for (int k = 0; k < 3; k++) {
+		double own = edge_distance(corner[k], corner[(k + 1) % 3]);
+		per_length += 1 / (2 * M_PI * (own - in->half));
+		r = fmin(r, own);
+	}
+	cau_subtract3(corner[1], corner[0], side[0]);
+	cau_subtract3(corner[2], corner[0], side[1]);
+	cau_cross3(side[0], side[1], normal);
+	double size = sqrt(cau_dot3(normal, normal));
+	if (size > 0 && is_over(corner, normal))
+		r = fabs(cau_dot3(corner[0], normal)) / size;
+	r -= in->half;
+	if (!(r > 0))
+		return around(in, 0, 0.5); // it meets the box
+	double most = size / 2 / (4 * M_PI * r * r);
+	double change = in->half * fmin(per_length, 2 * most / r);
+	return most < change ? around(in, 0, most) : around(in, wind(of, triangle, in->middle), change);
+}
+
+// The share of a dipole p is at most p / 4 pi r^2, and its gradient 2 p / 4 pi r^3. `r` is the
+// least distance to the box. Places nearer than `reach` do not use the dipole.
+static interval dipole_in(box *in, const node *at, double r, double reach)
+{
+	double away[3], size = sqrt(cau_dot3(at->dipole, at->dipole)) / (4 * M_PI);
+	cau_subtract3(at->centre, in->middle, away);
+	double distance2 = cau_dot3(away, away), apart = fmax(r, reach);
+	double most = size / (apart * apart), change = 2 * in->half * size / (r * r * r);
+	if (!(change < most))
+		return around(in, 0, most);
+	return around(in, cau_dot3(at->dipole, away) / (4 * M_PI * distance2 * sqrt(distance2)),
+	              change);
+}
+
+// The least and the largest distance of a place to the box.
+static void distances(const box *to, const double x[3], double *least, double *most)
+{
+	double near2 = 0, far2 = 0;
+	for (int c = 0; c < 3; c++) {
+		double below = to->least[c] - x[c], above = x[c] - to->most[c];
+		double near = fmax(fmax(below, above), 0);
+		double far = fmax(fabs(to->most[c] - x[c]), fabs(to->least[c] - x[c]));
+		near2 += near * near;
+		far2 += far * far;
+	}
+	*least = sqrt(near2);
+	*most = sqrt(far2);
+}
+
+// The share of a node: of its dipole, of its parts, or either, as winding_number() may choose for a
+// place of the box. Ends early where the doubt leaves no answer.
+static interval node_in(box *in, const tree *of, int32_t number)
+{
+	const node *at = &of->node[number];
+	double reach = far_radii * at->radius, least, most;
+	distances(in, at->centre, &least, &most);
+	if (least > reach * (1 + rounding))
+		return dipole_in(in, at, least, reach);
+	interval sum = {0, 0};
+	for (int32_t i = at->first; i < at->first + at->count && in->doubt < 0.5; i++) {
+		interval own = triangle_in(in, of, of->order[i]);
+		sum = (interval){sum.low + own.low, sum.high + own.high};
+	}
+	if (!at->count) {
+		double away[2][3];
+		for (int k = 0; k < 2; k++)
+			cau_subtract3(of->node[at->first + k].centre, in->middle, away[k]);
+		int nearer = cau_dot3(away[1], away[1]) < cau_dot3(away[0], away[0]);
+		for (int k = 0; k < 2 && in->doubt < 0.5; k++) {
+			interval own = node_in(in, of, at->first + (k ? !nearer : nearer));
+			sum = (interval){sum.low + own.low, sum.high + own.high};
+		}
+	}
+	if (in->doubt >= 0.5 || most < reach * (1 - rounding))
+		return sum;
+	double doubt = in->doubt;
+	interval dipole = dipole_in(in, at, least, reach);
+	in->doubt = doubt; // either, and not both
+	return (interval){fmin(sum.low, dipole.low), fmax(sum.high, dipole.high)};
+}
+
+static bool is_uniform(const cau_domain *domain, const double least[3], const double most[3],
+                       int32_t *label)
+{
+	box in = {0};
+	bool within = true;
+	*label = 0;
+	for (int c = 0; c < 3; c++) {
+		if (most[c] < domain->least[c] || least[c] > domain->most[c])
+			return true;
+		within &= least[c] >= domain->least[c] && most[c] <= domain->most[c];
+		in.least[c] = least[c];
+		in.most[c] = most[c];
+		in.middle[c] = (least[c] + most[c]) / 2;
+		in.half += (most[c] - least[c]) * (most[c] - least[c]) / 4;
+	}
+	in.half = sqrt(in.half) * (1 + rounding);
+	interval all = node_in(&in, domain->own, 0);
+	if (in.doubt >= 0.5)
+		return false;
+	*label = all.low > 0.5 + rounding;
+	return *label ? within : all.high < 0.5 - rounding;
+}
+
 static void finish(cau_domain *domain)
 {
 	tree *of = domain->own;
@@ -204,7 +363,8 @@ cau_status cau_domain_of_surface(cau_mesh *surface, cau_domain *domain, int32_t 
 {
 	size_t count = (size_t)surface->triangle_count;
 	CAU_ASSERT(count > 0, "a surface of %zu triangles", count);
-	*domain = (cau_domain){.label_count = 1, .label_at = label_at, .finish = finish};
+	*domain = (cau_domain){
+		.label_count = 1, .label_at = label_at, .is_uniform = is_uniform, .finish = finish};
 	cau_status status = cau_orient(surface, turned, error);
 	if (status)
 		return status;

@@ -8,6 +8,10 @@
 #include "solid/domain.h"
 
 enum { REACH = 4 }; // voxels along each axis that vote
+// A box with more voxels is never called uniform. A block of the lattice has 64 corners and 64
+// centres, and label_at() reads eight voxels for each.
+enum { READ_MOST = 8 * 128 };
+static const double rounding = 1e-6; // of an index, in voxels; the two ways to it differ by 1e-10
 
 static int32_t voxel_at(const cau_volume *volume, const int64_t index[3])
 {
@@ -85,6 +89,51 @@ static int32_t label_at(const cau_domain *domain, const double x[3], const bool 
 	return vote(volume, first, weight, passed);
 }
 
+// The voxels that vote anywhere in a box, along axis i of the indices. The range is cut to the
+// volume; *outside is set where voxels beyond it vote. False: not finite.
+static bool voters_in(const cau_volume *volume, int i, const double least[3], const double most[3],
+                      int64_t range[2], bool *outside)
+{
+	double middle = 0, half = rounding;
+	for (int c = 0; c < 3; c++) {
+		middle += volume->inverse[i][c] * ((least[c] + most[c]) / 2 - volume->origin[c]);
+		half += fabs(volume->inverse[i][c]) * (most[c] - least[c]) / 2;
+	}
+	double size = volume->size[i], first = floor(middle - half) - 1;
+	double last = floor(middle + half) + REACH - 2;
+	*outside |= !(first >= 0 && last < size);
+	range[0] = (int64_t)fmin(fmax(first, 0), size);
+	range[1] = (int64_t)fmin(fmax(last, -1), size - 1);
+	return isfinite(first) && isfinite(last);
+}
+
+static bool is_uniform(const cau_domain *domain, const double least[3], const double most[3],
+                       int32_t *label)
+{
+	const cau_volume *volume = domain->own;
+	int64_t range[3][2];
+	bool outside = false;
+	double count = 1;
+	for (int i = 0; i < 3; i++) {
+		if (!voters_in(volume, i, least, most, range[i], &outside))
+			return false;
+		count *= fmax((double)(range[i][1] - range[i][0] + 1), 0);
+	}
+	*label = 0;
+	if (count == 0 || count > READ_MOST)
+		return count == 0;
+	const int64_t first[3] = {range[0][0], range[1][0], range[2][0]};
+	*label = outside ? 0 : voxel_at(volume, first);
+	for (int64_t k = range[2][0]; k <= range[2][1]; k++)
+		for (int64_t j = range[1][0]; j <= range[1][1]; j++) {
+			const uint8_t *row = volume->voxel + (k * volume->size[1] + j) * volume->size[0];
+			for (int64_t i = range[0][0]; i <= range[0][1]; i++)
+				if (row[i] != *label)
+					return false;
+		}
+	return true;
+}
+
 // The volume of a voxel.
 static double cell_of(const cau_volume *volume)
 {
@@ -95,8 +144,10 @@ static double cell_of(const cau_volume *volume)
 
 void cau_domain_of_volume(const cau_volume *volume, cau_domain *domain)
 {
-	*domain = (cau_domain){
-		.label_count = volume->label_count, .label_at = label_at, .own = (void *)volume};
+	*domain = (cau_domain){.label_count = volume->label_count,
+	                       .label_at = label_at,
+	                       .is_uniform = is_uniform,
+	                       .own = (void *)volume};
 	int32_t least[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, most[3] = {-1, -1, -1};
 	const uint8_t *at = volume->voxel;
 	for (int32_t k = 0; k < volume->size[2]; k++)
