@@ -9,9 +9,9 @@
 
 enum { REACH = 4 }; // voxels along each axis that vote
 // A box with more voxels is never called uniform. A block of the lattice has 64 corners and 64
-// centres, and label_at() reads eight voxels for each.
-enum { READ_MOST = 8 * 128 };
-static const double rounding = 1e-6; // of an index, in voxels; the two ways to it differ by 1e-10
+// centres. label_at() reads eight voxels for each, or all 64: this is half of the least.
+enum { READ_MOST = 512 };
+static const double rounding = 1e-6; // of an index, in voxels, and of votes; both err by some 1e-10
 
 static int32_t voxel_at(const cau_volume *volume, const int64_t index[3])
 {
@@ -89,49 +89,88 @@ static int32_t label_at(const cau_domain *domain, const double x[3], const bool 
 	return vote(volume, first, weight, passed);
 }
 
-// The voxels that vote anywhere in a box, along axis i of the indices. The range is cut to the
-// volume; *outside is set where voxels beyond it vote. False: not finite.
-static bool voters_in(const cau_volume *volume, int i, const double least[3], const double most[3],
-                      int64_t range[2], bool *outside)
+// ---- boxes
+// The voxels that vote somewhere in a box, along one axis: the first of them, how many, and between
+// which limits the weight of each is.
+typedef struct voters {
+	int64_t first;
+	int32_t count;
+	double least[READ_MOST], most[READ_MOST];
+} voters;
+
+// The cubic B-spline.
+static double weight_at(double distance)
+{
+	double t = fabs(distance);
+	return t < 1 ? (4 - 6 * t * t + 3 * t * t * t) / 6 : t < 2 ? pow(2 - t, 3) / 6 : 0;
+}
+
+// Along axis i of the indices. False: not finite, or too many.
+static bool find_voters(const cau_volume *volume, int i, const double least[3],
+                        const double most[3], voters *of)
 {
 	double middle = 0, half = rounding;
 	for (int c = 0; c < 3; c++) {
 		middle += volume->inverse[i][c] * ((least[c] + most[c]) / 2 - volume->origin[c]);
 		half += fabs(volume->inverse[i][c]) * (most[c] - least[c]) / 2;
 	}
-	double size = volume->size[i], first = floor(middle - half) - 1;
-	double last = floor(middle + half) + REACH - 2;
-	*outside |= !(first >= 0 && last < size);
-	range[0] = (int64_t)fmin(fmax(first, 0), size);
-	range[1] = (int64_t)fmin(fmax(last, -1), size - 1);
-	return isfinite(first) && isfinite(last);
+	double first = floor(middle - half) - 1, count = floor(middle + half) + REACH - 1 - first;
+	if (!(count <= READ_MOST && fabs(first) < 1e9))
+		return false;
+	of->first = (int64_t)first;
+	of->count = (int32_t)count;
+	for (int32_t k = 0; k < of->count; k++) {
+		double away = fabs(first + k - middle);
+		of->most[k] = weight_at(fmax(away - half, 0));
+		of->least[k] = weight_at(away + half);
+	}
+	return true;
+}
+
+// Whether one label has more votes than any other wherever in the box. The vote of each label is
+// bounded by the weights that each voxel has there. That of the winner is also what others leave.
+static bool wins(const cau_volume *volume, const voters axis[3], int32_t winner)
+{
+	double most[CAU_SOLID_LABEL_MAX + 1] = {0}, least = 0, others = 0;
+	for (int32_t k = 0; k < axis[2].count; k++)
+		for (int32_t j = 0; j < axis[1].count; j++)
+			for (int32_t i = 0; i < axis[0].count; i++) {
+				int32_t label =
+					voxel_at(volume, (const int64_t[3]){axis[0].first + i, axis[1].first + j,
+				                                        axis[2].first + k});
+				double weight = axis[0].most[i] * axis[1].most[j] * axis[2].most[k];
+				if (label == winner)
+					least += axis[0].least[i] * axis[1].least[j] * axis[2].least[k];
+				else
+					most[label] += weight;
+				others += label == winner ? 0 : weight;
+			}
+	least = fmax(least, 1 - others);
+	for (int32_t label = 0; label <= volume->label_count; label++)
+		if (label != winner && !(most[label] < least - rounding))
+			return false;
+	return true;
 }
 
 static bool is_uniform(const cau_domain *domain, const double least[3], const double most[3],
                        int32_t *label)
 {
 	const cau_volume *volume = domain->own;
-	int64_t range[3][2];
-	bool outside = false;
-	double count = 1;
+	voters axis[3];
+	double middle[3], count = 1;
+	bool beyond = false;
 	for (int i = 0; i < 3; i++) {
-		if (!voters_in(volume, i, least, most, range[i], &outside))
+		middle[i] = (least[i] + most[i]) / 2;
+		if (!find_voters(volume, i, least, most, &axis[i]))
 			return false;
-		count *= fmax((double)(range[i][1] - range[i][0] + 1), 0);
+		count *= axis[i].count;
+		beyond |= axis[i].first >= volume->size[i] || axis[i].first + axis[i].count <= 0;
 	}
 	*label = 0;
-	if (count == 0 || count > READ_MOST)
-		return count == 0;
-	const int64_t first[3] = {range[0][0], range[1][0], range[2][0]};
-	*label = outside ? 0 : voxel_at(volume, first);
-	for (int64_t k = range[2][0]; k <= range[2][1]; k++)
-		for (int64_t j = range[1][0]; j <= range[1][1]; j++) {
-			const uint8_t *row = volume->voxel + (k * volume->size[1] + j) * volume->size[0];
-			for (int64_t i = range[0][0]; i <= range[0][1]; i++)
-				if (row[i] != *label)
-					return false;
-		}
-	return true;
+	if (beyond || count > READ_MOST)
+		return beyond;
+	*label = label_at(domain, middle, NULL);
+	return wins(volume, axis, *label);
 }
 
 // The volume of a voxel.

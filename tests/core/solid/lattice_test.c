@@ -178,7 +178,7 @@ static void boxes_keep_their_word(const char *name)
 		}
 	}
 	print_message("%s: %d boxes outside, %d of label 1\n", name, seen[0], seen[1]);
-	assert_true(seen[0] > BOXES / 2);
+	assert_true(seen[0] > BOXES / 4);
 }
 
 // ---- tests
@@ -212,29 +212,52 @@ static void surfaces(void **state)
 	}
 }
 
-// Three labels, whose axes are not at right angles. The last voxel lies in a corner of the volume.
-static void volumes(void **state)
+// Volumes whose axes are not at right angles.
+static void volume_of(unsigned char (*label_of)(const int x[3]), cau_volume *volume)
 {
-	(void)state;
 	char text[SIDE * SIDE * SIDE + 512];
-	cau_volume volume = {0};
 	int length = snprintf(text, sizeof text,
 	                      "NRRD0004\ntype: uint8\ndimension: 3\nspace: RAS\nsizes: %d %d %d\n"
 	                      "space directions: (1,0.2,0) (0,0.7,0) (0,0.1,2)\n"
 	                      "space origin: (5,0,0)\nencoding: raw\n\n",
 	                      SIDE, SIDE, SIDE);
-	for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
-		const int x[3] = {i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)};
-		bool in = x[0] > 3 && x[0] < 12 && x[1] > 3 && x[1] < 20 && x[2] < 15;
-		text[length + i] = (char)(in ? 1 + (x[1] > 9) : i + 1 == SIDE * SIDE * SIDE ? 3 : 0);
-	}
+	for (int i = 0; i < SIDE * SIDE * SIDE; i++)
+		text[length + i] =
+			(char)label_of((const int[3]){i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)});
 	assert_int_equal(cau_volume_read((unsigned char *)text, (size_t)length + SIDE * SIDE * SIDE,
-	                                 NULL, &volume, NULL),
+	                                 NULL, volume, NULL),
 	                 CAU_OK);
-	cau_domain_of_volume(&volume, &inner);
-	lattices_are_the_same("volume", 0.5);
+	cau_domain_of_volume(volume, &inner);
+}
+
+// Two labels side by side, and one voxel in a corner of the volume.
+static unsigned char blocks_of(const int x[3])
+{
+	bool in = x[0] > 3 && x[0] < 12 && x[1] > 3 && x[1] < 20 && x[2] < 15;
+	bool corner = x[0] == SIDE - 1 && x[1] == SIDE - 1 && x[2] == SIDE - 1;
+	return (unsigned char)(in ? 1 + (x[1] > 9) : corner ? 3 : 0);
+}
+
+// One voxel in 32, of four labels, and a plate: most voxels lose the vote.
+static unsigned char sparse(const int x[3])
+{
+	bool in = random_share() < 1.0 / 32;
+	return (unsigned char)(x[2] == 5 || x[2] == 6 ? 5 : in ? 1 + (x[0] + x[1]) % 4 : 0);
+}
+
+static void volumes(void **state)
+{
+	(void)state;
+	cau_volume volume = {0};
+	volume_of(blocks_of, &volume);
+	lattices_are_the_same("blocks", 0.5);
 	assert_true(tissue_boxes > 0);
-	boxes_keep_their_word("volume");
+	boxes_keep_their_word("blocks");
+	cau_volume_finish(&volume);
+	volume = (cau_volume){0};
+	volume_of(sparse, &volume);
+	lattices_are_the_same("sparse", 0.3);
+	boxes_keep_their_word("sparse");
 	cau_volume_finish(&volume);
 }
 
