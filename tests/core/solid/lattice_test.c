@@ -13,7 +13,7 @@
 #include "mesh/mesh.h"
 #include "solid/tets.h"
 
-enum { RINGS = 12, SIDE = 24, BOXES = 4000 };
+enum { SIDE = 24, BOXES = 4000 };
 
 // ---- surfaces as OBJ
 typedef struct shape {
@@ -31,23 +31,23 @@ static void begin(shape *of)
 }
 
 // A ball around the z axis, without the rings from `open` on; a cavity looks inward.
-static void put_ball(shape *of, double radius, double x, bool cavity, int open)
+static void put_ball(shape *of, double radius, double x, bool cavity, int rings, int open)
 {
-	int around = 2 * RINGS, base = of->vertex_count + 1;
-	for (int i = 0; i <= RINGS; i++)
+	int around = 2 * rings, base = of->vertex_count + 1;
+	for (int i = 0; i <= rings; i++)
 		for (int j = 0; j < around; j++) {
-			double t = M_PI * i / RINGS, p = 2 * M_PI * j / around;
+			double t = M_PI * i / rings, p = 2 * M_PI * j / around;
 			fprintf(of->out, "v %.17g %.17g %.17g\n", x + radius * sin(t) * cos(p),
 			        radius * sin(t) * sin(p), radius * cos(t));
 		}
-	for (int i = 0; i < RINGS && i < open; i++)
+	for (int i = 0; i < open; i++)
 		for (int j = 0; j < around; j++) {
 			int a = base + i * around + j, b = base + i * around + (j + 1) % around;
 			const int at[4] = {a, a + around, b + around, b};
 			fprintf(of->out, "f %d %d %d\nf %d %d %d\n", at[0], at[cavity ? 2 : 1],
 			        at[cavity ? 1 : 2], at[0], at[cavity ? 3 : 2], at[cavity ? 2 : 3]);
 		}
-	of->vertex_count += (RINGS + 1) * around;
+	of->vertex_count += (rings + 1) * around;
 }
 
 static void put_tetrahedron(shape *of, double at, const double apex[3])
@@ -185,9 +185,10 @@ static void boxes_keep_their_word(const char *name)
 static void surfaces(void **state)
 {
 	(void)state;
-	enum { BALL, CUP, TWO_BALLS, SHELL, LEAF, TWO_FAR, KINDS };
-	static const char *const name[KINDS] = {"ball", "cup", "two balls", "shell", "leaf", "two far"};
-	static const double spacing[KINDS] = {0.034, 0.05, 0.07, 0.05, 0.02, 0.08};
+	enum { BALL, BOWL, TWO_BALLS, SHELL, LEAF, WEDGE, TWO_FAR, KINDS };
+	static const char *const name[KINDS] = {"ball", "bowl",  "two balls", "shell",
+	                                        "leaf", "wedge", "two far"};
+	static const double spacing[KINDS] = {0.034, 0.05, 0.07, 0.05, 0.02, 0.02, 0.08};
 	static const double apex[3] = {0.3, 0.3, 0.03};
 	for (int kind = 0; kind < KINDS; kind++) {
 		cau_mesh mesh;
@@ -195,14 +196,18 @@ static void surfaces(void **state)
 		begin(&of);
 		if (kind == LEAF)
 			put_tetrahedron(&of, 0, apex);
+		else if (kind == WEDGE)
+			fputs("v 0 0 0\nv 1 1 0\nv 0.5 0.1 1\nv 0.3 0.7 0.9\nf 1 2 3\nf 1 4 2\n", of.out);
 		else if (kind == TWO_FAR)
 			put_two_far(&of, 4);
+		else if (kind == BOWL) // its winding number is a half all over the opening
+			put_ball(&of, 1, 0, false, 40, 20);
 		else
-			put_ball(&of, 1, 0, false, kind == CUP ? RINGS * 2 / 3 : RINGS);
+			put_ball(&of, 1, 0, false, 12, 12);
 		if (kind == TWO_BALLS)
-			put_ball(&of, 0.5, 3, false, RINGS);
+			put_ball(&of, 0.5, 3, false, 12, 12);
 		if (kind == SHELL)
-			put_ball(&of, 0.9, 0, true, RINGS);
+			put_ball(&of, 0.9, 0, true, 12, 12);
 		end(&of, &mesh, &inner);
 		lattices_are_the_same(name[kind], spacing[kind]);
 		assert_true(kind != BALL || tissue_boxes > 0);
