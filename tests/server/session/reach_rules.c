@@ -21,16 +21,17 @@ static void must(reach_move *m, bool holds, const char *otherwise)
 
 static bool drives_are_as_before(const reach_move *m, bool but_for_life)
 {
+	const cau_logic *before = m->silence_is_cut ? m->scratch : m->before;
 	for (int32_t i = 0; i < m->logic->drive_count; i++) {
 		cau_drive now = m->logic->drives[i];
 		if (but_for_life)
-			now.alive_s = m->before->drives[i].alive_s;
-		if (memcmp(&now, &m->before->drives[i], sizeof now) != 0)
+			now.alive_s = before->drives[i].alive_s;
+		if (memcmp(&now, &before->drives[i], sizeof now) != 0)
 			return false;
 	}
-	return m->logic->drive_count == m->before->drive_count && m->logic->state == m->before->state &&
-	       m->logic->lockstep == m->before->lockstep && m->logic->going == m->before->going &&
-	       m->logic->stepping == m->before->stepping;
+	return m->logic->drive_count == before->drive_count && m->logic->state == before->state &&
+	       m->logic->lockstep == before->lockstep && m->logic->going == before->going &&
+	       m->logic->stepping == before->stepping;
 }
 
 // ---- what comes in ------------------------------------------------------------------------------
@@ -92,8 +93,10 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 static void expect_silence_cut(reach_move *m)
 {
 	cau_effects ignored;
-	cau_logic_take(m->before, &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = REACH_NOW_S},
+	reach_copy_machine(m->before, m->scratch);
+	cau_logic_take(m->scratch, &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = REACH_NOW_S},
 	               &ignored);
+	m->silence_is_cut = true;
 }
 
 static void do_order(reach_move *m, const reach_event *e)
@@ -102,8 +105,8 @@ static void do_order(reach_move *m, const reach_event *e)
 	bool advances = e->ask == CAU_ASK_ADVANCE, turns_off = advances && e->to == REACH_OFF;
 	cau_asked asked = {.ticket = 50,
 	                   .ask = e->ask,
-	                   .asker = reach_asker(e->client),
-	                   .to = reach_asker(advances ? 0 : e->to),
+	                   .asker = *reach_asker(e->client),
+	                   .to = *reach_asker(advances ? 0 : e->to),
 	                   .part_count = advances && e->to,
 	                   .tick = e->later ? REACH_TICK + (uint64_t)e->later : 0,
 	                   .ticks = e->ask == CAU_ASK_STEP || advances ? 2 : 0,
@@ -122,7 +125,8 @@ static void do_order(reach_move *m, const reach_event *e)
 	bool queued = m->logic->count > m->before->count;
 	must(m, !refused || !(off || pause) || m->before->ended, "energy off or pause is refused");
 	must(m, refused || !m->before->ended, "what has ended takes an order");
-	expect_silence_cut(m);
+	if (refused)
+		expect_silence_cut(m);
 	must(m, !refused || (!queued && (turns_off || drives_are_as_before(m, true))),
 	     "refused, and yet it changed");
 	must(m, refused + queued + has_effect(m, CAU_EFFECT_UNSTORED) == 1, "not one answer");
@@ -214,8 +218,8 @@ static void check_rest(reach_move *m)
 	}
 	if (cau_logic_due_s(m->logic) > 0)
 		return;
-	memcpy(m->before, m->logic, cau_logic_bytes(REACH_QUEUE));
-	cau_logic_next(m->before, REACH_NOW_S, &m->action, &m->effects);
+	reach_copy_machine(m->logic, m->scratch);
+	cau_logic_next(m->scratch, REACH_NOW_S, &m->action, &m->effects);
 	must(m, m->action.act != CAU_ACT_NOTHING, "the worker spins");
 	m->action.act = CAU_ACT_NOTHING;
 }
@@ -495,6 +499,7 @@ static void check_state(reach_move *m)
 
 void reach_do(reach_move *m, const reach_event *e)
 {
+	m->silence_is_cut = false;
 	switch (e->what) {
 	case REACH_ORDER:
 		do_order(m, e);

@@ -39,7 +39,9 @@ typedef struct reach_event {
 } reach_event;
 
 typedef struct reach_move {
-	cau_logic *logic, *before; // before: the event
+	cau_logic *logic, *scratch;
+	const cau_logic *before; // the event; of all events of a state, so none changes it
+	bool silence_is_cut;     // `scratch` is `before`, with those dark who were silent by now
 	cau_action action;
 	cau_effects effects;
 	reach_state books;

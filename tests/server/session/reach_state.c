@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,12 +22,13 @@ static_assert(REACH_TOOLS * TOOL_BITS + TIME_BITS <= WORD_BITS, "and all else is
 
 const char *const reach_tool_names[REACH_TOOLS] = {"hook", "jaws"};
 
-cau_asker reach_asker(int client)
+const cau_asker *reach_asker(int client)
 {
-	cau_asker asker = {.client = (uint32_t)client,
-	                   .role = client == REACH_CLIENTS ? CAU_ROLE_ADMIN : CAU_ROLE_OPERATE,
-	                   .deadline_s = REACH_DEADLINE_S};
-	return client ? asker : (cau_asker){0};
+	static const cau_asker askers[REACH_CLIENTS + 1] = {
+		[1] = {.client = 1, .role = CAU_ROLE_OPERATE, .deadline_s = REACH_DEADLINE_S},
+		[2] = {.client = 2, .role = CAU_ROLE_ADMIN, .deadline_s = REACH_DEADLINE_S}};
+	static_assert(REACH_CLIENTS == 2, "the last one is an admin");
+	return &askers[client];
 }
 
 int reach_tool_index(const char *name)
@@ -60,9 +62,9 @@ static void decode_order(const reach_order *from, int place, cau_waiting *to)
 	memset(to, 0, sizeof *to);
 	to->asked.ticket = (uint64_t)place;
 	to->asked.ask = (cau_ask)from->ask;
-	to->asked.asker = reach_asker(from->client);
+	to->asked.asker = *reach_asker(from->client);
 	bool advances = from->ask == CAU_ASK_ADVANCE;
-	to->asked.to = reach_asker(advances ? 0 : from->to);
+	to->asked.to = *reach_asker(advances ? 0 : from->to);
 	to->asked.part_count = advances && from->to;
 	if (to->asked.part_count) {
 		to->asked.parts[0].on = from->to == REACH_ON;
@@ -91,7 +93,7 @@ static void decode_tool(const reach_tool *from, int index, cau_drive *to)
 {
 	memset(to, 0, sizeof *to);
 	strcpy(to->tool, reach_tool_names[index]);
-	to->driver = reach_asker(from->driver);
+	to->driver = *reach_asker(from->driver);
 	to->alive_s = alive_of(from->fresh);
 	to->enabled = from->enabled;
 	to->lit = from->lit;
@@ -136,6 +138,14 @@ void reach_decode(const reach_state *state, cau_logic *logic)
 			decode_order(&state->orders[i], i + 1, &logic->waiting[logic->count++]);
 	if (state->looks)
 		decode_order(&state->orders[state->looks - 1], state->looks, &logic->serving);
+}
+
+void reach_copy_machine(const cau_logic *from, cau_logic *to)
+{
+	const size_t drives = offsetof(cau_logic, drives), behind = offsetof(cau_logic, drive_count);
+	memcpy(to, from, drives + (size_t)from->drive_count * sizeof *from->drives);
+	memcpy((char *)to + behind, (const char *)from + behind,
+	       sizeof *from - behind + (size_t)from->count * sizeof *from->waiting);
 }
 
 // ---- a state of a machine -----------------------------------------------------------------------

@@ -234,22 +234,20 @@ static void choose(const reach_state *state, reach_packed *chosen)
 typedef struct searching {
 	reach_found found;
 	reach_move move;
-	cau_logic *machine; // of the state whose events are tried
+	cau_logic *before; // the machine of the state whose events are tried
 	uint64_t moves;
 } searching;
 
 // Every event of a state that has been found. False: something is wrong, or the search is full.
 static bool expand(searching *s, const reach_state *from, uint32_t number)
 {
-	size_t bytes = cau_logic_bytes(REACH_QUEUE);
-	reach_decode(from, s->machine);
+	reach_decode(from, s->before);
 	for (int i = 0; i < event_count; i++) {
 		reach_state to;
 		reach_packed chosen;
 		if (!reach_can_be(&events[i], from))
 			continue;
-		memcpy(s->move.logic, s->machine, bytes);
-		memcpy(s->move.before, s->machine, bytes);
+		reach_copy_machine(s->before, s->move.logic);
 		s->move.books = *from;
 		s->move.effects.count = 0;
 		reach_do(&s->move, &events[i]);
@@ -286,8 +284,9 @@ static cau_logic *make_machine(void)
 // `bounded`: that it is not over when there is no more room is no failure.
 static bool run(const search *what, uint32_t most, bool bounded)
 {
-	searching s = {.machine = make_machine(),
-	               .move = {.logic = make_machine(), .before = make_machine()}};
+	cau_logic *before = make_machine();
+	searching s = {.before = before,
+	               .move = {.logic = make_machine(), .scratch = make_machine(), .before = before}};
 	const reach_state first = {.tool_count = (uint8_t)what->tools,
 	                           .capacity = (uint8_t)what->capacity,
 	                           .store_takes = 1,
@@ -306,9 +305,9 @@ static bool run(const search *what, uint32_t most, bool bounded)
 	       s.move.wrong ? s.move.wrong
 	       : closed     ? "closed"
 	                    : "not closed");
-	free(s.machine);
+	free(before);
 	free(s.move.logic);
-	free(s.move.before);
+	free(s.move.scratch);
 	reach_found_finish(&s.found);
 	return !s.move.wrong && (closed || bounded);
 }
