@@ -24,8 +24,9 @@ static sim_random choices;
 
 static const struct {
 	const char *word, *promise, *meaning;
+	int64_t found_by;
 } faults[FAULT_COUNT] = {
-#define X(code, promise, meaning) [FAULT_##code] = {#code, #promise, meaning},
+#define X(code, promise, found_by, meaning) [FAULT_##code] = {#code, #promise, meaning, found_by},
 	FAULT_TABLE(X)
 #undef X
 };
@@ -43,6 +44,11 @@ const char *faults_promise(sim_fault fault)
 const char *faults_meaning(sim_fault fault)
 {
 	return faults[fault].meaning;
+}
+
+int64_t faults_found_by(sim_fault fault)
+{
+	return faults[fault].found_by;
 }
 
 bool faults_act(sim_fault fault, int64_t one_in)
