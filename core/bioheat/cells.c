@@ -34,7 +34,6 @@ cau_status cau_cells_create(cau_cells *cells, double side_m, int32_t capacity, c
 	if (!cells->place || !cells->neighbour || !cells->material || !cells->fill || !cells->pull ||
 	    !cells->severed || !cells->bucket)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
-	memset(cells->bucket, -1, (size_t)cells->bucket_count * sizeof(int32_t));
 	return CAU_OK;
 }
 
@@ -46,7 +45,7 @@ static int32_t bucket_of(const cau_cells *cells, const int32_t place[3])
 	                (uint32_t)place[2] * 83492791u;
 	uint32_t mask = (uint32_t)cells->bucket_count - 1;
 	for (uint32_t bucket = (hash ^ hash >> 15) & mask;; bucket = (bucket + 1) & mask) {
-		int32_t cell = cells->bucket[bucket];
+		int32_t cell = cells->bucket[bucket] - 1;
 		if (cell < 0 || memcmp(cells->place + 3 * (size_t)cell, place, 3 * sizeof *place) == 0)
 			return (int32_t)bucket;
 	}
@@ -54,7 +53,7 @@ static int32_t bucket_of(const cau_cells *cells, const int32_t place[3])
 
 int32_t cau_cells_find(const cau_cells *cells, const int32_t place[3])
 {
-	return cells->bucket[bucket_of(cells, place)];
+	return cells->bucket[bucket_of(cells, place)] - 1;
 }
 
 static void join(cau_cells *cells, int32_t cell)
@@ -78,9 +77,9 @@ int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material
 	if (cells->count == cells->capacity)
 		return -1;
 	int32_t cell = cells->count++, bucket = bucket_of(cells, place);
-	CAU_ASSERT(cells->bucket[bucket] < 0, "a second cell at (%d, %d, %d)", place[0], place[1],
+	CAU_ASSERT(!cells->bucket[bucket], "a second cell at (%d, %d, %d)", place[0], place[1],
 	           place[2]);
-	cells->bucket[bucket] = cell;
+	cells->bucket[bucket] = cell + 1;
 	memcpy(cells->place + 3 * (size_t)cell, place, 3 * sizeof *place);
 	cells->material[cell] = material;
 	cells->fill[cell] = fill;
@@ -89,6 +88,29 @@ int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material
 		cells->pull[cau_cell_axis(cell, axis)] = 1;
 	join(cells, cell);
 	return cell;
+}
+
+// From the newest on: the way to a cell's bucket leads over those of older cells alone.
+static void empty_buckets(cau_cells *cells)
+{
+	for (int32_t cell = cells->count - 1; cell >= 0; cell--)
+		cells->bucket[bucket_of(cells, cells->place + 3 * (size_t)cell)] = 0;
+}
+
+void cau_cells_copy(cau_cells *to, const cau_cells *from)
+{
+	CAU_ASSERT(to->capacity == from->capacity, "%d cells, not %d", to->capacity, from->capacity);
+	size_t count = (size_t)from->count;
+	empty_buckets(to);
+	to->count = from->count;
+	memcpy(to->place, from->place, 3 * count * sizeof *to->place);
+	memcpy(to->neighbour, from->neighbour, CAU_CELL_SIDES * count * sizeof *to->neighbour);
+	memcpy(to->material, from->material, count);
+	memcpy(to->fill, from->fill, count * sizeof *to->fill);
+	memcpy(to->pull, from->pull, 3 * count * sizeof *to->pull);
+	memcpy(to->severed, from->severed, count);
+	for (int32_t cell = 0; cell < to->count; cell++)
+		to->bucket[bucket_of(to, to->place + 3 * (size_t)cell)] = cell + 1;
 }
 
 void cau_cells_sever(cau_cells *cells, int32_t cell)

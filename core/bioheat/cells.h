@@ -28,7 +28,8 @@ typedef struct cau_cells {
 	uint8_t *severed;   // (capacity): see cau_cells_sever
 	float *pull;        // (capacity x 3): diagonal of J F^-1 F^-T, the pull-back of a conductivity
 	int32_t bucket_count; // a power of two
-	int32_t *bucket;      // (bucket_count): cells by place; -1: empty
+	int32_t *bucket;      // (bucket_count): cells by place, from 1 on; 0: empty. So an empty set
+	                      // touches none of its memory.
 } cau_cells;
 
 // Places in arrays by cell and side, and by cell and axis.
@@ -52,6 +53,9 @@ int32_t cau_cells_find(const cau_cells *cells, const int32_t place[3]);
 // Adds a cell at a place that has none, undeformed, and joins it with its neighbours. Returns its
 // number, which stays; -1 if there is no room.
 int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material, float fill);
+
+// Makes `to` equal to `from`, which has the same capacity.
+void cau_cells_copy(cau_cells *to, const cau_cells *from);
 
 // Separates a cell from its neighbours, also from those that are added later: nothing is conducted
 // between them from then on.

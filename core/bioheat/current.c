@@ -34,7 +34,6 @@ cau_status cau_current_create(cau_current *current, const cau_bioheat *bioheat, 
 	}
 	if (missing)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the potential");
-	memset(current->slot, -1, most * sizeof(int32_t));
 	return CAU_OK;
 }
 
@@ -60,18 +59,18 @@ static cau_vec3 electrodes_middle(const cau_current *current, const cau_cells *c
 
 static void enter(cau_current *current, int32_t cell, int32_t seed)
 {
-	if (current->slot[cell] >= 0)
+	if (current->slot[cell])
 		return;
-	current->slot[cell] = current->count;
 	current->seed[current->count] = seed;
 	current->cell[current->count++] = cell;
+	current->slot[cell] = current->count;
 }
 
 // Lists the cells that are joined with an electrode within reach_m, the nearest first.
 static void find_region(cau_current *current, const cau_cells *cells, double reach_m)
 {
 	for (int32_t i = 0; i < current->count; i++)
-		current->slot[current->cell[i]] = -1;
+		current->slot[current->cell[i]] = 0;
 	current->count = 0;
 	for (int32_t k = 0; k < current->electrode_count; k++)
 		enter(current, current->electrode[k].cell, current->electrode[k].cell);
@@ -127,7 +126,7 @@ static void add_faces(cau_current *current, const cau_bioheat *bioheat, int32_t 
 		current->face_s[face] = 0;
 		if (other < 0)
 			continue;
-		if (current->slot[other] < 0) {
+		if (!current->slot[other]) {
 			if (grounded)
 				current->to_far_s[i] += far_conductance(bioheat, cell, side, middle);
 			continue;
@@ -144,7 +143,7 @@ static void add_electrodes(cau_current *current, const cau_bioheat *bioheat)
 {
 	for (int32_t k = 0; k < current->electrode_count; k++) {
 		const cau_electrode_cell *electrode = &current->electrode[k];
-		int32_t i = current->slot[electrode->cell];
+		int32_t i = current->slot[electrode->cell] - 1;
 		double g = conductivity(bioheat, electrode->cell) * electrode->over_length_m;
 		current->to_electrode_s[i] += g;
 		current->source[i] += g * electrode->potential;
@@ -156,7 +155,7 @@ static void add_electrodes(cau_current *current, const cau_bioheat *bioheat)
 
 static int32_t slot_beyond(const cau_current *current, const cau_cells *cells, int32_t i, int side)
 {
-	return current->slot[cells->neighbour[cau_cell_side(current->cell[i], side)]];
+	return current->slot[cells->neighbour[cau_cell_side(current->cell[i], side)]] - 1;
 }
 
 static void multiply(const cau_current *current, const cau_cells *cells, const double *x, double *y)

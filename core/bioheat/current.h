@@ -25,7 +25,7 @@ typedef struct cau_current {
 	int32_t count;
 	int32_t *cell;  // (capacity)
 	int32_t *seed;  // (capacity): the cell at an electrode that each was reached from
-	int32_t *slot;  // (capacity): of a cell in the region; -1
+	int32_t *slot;  // (capacity): place of a cell in the region, from 1 on; 0: it is not in it
 	double *face_s; // (capacity x 6)
 	double *to_electrode_s, *to_far_s, *diagonal_s; // (capacity)
 	double *source, *vector[4];                     // (capacity)

@@ -462,25 +462,10 @@ void cau_tissue_cells_reassign(cau_tissue_cells *cells, uint8_t *const alive[CAU
 
 // ---- snapshots
 
-static void copy_cells(cau_cells *to, const cau_cells *from)
-{
-	size_t count = (size_t)from->count;
-	to->count = from->count;
-	memcpy(to->place, from->place, 3 * count * sizeof *to->place);
-	memcpy(to->neighbour, from->neighbour, CAU_CELL_SIDES * count * sizeof *to->neighbour);
-	memcpy(to->material, from->material, count);
-	memcpy(to->fill, from->fill, count * sizeof *to->fill);
-	memcpy(to->pull, from->pull, 3 * count * sizeof *to->pull);
-	memcpy(to->severed, from->severed, count);
-	memcpy(to->bucket, from->bucket, (size_t)from->bucket_count * sizeof *to->bucket);
-}
-
 void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from)
 {
-	CAU_ASSERT(to->bioheat.cells.capacity == from->bioheat.cells.capacity, "%d cells, not %d",
-	           to->bioheat.cells.capacity, from->bioheat.cells.capacity);
 	size_t count = (size_t)from->bioheat.cells.count;
-	copy_cells(&to->bioheat.cells, &from->bioheat.cells);
+	cau_cells_copy(&to->bioheat.cells, &from->bioheat.cells);
 	memcpy(to->bioheat.temperature, from->bioheat.temperature, count * sizeof(double));
 	memcpy(to->bioheat.water, from->bioheat.water, count * sizeof(double));
 	memcpy(to->bioheat.damage, from->bioheat.damage, count * sizeof(double));

@@ -50,6 +50,32 @@ static void neighbours_are_those_beside(void **state)
 	cau_arena_finish(&arena);
 }
 
+// Into a set of other cells, of which some are in the same places: they are found no more.
+static void a_copy_has_the_same_cells_and_no_others(void **state)
+{
+	(void)state;
+	cau_arena arena = {0};
+	cau_cells from = cube(&arena), to;
+	assert_int_equal(cau_cells_create(&to, 1e-4, COUNT, &arena, NULL), CAU_OK);
+	for (int k = 0; k < COUNT / 2; k++)
+		cau_cells_add(&to, (int32_t[]){k % 18 - 9, k / 18 - 3, 0}, 0, 0.5F);
+	cau_cells_sever(&from, 7);
+	cau_cells_copy(&to, &from);
+	assert_int_equal(to.count, COUNT);
+	for (int32_t x = -9; x < 9; x++)
+		for (int32_t y = -3; y < 3; y++)
+			for (int32_t z = -3; z < 3; z++) {
+				const int32_t place[] = {x, y, z};
+				assert_int_equal(cau_cells_find(&to, place), cau_cells_find(&from, place));
+			}
+	// What comes later comes to the same place of either.
+	assert_memory_equal(to.bucket, from.bucket, (size_t)to.bucket_count * sizeof *to.bucket);
+	assert_memory_equal(to.neighbour, from.neighbour,
+	                    (size_t)COUNT * CAU_CELL_SIDES * sizeof *to.neighbour);
+	assert_memory_equal(to.severed, from.severed, COUNT);
+	cau_arena_finish(&arena);
+}
+
 static void a_severed_cell_has_no_neighbours(void **state)
 {
 	(void)state;
@@ -82,6 +108,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(neighbours_are_those_beside),
+		cmocka_unit_test(a_copy_has_the_same_cells_and_no_others),
 		cmocka_unit_test(a_severed_cell_has_no_neighbours),
 		cmocka_unit_test(a_face_conducts_by_the_emptier_cell),
 	};
