@@ -14,6 +14,30 @@ static const double condition_tolerance = 1e-13; // of the condition
 // The most that waiting downdates may hold a falling strip back, of the way it has fallen.
 static const double fall_tolerance = 0.02;
 
+// One session is cut for four tests, which look at it one after another: first at its books, then,
+// after it has settled, at its system and at what has come loose.
+static struct {
+	cau_scene_def *scene;
+	cau_session *session;
+} busy;
+
+static int make_busy(void **state)
+{
+	(void)state;
+	busy.scene = busy_scene();
+	busy.session = stage_open(busy.scene, 1);
+	busy_run(busy.session, BUSY_TICKS);
+	return 0;
+}
+
+static int drop_busy(void **state)
+{
+	(void)state;
+	cau_session_destroy(busy.session);
+	free(busy.scene);
+	return 0;
+}
+
 // ---- the books
 static void *copy_of(const void *array, size_t bytes)
 {
@@ -32,10 +56,8 @@ typedef struct book {
 static void shares_equal_a_recount(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = busy_scene();
-	cau_session *session = stage_open(scene, 1);
+	cau_session *session = busy.session;
 	cau_session_info info = stage_info(session);
-	busy_run(session, BUSY_TICKS);
 	cau_dissection *d = &session->dissection;
 	assert_true(d->elements_removed > 500);
 	book books[] = {
@@ -58,19 +80,14 @@ static void shares_equal_a_recount(void **state)
 			fail_msg("book %zu differs from a recount", k);
 		free(books[k].copy);
 	}
-	cau_session_destroy(session);
-	free(scene);
 }
 
 // A share count by hand: edges of the element that have not parted in its layer.
 static void shares_are_counts_of_whole_edges(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = busy_scene();
-	cau_session *session = stage_open(scene, 1);
-	busy_run(session, BUSY_TICKS);
-	const cau_tissue *t = &session->tissue;
-	const cau_dissection *d = &session->dissection;
+	const cau_tissue *t = &busy.session->tissue;
+	const cau_dissection *d = &busy.session->dissection;
 	uint8_t *count = calloc((size_t)t->tetrahedron_count, 1);
 	assert_non_null(count);
 	const int32_t *first = t->edges.first[CAU_PRIMITIVE_TETRAHEDRON];
@@ -82,8 +99,6 @@ static void shares_are_counts_of_whole_edges(void **state)
 	assert_memory_equal(count, d->share_count[CAU_PRIMITIVE_TETRAHEDRON],
 	                    (size_t)t->tetrahedron_count);
 	free(count);
-	cau_session_destroy(session);
-	free(scene);
 }
 
 // ---- the system
@@ -98,9 +113,7 @@ static void settle_factor(cau_session *session)
 static void the_system_equals_a_reassembly(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = busy_scene();
-	cau_session *session = stage_open(scene, 1);
-	busy_run(session, 60);
+	cau_session *session = busy.session;
 	settle_factor(session);
 	assert_true(stage_frame(session).statistics.factor_operations > 0); // not a canonical one
 	const cau_system *system = &session->solver.system;
@@ -138,18 +151,13 @@ static void the_system_equals_a_reassembly(void **state)
 	free(b);
 	free(x);
 	free(fresh_x);
-	cau_session_destroy(session);
-	free(scene);
 }
 
 // ---- vertices without elements
 static void isolated_vertices_are_frozen(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = busy_scene();
-	cau_session *session = stage_open(scene, 1);
-	busy_run(session, 70);
-	settle_factor(session);
+	cau_session *session = busy.session;
 	int32_t n = stage_info(session).vertex_count, isolated = 0;
 	double *before = copy_of(stage_frame(session).position, 3 * (size_t)n * sizeof(double));
 	stage_step(session, 20);
@@ -164,8 +172,6 @@ static void isolated_vertices_are_frozen(void **state)
 	assert_true(isolated > 0);
 	assert_int_equal(isolated, frame.statistics.frozen_vertices);
 	free(before);
-	cau_session_destroy(session);
-	free(scene);
 }
 
 // ---- a strip, pinned at one end, cut through in the middle
@@ -414,15 +420,15 @@ static void a_new_factor_amid_contacts(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(shares_equal_a_recount),
 		cmocka_unit_test(shares_are_counts_of_whole_edges),
+		cmocka_unit_test(shares_equal_a_recount), // its recount stays
 		cmocka_unit_test(the_system_equals_a_reassembly),
-		cmocka_unit_test(a_new_factor_amid_contacts),
 		cmocka_unit_test(isolated_vertices_are_frozen),
+		cmocka_unit_test(a_new_factor_amid_contacts),
 		cmocka_unit_test(a_strip_falls_as_with_a_fresh_factor),
 		cmocka_unit_test(a_grasped_strip_stays_held),
 		cmocka_unit_test(burnt_out_of_the_jaws),
 		cmocka_unit_test(links_part_and_fascia_comes_off),
 	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, make_busy, drop_busy);
 }
