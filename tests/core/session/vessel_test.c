@@ -10,7 +10,9 @@ static const double sealed_m = -0.005, deep_m = -0.007, above_m = 0.04;
 enum {
 	TRAVEL = 12, // twice what the longest way, 48 mm, takes at the tools' 0.5 m/s
 	CLOSING = 40,
-	SEALING = 180,
+	OPENING = 20,  // the jaws open in a few ticks; the rest is for tissue to come back
+	SEALING = 180, // at most
+	HOLDING = 30,  // after the vessel is sealed, for what is beside its strongest place
 	CUTTING = CAU_TEST_SANITIZED ? 35 : 70
 };
 
@@ -52,7 +54,7 @@ static void withdraw_forceps(cau_session *session)
 {
 	stage_energize(session, "forceps", 0);
 	stage_release(session, "forceps");
-	stage_step(session, CLOSING);
+	stage_step(session, OPENING);
 	put(session, "forceps", sealed_m, 0, above_m);
 	stage_step(session, TRAVEL);
 }
@@ -61,7 +63,10 @@ static void seal(cau_session *session)
 {
 	close_forceps(session);
 	stage_energize(session, "forceps", 1);
-	stage_step(session, SEALING);
+	int ticks = 0;
+	for (; ticks < SEALING - HOLDING && !(artery(session)->flags & CAU_VESSEL_SEALED); ticks++)
+		stage_step(session, 1);
+	stage_step(session, HOLDING);
 	withdraw_forceps(session);
 }
 
