@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core's signed distances for the viewer's tests: of every line "SHAPE HOT_RADIUS TIP
-// SHAFT_RADIUS JAW PART X Y Z" (metres; PART 0 hot, 1 cold) on standard input, the distance and its
-// gradient.
+// The core's signed distances for the viewer's tests. Each line "SHAPE HOT_RADIUS TIP SHAFT_RADIUS
+// JAW PART X Y Z STEPS" on standard input (metres; PART 0 hot, 1 cold) moves the point STEPS times
+// towards the part's surface, by its distance along the gradient. The answer is the distance of the
+// point where it ends, and that point.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -10,19 +11,23 @@
 
 int main(void)
 {
-	int shape, part;
+	int shape, part, steps;
 	double hot, tip, shaft, jaw;
 	cau_vec3 point;
-	while (scanf("%d %lf %lf %lf %lf %d %lf %lf %lf", &shape, &hot, &tip, &shaft, &jaw, &part,
-	             &point.x, &point.y, &point.z) == 9) {
+	while (scanf("%d %lf %lf %lf %lf %d %lf %lf %lf %d", &shape, &hot, &tip, &shaft, &jaw, &part,
+	             &point.x, &point.y, &point.z, &steps) == 10) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		tool.hot_radius_m = hot;
 		tool.tip_length_m = tip;
 		tool.shaft_radius_m = shaft;
+		cau_tool_part of = part == 0 ? CAU_PART_HOT : CAU_PART_COLD;
 		cau_vec3 gradient = {0, 0, 0};
-		double distance = cau_tool_distance(&tool, jaw, part == 0 ? CAU_PART_HOT : CAU_PART_COLD,
-		                                    point, &gradient);
-		printf("%.9g %.9g %.9g %.9g\n", distance, gradient.x, gradient.y, gradient.z);
+		double distance = cau_tool_distance(&tool, jaw, of, point, &gradient);
+		for (int i = 0; i < steps; i++) {
+			point = cau_add_scaled(point, -distance, gradient);
+			distance = cau_tool_distance(&tool, jaw, of, point, &gradient);
+		}
+		printf("%.9g %.9g %.9g %.9g\n", distance, point.x, point.y, point.z);
 	}
 	return EXIT_SUCCESS;
 }

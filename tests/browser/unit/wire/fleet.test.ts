@@ -28,6 +28,8 @@ const options = { url: 'ws://host/v1?label=d2', client: 'viewer test', clientId:
 const HELLO = { result: { client: 4, resume: 'again', role: 'view' } };
 
 describe('a fleet', () => {
+  afterEach(() => void vi.useRealTimers());
+
   it('has the labels that the proxy tells', () => {
     expect(readLabels({ labels: ['d1', 'ward_3'], more: 1 })).toEqual(['d1', 'ward_3']);
     for (const none of [{ labels: [] }, {}, null, 'd1', { labels: 'd1' }, { labels: ['d1', 2] }, { labels: ['d-1'] }, { labels: ['D1'] }])
@@ -56,7 +58,6 @@ describe('a fleet', () => {
     expect(await gone).toBeNull();
     await vi.advanceTimersByTimeAsync(60000);
     expect(opened).toBe(1);
-    vi.useRealTimers();
   });
 
   it('waits for nobody for long', async () => {
@@ -66,6 +67,5 @@ describe('a fleet', () => {
     await vi.advanceTimersByTimeAsync(5000);
     expect(await asked).toBeNull();
     expect(silent.closed).toBe(1);
-    vi.useRealTimers();
   });
 });
