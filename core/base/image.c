@@ -166,25 +166,28 @@ static cau_image *hold(uint64_t key)
 	return found;
 }
 
-cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count)
+cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, bool *made)
 {
+	bool ignored;
+	*(made ? made : &ignored) = false;
 	pthread_mutex_lock(&lock);
 	cau_image *image = hold(key);
 	pthread_mutex_unlock(&lock);
 	if (image)
 		return image;
-	cau_image *made = make(key, pages, count); // copies for long, and nobody waits
+	cau_image *own = make(key, pages, count); // copies for long, and nobody waits
 	pthread_mutex_lock(&lock);
 	image = hold(key); // another thread's, made meanwhile
-	if (!image && made) {
-		made->holders = 1;
-		made->next = images;
-		image = images = made;
-		made = NULL;
+	if (!image && own) {
+		own->holders = 1;
+		own->next = images;
+		image = images = own;
+		own = NULL;
+		*(made ? made : &ignored) = true;
 	}
 	pthread_mutex_unlock(&lock);
-	if (made)
-		destroy(made);
+	if (own)
+		destroy(own);
 	return image;
 }
 
@@ -216,14 +219,14 @@ int32_t cau_image_count(void)
 }
 
 // ---- showing
-// The next run of equal pages at or after *first: its length, 0 at the end.
+// The next run of equal pages at or after *first: its length, 0 at the end. `equal`: all are.
 static size_t find_run(const cau_image *image, const image_part *part, const char *start,
-                       size_t *first)
+                       bool equal, size_t *first)
 {
 	size_t k = *first, length = 0, least = LEAST_RUN_BYTES / image->page;
 	for (; k < part->page_count; k++) {
-		if (same_page(image->view + (part->at + k) * image->page, start + k * image->page,
-		              image->page)) {
+		if (equal || same_page(image->view + (part->at + k) * image->page, start + k * image->page,
+		                       image->page)) {
 			length++;
 			continue;
 		}
@@ -235,7 +238,7 @@ static size_t find_run(const cau_image *image, const image_part *part, const cha
 	return length >= least ? length : 0;
 }
 
-size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count)
+size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count, bool equal)
 {
 	size_t shown = 0;
 	int32_t runs = 0;
@@ -245,7 +248,7 @@ size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t co
 			continue;
 		char *start = pages[i].start;
 		size_t length;
-		for (size_t k = 0; runs < MOST_RUNS && (length = find_run(image, part, start, &k));
+		for (size_t k = 0; runs < MOST_RUNS && (length = find_run(image, part, start, equal, &k));
 		     k += length, runs++) {
 			if (!map_over(image, part->at + k, length, start + k * image->page))
 				return shown * image->page;

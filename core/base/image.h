@@ -8,6 +8,7 @@
 // may call these; who owns the pages calls for them, while nothing else reads or writes them.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,10 +23,13 @@ typedef struct cau_image cau_image;
 
 // The image of this key, held once more; if there is none, it is made of these pages, which become
 // the first that are shown. NULL: the system does not allow it, or has no memory for it. Pages of
-// equal place in the list are compared: they should be listed in the same order each time.
-cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count);
-// Maps the image over those of the pages that are equal to it; returns their bytes.
-size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count);
+// equal place in the list are compared: they should be listed in the same order each time. *made
+// (may be NULL): whether it was made of these pages.
+cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, bool *made);
+// Maps the image over those of the pages that are equal to it; returns their bytes. `equal`: all
+// are, as it was made of them and nothing has written them since. Then none is compared, which
+// takes longer than the rest.
+size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count, bool equal);
 // What was mapped stays so until its pages are given back. The last holder's release ends it.
 void cau_image_release(cau_image *image); // takes NULL
 

@@ -32,6 +32,7 @@ size_t cau_session_share(cau_session *session)
 	list_fields(session, &list);
 	list.count +=
 		cau_arena_pages(&session->arena, list.pages + list.count, CAU_IMAGE_PARTS - list.count);
-	session->image = cau_image_of(cau_session_tissue_hash(session), list.pages, list.count);
-	return session->image ? cau_image_show(session->image, list.pages, list.count) : 0;
+	bool made = false;
+	session->image = cau_image_of(cau_session_tissue_hash(session), list.pages, list.count, &made);
+	return session->image ? cau_image_show(session->image, list.pages, list.count, made) : 0;
 }

@@ -89,8 +89,8 @@ cau_scene_def *bench_scene(const bench_options *options)
 	return scene;
 }
 
-// The last scene with built-in tension of which a session was made, and how that came to rest, which takes
-// seconds. Another session of an equal scene begins there, with the same bits.
+// The last scene with built-in tension of which a session was made, and how that came to rest,
+// which takes seconds. Another session of an equal scene begins there, with the same bits.
 static struct {
 	cau_scene_def *scene;
 	void *shot;

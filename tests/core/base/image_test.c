@@ -65,11 +65,11 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	(void)state;
 	cau_pages a = patterned(), b = patterned(), c = patterned();
 	((char *)b.start)[20 * page + 5]++; // before it is shared
-	cau_image *image = cau_image_of(KEY, &a, 1);
+	cau_image *image = cau_image_of(KEY, &a, 1, NULL);
 	assert_non_null(image);
-	assert_int_equal(cau_image_show(image, &a, 1), (size_t)PAGES * page);
-	assert_ptr_equal(cau_image_of(KEY, &b, 1), image);
-	assert_int_equal(cau_image_show(image, &b, 1), (size_t)(PAGES - 1) * page);
+	assert_int_equal(cau_image_show(image, &a, 1, false), (size_t)PAGES * page);
+	assert_ptr_equal(cau_image_of(KEY, &b, 1, NULL), image);
+	assert_int_equal(cau_image_show(image, &b, 1, false), (size_t)(PAGES - 1) * page);
 	assert_int_equal(mappings("rw-p", NULL), 3); // one of a, two around the page of b
 	assert_true(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&b, 20));
@@ -78,8 +78,8 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_false(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&a, 30));
 	assert_false(is_patterned(&b, 20));
-	assert_ptr_equal(cau_image_of(KEY, &c, 1), image); // which is as it was
-	assert_int_equal(cau_image_show(image, &c, 1), (size_t)PAGES * page);
+	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image); // which is as it was
+	assert_int_equal(cau_image_show(image, &c, 1, false), (size_t)PAGES * page);
 	for (int i = 0; i < 3; i++)
 		cau_image_release(image);
 	assert_int_equal(cau_image_count(), 0);
@@ -90,12 +90,38 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(mappings("rw-p", NULL), 0);
 }
 
+// All pages of who made it are shown without a look, those of others are not.
+static void who_made_it_knows(void **state)
+{
+	(void)state;
+	cau_pages a = patterned(), b = patterned();
+	bool made = false;
+	cau_image *image = cau_image_of(KEY, &a, 1, &made);
+	assert_non_null(image);
+	assert_true(made);
+	assert_int_equal(cau_image_show(image, &a, 1, made), (size_t)PAGES * page);
+	assert_int_equal(mappings("rw-p", NULL), 1);
+	assert_true(is_patterned(&a, PAGES));
+	((char *)b.start)[20 * page]++;
+	assert_ptr_equal(cau_image_of(KEY, &b, 1, &made), image);
+	assert_false(made);
+	assert_int_equal(cau_image_show(image, &b, 1, made), (size_t)(PAGES - 1) * page);
+	assert_true(is_patterned(&b, 20));
+	assert_false(is_patterned(&b, PAGES)); // as b was, and not as the image is
+	((char *)b.start)[20 * page]--;
+	assert_true(is_patterned(&b, PAGES));
+	cau_image_release(image);
+	cau_image_release(image);
+	cau_pages_give_back(&a);
+	cau_pages_give_back(&b);
+}
+
 static void nothing_can_write_an_image(void **state)
 {
 	(void)state;
 	void *view = NULL;
 	cau_pages a = patterned();
-	cau_image *image = cau_image_of(KEY, &a, 1);
+	cau_image *image = cau_image_of(KEY, &a, 1, NULL);
 	assert_non_null(image);
 	assert_int_equal(mappings("r--s", &view), 1);
 	assert_int_equal(mprotect(view, page, PROT_READ | PROT_WRITE), -1);
@@ -114,11 +140,11 @@ static void short_runs_and_others_stay_as_they_are(void **state)
 	for (size_t k = run - 1; k < PAGES; k += run)
 		((char *)b[1].start)[k * page]++;
 	cau_pages half = {a[0].start, a[0].byte_count / 2};
-	cau_image *image = cau_image_of(KEY, a, 2);
+	cau_image *image = cau_image_of(KEY, a, 2, NULL);
 	assert_non_null(image);
-	assert_int_equal(cau_image_show(image, &half, 1), 0);
-	assert_int_equal(cau_image_show(image, b, 2), (size_t)PAGES * page);
-	assert_int_equal(cau_image_show(image, b, 0), 0);
+	assert_int_equal(cau_image_show(image, &half, 1, false), 0);
+	assert_int_equal(cau_image_show(image, b, 2, false), (size_t)PAGES * page);
+	assert_int_equal(cau_image_show(image, b, 0, false), 0);
 	cau_image_release(image);
 	for (int i = 0; i < 2; i++) {
 		cau_pages_give_back(&a[i]);
@@ -130,13 +156,13 @@ static void each_key_has_its_own(void **state)
 {
 	(void)state;
 	cau_pages a = patterned();
-	cau_image *image[2] = {cau_image_of(1, &a, 1), cau_image_of(2, &a, 1)};
+	cau_image *image[2] = {cau_image_of(1, &a, 1, NULL), cau_image_of(2, &a, 1, NULL)};
 	assert_non_null(image[0]);
 	assert_ptr_not_equal(image[0], image[1]);
 	assert_int_equal(cau_image_count(), 2);
 	cau_image_release(image[0]); // the older, behind the other in the list
 	assert_int_equal(cau_image_count(), 1);
-	assert_ptr_equal(cau_image_of(2, &a, 1), image[1]);
+	assert_ptr_equal(cau_image_of(2, &a, 1, NULL), image[1]);
 	cau_image_release(image[1]);
 	cau_image_release(image[1]);
 	cau_image_release(NULL);
@@ -149,9 +175,9 @@ static void of_too_much_and_of_nothing_there_is_none(void **state)
 	(void)state;
 	cau_pages much, nothing = {0};
 	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // never touched
-	assert_null(cau_image_of(KEY, &much, 1));
-	assert_null(cau_image_of(KEY, &nothing, 1));
-	assert_null(cau_image_of(KEY, NULL, 0));
+	assert_null(cau_image_of(KEY, &much, 1, NULL));
+	assert_null(cau_image_of(KEY, &nothing, 1, NULL));
+	assert_null(cau_image_of(KEY, NULL, 0, NULL));
 	assert_int_equal(cau_image_count(), 0);
 	cau_pages_give_back(&much);
 }
@@ -165,6 +191,7 @@ int main(void)
 	}
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equal_pages_become_one_until_one_is_written),
+		cmocka_unit_test(who_made_it_knows),
 		cmocka_unit_test(nothing_can_write_an_image),
 		cmocka_unit_test(short_runs_and_others_stay_as_they_are),
 		cmocka_unit_test(each_key_has_its_own),
