@@ -111,16 +111,18 @@ async function refusal(one, method, params, name) {
 	return path ?? '';
 }
 
-let made = 0;
+// A session serves until a request was not refused for a value: such a refusal changes nothing.
+let made = 0, untouched = null;
 async function attempt(request, range, value) {
-	const session = await smallSession(client, `ranges-${++made}`, { cells: [3, 3], paused: true });
+	const session = untouched ?? await smallSession(client, `ranges-${++made}`, { cells: [3, 3], paused: true });
 	const paths = [];
 	for (const params of withValue(base(request.schema, session), range, value)) {
 		const one = await daemon.connect(); // a client id of its own, and so a client_sequence
 		paths.push(await refusal(one, request.method, params, range.name));
 		await one.close();
 	}
-	if (request.method !== 'session.destroy')
+	untouched = paths.every(Boolean) ? session : null;
+	if (!untouched && request.method !== 'session.destroy')
 		await client.call('session.destroy', { session });
 	return paths;
 }
