@@ -9,9 +9,10 @@ import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallScene, smallSession } from './wire/scene.mjs';
 
 const STEP_S = 1 / 60;
-const STEPS = 300, CUT_STEPS = 100, LONG_STEPS = 2500;
+const SLOW = process.env.E2E_SLOW === '1'; // sanitizers look at each path; figures and chances are for other builds
+const STEPS = SLOW ? 60 : 300, CUT_STEPS = SLOW ? 50 : 100, LONG_STEPS = 2500;
 const DEADLINE_TICKS = 15; // of 1/60 s, in the deadline of 250 ms
-const EPISODES = Number(process.env.E2E_EPISODES ?? 10), LOAD = Number(process.env.E2E_LOAD ?? 4);
+const EPISODES = Number(process.env.E2E_EPISODES ?? (SLOW ? 3 : 10)), LOAD = Number(process.env.E2E_LOAD ?? 4);
 
 let daemon, watcher;
 before(async () => {
@@ -251,7 +252,7 @@ test('an ephemeral session writes nothing; all of a stored one is there after ki
 });
 
 // Long enough that checkpoints, the folding of the log into the file, and thinning are in the mean.
-test('a stored step that moves a tool writes at most 16 KiB', { skip: process.env.E2E_SLOW === '1' && 'sanitizers write the same' }, async () => {
+test('a stored step that moves a tool writes at most 16 KiB', { skip: SLOW && 'sanitizers write the same' }, async () => {
 	const own = await Daemon.start({ settings: { browser_deadline_s: 0.25 } });
 	const client = await own.connect();
 	const session = await smallSession(client, 'long', { paused: true });
