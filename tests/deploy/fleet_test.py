@@ -22,6 +22,7 @@ import unittest
 SOURCE = os.path.abspath(sys.argv.pop(1))
 sys.path.insert(0, os.path.join(SOURCE, "tests", "clients", "e2e"))
 import programs  # noqa: E402
+import together  # noqa: E402
 
 MAKE = os.path.join(SOURCE, "deploy", "fleet", "make_haproxy.py")
 # Debian's is in a folder that is not in everybody's PATH.
@@ -30,14 +31,6 @@ NAME = "cautery.test"
 HANDSHAKE = {"Host": NAME, "Upgrade": "websocket", "Connection": "Upgrade",
              "Sec-WebSocket-Version": "13", "Sec-WebSocket-Protocol": "cautery.v1",
              "Sec-WebSocket-Key": base64.b64encode(bytes(16)).decode()}
-
-
-def free_ports(count):
-    held = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [server.getsockname()[1] for server in held]
-    for server in held:
-        server.close()
-    return ports
 
 
 def await_true(what, condition):
@@ -132,7 +125,7 @@ class Configuration(Folder):
     @unittest.skipIf(os.geteuid() != 0, "only root can give its rights up")
     def test_it_does_not_serve_as_root(self):
         """As systemd's unit of Debian starts it: a master, and a worker that serves."""
-        port, = free_ports(1)
+        port, = together.free_ports(1)
         made = make(self.folder, ["d1 127.0.0.1:1 2"], "--no-tls", "--bind", f"127.0.0.1:{port}",
                     "--socket", os.path.join(self.folder, "admin.sock"))
         path = os.path.join(self.folder, "haproxy.cfg")
@@ -187,7 +180,7 @@ class Fleet(Folder):
     settings = {}  # of the daemons, besides those that a fleet wants
 
     def setUp(self):
-        http_port, *self.agent_ports = free_ports(3)
+        http_port, *self.agent_ports = together.free_ports(3)
         self.address = f"127.0.0.1:{http_port}"
         self.daemons = {}
         for label, agent_port in zip(("d1", "d2"), self.agent_ports):
@@ -458,4 +451,4 @@ class Clients(Fleet):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    together.main(at_once=3, by_class=True)

@@ -18,20 +18,13 @@ SOURCE = os.path.abspath(sys.argv.pop(1))
 sys.path[:0] = [os.path.join(SOURCE, "tests", "clients", "e2e"), os.path.join(SOURCE, "tests", "deploy")]
 import etcd  # noqa: E402
 import programs  # noqa: E402
+import together  # noqa: E402
 
 TTL_S = 2  # the least that there is
 MARGIN_S = 0.5
 LOST = (1, -signal.SIGALRM)  # it ends by itself, or by the kernel's signal where that takes long (the thread sanitizer)
 # A machine that other tests keep busy runs a thread late, and a test. Under sanitizers more so.
 LATE_S = 8 if os.environ.get("E2E_SLOW") == "1" else 2
-
-
-def free_ports(count):
-    held = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [server.getsockname()[1] for server in held]
-    for server in held:
-        server.close()
-    return ports
 
 
 class WithStores(unittest.TestCase):
@@ -73,7 +66,7 @@ class WithStores(unittest.TestCase):
 class Lease(WithStores):
     def setUp(self):
         super().setUp()
-        self.etcd = etcd.Etcd("127.0.0.1", *free_ports(2), programs.PATIENCE_S)
+        self.etcd = etcd.Etcd("127.0.0.1", *together.free_ports(2), programs.PATIENCE_S)
         self.addCleanup(self.etcd.stop)
         self.etcd.await_healthy()
         self.urls = self.etcd.url
@@ -170,7 +163,7 @@ class Three(WithStores):
 
     def setUp(self):
         super().setUp()
-        ports = free_ports(6)
+        ports = together.free_ports(6)
         peers = {f"e{i}": ports[3 + i] for i in range(3)}
         self.etcds = [etcd.Etcd("127.0.0.1", ports[i], ports[3 + i], programs.PATIENCE_S, name=f"e{i}", peers=peers)
                       for i in range(3)]
@@ -198,4 +191,4 @@ class Three(WithStores):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    together.main(at_once=3, by_class=False)
