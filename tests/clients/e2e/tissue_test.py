@@ -251,10 +251,10 @@ class Bounds(programs.Case):
     real = True
     settings = {"mesh_time_s": 600}
 
-    def heavy(self, daemon):
+    def heavy(self, daemon, edge_mm=0.25):
         """A client whose upload takes seconds to fill."""
         file = self.file("fine.stl", solid_files.stl(solid_files.ball(n=60)))
-        command = [os.path.join(programs.PROGRAMS, "cautery"), "--url", daemon.url, "create", file, "--edge-mm", "0.25", "--unit-m", "0.001"]
+        command = [os.path.join(programs.PROGRAMS, "cautery"), "--url", daemon.url, "create", file, "--edge-mm", str(edge_mm), "--unit-m", "0.001"]
         return subprocess.Popen(command, env=programs.CLEAN, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def test_it_ends_with_its_client(self):
@@ -293,7 +293,7 @@ class Bounds(programs.Case):
     def test_memory_is_bounded(self):
         daemon = programs.Daemon(real=True, mesh_memory_mb=64, mesh_time_s=600)
         self.addCleanup(daemon.stop)
-        _, told = self.heavy(daemon).communicate()
+        _, told = self.heavy(daemon, edge_mm=0.4).communicate()
         self.assertIn("meshing needs more than 64 MB (setting mesh_memory_mb)", told)
         self.json("ls", url=daemon.url)
 
