@@ -58,16 +58,21 @@ static int32_t *slot_of(const pass *of, int32_t a, int32_t b)
 	}
 }
 
+// Where there is no memory the table stays as it was: edges are looked for in it until the pass
+// ends.
 static bool rehash(pass *of, uint32_t slots)
 {
+	int32_t *slot = malloc(slots * sizeof *slot);
+	if (!slot)
+		return false;
 	free(of->slot);
-	of->slot = malloc(slots * sizeof *of->slot);
+	of->slot = slot;
 	of->slot_mask = slots - 1;
-	for (uint32_t i = 0; of->slot && i < slots; i++)
+	for (uint32_t i = 0; i < slots; i++)
 		of->slot[i] = -1;
-	for (int32_t i = 0; of->slot && i < of->cut_count; i++)
+	for (int32_t i = 0; i < of->cut_count; i++)
 		*slot_of(of, of->cuts[i].in, of->cuts[i].out) = i;
-	return of->slot != NULL;
+	return true;
 }
 
 static void add_cut(pass *of, int32_t in, int32_t out)
