@@ -14,7 +14,7 @@
 #include "solid/tets.h"
 
 // What a session steps in real time on one core, with room for a cut.
-enum { TETRAHEDRA_CHOSEN = 8000, SAMPLES = 24, SAMPLES_LEAST = 200, TRIES = 5 };
+enum { TETRAHEDRA_CHOSEN = 8000, MORE_MOST = 16, SAMPLES = 24, SAMPLES_LEAST = 200, TRIES = 5 };
 // Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of it (4 of 6).
 static const double spacing_of_edge = 1.0 / 0.911;
 static const double tetrahedra_of_cell = 12;
@@ -191,6 +191,12 @@ static double longest_side(const cau_domain *domain)
 	return longest;
 }
 
+// How many tetrahedra a chosen edge is to make.
+static int32_t aim_of(const work *of)
+{
+	return of->wish->tetrahedra > 0 ? of->wish->tetrahedra : TETRAHEDRA_CHOSEN;
+}
+
 static cau_status choose_spacing(work *of, double *spacing, cau_error *error)
 {
 	double edge = of->wish->edge;
@@ -200,21 +206,12 @@ static cau_status choose_spacing(work *of, double *spacing, cau_error *error)
 		*spacing = edge * spacing_of_edge;
 		return CAU_OK;
 	}
-	*spacing =
-		cbrt(tetrahedra_of_cell * volume_inside(&of->domain, of->is_closed) / TETRAHEDRA_CHOSEN);
+	*spacing = cbrt(tetrahedra_of_cell * volume_inside(&of->domain, of->is_closed) / aim_of(of));
 	if (*spacing > spacing_least * longest_side(&of->domain) && isfinite(*spacing))
 		return CAU_OK;
 	return cau_fail(error, CAU_BAD_MESH, NULL,
 	                "nothing is inside this %s: make a sheet of it (as fascia), or choose an edge",
 	                of->is_volume ? "segmentation" : "surface");
-}
-
-static cau_status mesh_with(work *of, double spacing, cau_error *error)
-{
-	cau_tets_finish(&of->tets);
-	tell(of, "lattice", 0.1);
-	cau_status status = cau_lattice(&of->domain, spacing, &of->tets, error);
-	return status ? status : cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
 }
 
 static cau_status too_thin(const work *of, cau_error *error)
@@ -223,6 +220,20 @@ static cau_status too_thin(const work *of, cau_error *error)
 	                "an edge of %.3g is longer than the tissue is thick: choose a shorter one%s",
 	                of->tets.spacing / spacing_of_edge,
 	                of->wish->edge > 0 ? "" : ", or crop the file");
+}
+
+static cau_status mesh_with(work *of, double spacing, cau_error *error)
+{
+	cau_tets_finish(&of->tets);
+	tell(of, "lattice", 0.1);
+	cau_status status = cau_lattice(&of->domain, spacing, &of->tets, error);
+	int64_t most = MORE_MOST * (int64_t)aim_of(of);
+	if (!status && !(of->wish->edge > 0) && of->tets.count > most) // before they are cut
+		return cau_fail(error, CAU_BAD_VALUE, "edge",
+		                "so thin a tissue needs more than %lld tetrahedra: make a sheet of it (as "
+		                "fascia), or choose an edge",
+		                (long long)most);
+	return status ? status : cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
 }
 
 // Tissue thinner than the edge vanishes. An edge that was chosen here is halved, then.

@@ -13,9 +13,14 @@ static double rounding(const cau_step_solver *solver)
 	return solver->kernels->vectors->rounding;
 }
 
-static double objective_noise(const cau_step_solver *solver)
+// Two parts: of the sum; and of each element's residual R, which is the difference of
+// displacements. With w/2 |R|^2 of N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR in
+// the root mean square of all. Stiff tissue that bears next to nothing has more of the second.
+double cau_solver_noise(const cau_step_solver *solver)
 {
-	return rounding(solver) * fabs(cau_solver_elastic_energy(solver));
+	double elastic = fabs(cau_solver_elastic_energy(solver));
+	double of_residuals = 0.1 * rounding(solver); // one term each, not thousands
+	return rounding(solver) * elastic + of_residuals * sqrt(2 * solver->stiffness_j * elastic);
 }
 
 // ---- products of vectors by vertex
@@ -131,7 +136,7 @@ static bool may_stand(cau_step_solver *solver, double scale, double value, doubl
 static bool take_step(cau_step_solver *solver, bool accelerated, double slope, double *objective)
 {
 	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
-	double noise = objective_noise(solver);
+	double noise = cau_solver_noise(solver);
 	if (solver->contact)
 		noise += cau_contact_work(solver->contact, solver);
 	double scale = 1;
@@ -201,7 +206,7 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
-	double most = solver->conservative ? objective_noise(solver) : far_below * objective;
+	double most = solver->conservative ? cau_solver_noise(solver) : far_below * objective;
 	bool touches = solver->collide && solver->collide->touching_count;
 	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
 }
@@ -285,6 +290,7 @@ static void forget_increments(cau_step_solver *solver)
 // The state between iterations of a round.
 typedef struct descent {
 	double objective, first, last; // J; norms of the first increment and of the last
+	int32_t most;                  // iterations
 	int32_t steps;                 // since the history was forgotten
 	int32_t backtracks_before;     // of the tick's earlier rounds
 	uint64_t touching;
@@ -349,6 +355,17 @@ static bool advance(cau_step_solver *solver, descent *d, int32_t k, bool acceler
 	return false;
 }
 
+int32_t cau_solver_iterations_most(const cau_step_solver *solver)
+{
+	const cau_tissue *tissue = solver->tissue;
+	int32_t elements = tissue->tetrahedron_count + tissue->triangle_count + tissue->link_count +
+	                   tissue->hinge_count;
+	int32_t effort = CAU_SOLVER_EFFORT / (elements > 0 ? elements : 1);
+	if (effort > CAU_ACCURACY_STEPS)
+		effort = CAU_ACCURACY_STEPS;
+	return solver->accuracy.wanted > 0 && effort > solver->iterations ? effort : solver->iterations;
+}
+
 // One iteration. Returns whether the round ends.
 static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *status,
                     cau_error *error)
@@ -373,7 +390,7 @@ static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *
 	if (meets_others(solver))
 		cau_accuracy_begin(&solver->accuracy);
 	d->near = cau_accuracy_is_reached(solver, norm) && !touches_elsewhere(solver);
-	bool ends = (d->near && solver->loose.settled) || k + 1 == solver->iterations;
+	bool ends = (d->near && solver->loose.settled) || k + 1 == d->most;
 	return (ends && spare(solver, d, norm)) ||
 	       advance(solver, d, k, accelerated, norm, status, error);
 }
@@ -381,7 +398,9 @@ static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
-	descent d = {.objective = solver->objective, .backtracks_before = solver->backtracks};
+	descent d = {.objective = solver->objective,
+	             .most = cau_solver_iterations_most(solver),
+	             .backtracks_before = solver->backtracks};
 	d.touching = solver->collide ? solver->collide->touching_hash : 0;
 	solver->spared = false;
 	forget_increments(solver);
@@ -391,15 +410,13 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	// Tissue that was guessed into tissue may have more energy than it began with.
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
 		go_back(solver, &d.objective);
-	for (int32_t k = 0; k < solver->iterations; k++)
+	for (int32_t k = 0; k < d.most; k++)
 		if (iterate(solver, &d, k, &status, error))
 			break;
 	if (status)
 		return status;
-	CAU_ASSERT(solver->backtracks - d.backtracks_before <=
-	               solver->iterations * (CAU_MAX_BACKTRACKS + 1),
-	           "%d backtracks in %d iterations", solver->backtracks - d.backtracks_before,
-	           solver->iterations);
+	CAU_ASSERT(solver->backtracks - d.backtracks_before <= d.most * (CAU_MAX_BACKTRACKS + 1),
+	           "%d backtracks in %d iterations", solver->backtracks - d.backtracks_before, d.most);
 	cau_accuracy_learn(&solver->accuracy);
 	if (solver->accuracy.wanted > 0)
 		solver->accuracy.error = fmax(solver->accuracy.error, solver->loose.left);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which vertices a step leaves to Newton's method: vertices of slack sheets, but none of fat and
-// none near a tool.
+// Which vertices a step leaves to Newton's method: vertices of slack sheets and of sheets with a
+// range, but none of fat and none near a tool.
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,21 +31,32 @@ static bool is_on_fat(const cau_step_solver *solver, const cau_local_work *work,
 	return false;
 }
 
+// Whether a triangle's strain is kept within a range. There it resists nothing.
+static bool has_range(const cau_step_solver *solver, int32_t share, int32_t slot)
+{
+	return weight_of(solver, slot) > 0 &&
+	       cau_newton_stiffness(solver, &(cau_newton_element){share, slot}) == CAU_NEWTON_RANGE;
+}
+
 // Shares with triangles that are on no fat: only these are looked at.
 static bool list_shares(cau_step_solver *solver)
 {
 	cau_loose *loose = &solver->loose;
 	const cau_element_slots *slots = &solver->slots;
 	loose->share = calloc((size_t)slots->work_count + 1, sizeof *loose->share);
-	for (int32_t w = 0; loose->share && w < slots->work_count; w++) {
+	loose->ranged = calloc((size_t)slots->work_count + 1, sizeof *loose->ranged);
+	for (int32_t w = 0; loose->share && loose->ranged && w < slots->work_count; w++) {
 		const cau_local_work *work = &slots->work[w];
 		bool any = false;
-		for (int32_t slot = work->first; slot < work->last && !any; slot++)
-			any = work->kind == CAU_ELEMENT_TRIANGLE && !is_on_fat(solver, work, slot);
+		for (int32_t slot = work->first; slot < work->last; slot++) {
+			bool own = work->kind == CAU_ELEMENT_TRIANGLE && !is_on_fat(solver, work, slot);
+			any |= own;
+			loose->ranged[w] |= own && has_range(solver, w, slot);
+		}
 		if (any)
 			loose->share[loose->share_count++] = w;
 	}
-	return loose->share != NULL;
+	return loose->share && loose->ranged;
 }
 
 static bool make_loose(cau_step_solver *solver)
@@ -53,7 +64,7 @@ static bool make_loose(cau_step_solver *solver)
 	cau_loose *loose = &solver->loose;
 	const cau_tissue *tissue = solver->tissue;
 	size_t n = (size_t)tissue->vertex_count;
-	if (loose->share)
+	if (loose->ranged)
 		return true;
 	loose->region.chosen = calloc(n, 1);
 	loose->part.chosen = calloc(n, 1);
@@ -70,7 +81,7 @@ static void choose_slack(const cau_step_solver *solver, int32_t share, uint8_t *
 {
 	const cau_local_work *work = &solver->slots.work[share];
 	bool all = solver->newton_chosen;
-	if (!all && !solver->elements.slack[work->number])
+	if (!all && !solver->elements.slack[work->number] && !solver->loose.ranged[share])
 		return;
 	for (int32_t slot = work->first; slot < work->last; slot++) {
 		if (!(weight_of(solver, slot) > 0) || is_on_fat(solver, work, slot))
@@ -176,5 +187,6 @@ void cau_loose_finish(cau_loose *loose)
 	free(loose->before);
 	free(loose->in_fat);
 	free(loose->share);
+	free(loose->ranged);
 	*loose = (cau_loose){0};
 }

@@ -339,8 +339,7 @@ cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_erro
 		loose->settled = loose->fresh = false;
 	if (loose->moved)
 		*objective = cau_solver_evaluate(solver);
-	double noise = solver->kernels->vectors->rounding * fabs(cau_solver_elastic_energy(solver));
-	if (!(*objective <= before + noise))
+	if (!(*objective <= before + cau_solver_noise(solver)))
 		give_up(solver, objective);
 	loose->given_up |= is_spent(solver);
 	return CAU_OK;

@@ -95,6 +95,7 @@ typedef struct cau_loose {
 	uint8_t *in_fat;         // (vertex_count)
 	int32_t share_count;     // shares of the local step with triangles of sheets that are on no fat
 	int32_t *share;
+	bool *ranged;   // of each share: whether some triangle of it, on no fat, has a range
 	int64_t work;   // elements assembled so far in this step
 	bool settled;   // R is where its share of E is least,
 	bool moved;     // and was not before
@@ -130,7 +131,7 @@ bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
                               const cau_newton *from);
 // Adds their energy, gradient and stiffness, and finds `room`.
 void cau_newton_touch(cau_newton *newton, const cau_step_solver *solver);
-// The share of A's stiffness that a triangle has where it has least. 1 without a target: Newton's
-// straight steps leave a range, in which a triangle resists nothing, and are shortened time and
-// again.
+// The share of A's stiffness that a triangle has where it has least. With a range CAU_NEWTON_RANGE:
+// within it a triangle resists nothing.
+#define CAU_NEWTON_RANGE (-1.0)
 double cau_newton_stiffness(const cau_step_solver *solver, const cau_newton_element *triangle);

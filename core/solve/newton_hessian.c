@@ -324,7 +324,7 @@ double cau_newton_stiffness(const cau_step_solver *solver, const cau_newton_elem
 	sheet_element element = sheet_at(solver, work, triangle->slot);
 	cau_vec3 f[2];
 	if (!(element.root.a00 > 0))
-		return 1;
+		return CAU_NEWTON_RANGE;
 	find_gradient(solver, &element, f);
 	sheet_polar polar = find_polar(f, element.root, element.kept);
 	symmetric2 k = normal_stiffness(&polar, element.root);

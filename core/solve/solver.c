@@ -79,6 +79,19 @@ static cau_status check_loops(const cau_step_solver *solver, cau_error *error)
 		solver->tissue->tetrahedron_count + solver->tissue->triangle_count);
 }
 
+static double mean_stiffness(const cau_tissue *tissue)
+{
+	double sum = 0;
+	int64_t count = 0;
+	for (int kind = CAU_ELEMENT_TRIANGLE; kind <= CAU_ELEMENT_TETRAHEDRON; kind++)
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); i++, count++) {
+			cau_element_map map;
+			cau_tissue_element_map(tissue, kind, i, &map);
+			sum += map.weight;
+		}
+	return count ? sum / (double)count : 0;
+}
+
 cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
                              const cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
@@ -90,6 +103,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->tissue = tissue;
 	solver->iterations = scene->iterations;
 	solver->tolerance = scene->tolerance;
+	solver->stiffness_j = mean_stiffness(tissue);
 	solver->step_s = scene->step_s;
 	solver->inertia_s = tissue->inertia_s;
 	// An error of x2 is 1 / gamma times as large in the velocity after two substeps.

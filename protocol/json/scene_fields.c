@@ -23,8 +23,9 @@ CHOICES_OF_WORDS(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
 static const cau_field scene_fields[] = {
 	{OTHER(name, NAME, "name of the scene"), .required = true},
 	{OTHER(description, TEXT, "a sentence for people")},
-	CAU_TIME_TABLE(SCALAR){INTEGER(iterations, 1, CAU_ITERATIONS_MOST,
-                                   "iterations of a step at most; with `accuracy` 0, of each")},
+	CAU_TIME_TABLE(SCALAR){INTEGER(
+		iterations, 1, CAU_ITERATIONS_MOST,
+		"iterations of a step at most (small tissue: up to 64); with `accuracy` 0, of each")},
 	{CHOICE(solver, solver_choices, "global system; `newton`: and Newton's method for all sheets")},
 	{CHOICE(precision, precision_choices, "of the local and global steps")},
 	{CHOICE(

@@ -2506,7 +2506,7 @@ class Scene(TypedDict):
     # side of the cells of heat, with energy `tissue` (0.0001 to 0.005 m)
     cell_m: NotRequired[float]
 
-    # iterations of a step at most; with `accuracy` 0, of each (1 to 1000)
+    # iterations of a step at most (small tissue: up to 64); with `accuracy` 0, of each (1 to 1000)
     iterations: NotRequired[int]
 
     # global system; `newton`: and Newton's method for all sheets

@@ -40,6 +40,7 @@ typedef struct cau_solid_wish {
 	const void *bytes;  // NULL: `file` is read
 	size_t byte_count;  // of `bytes`
 	double edge;        // target length of an edge, in units of the file; 0: chosen
+	int32_t tetrahedra; // aimed at where the edge is chosen; 0: 8,000
 	const char *labels; // "1,3": labels of a segmentation to keep; NULL: all but 0
 	bool strict;        // refuse a surface that is open, or has triangles that would be turned
 	void (*progress)(void *user, const char *stage, double share); // 0 to 1; may be NULL
@@ -58,7 +59,8 @@ typedef struct cau_solid {
 bool cau_solid_is_volume(const void *bytes, size_t byte_count);
 
 // Makes the tetrahedra. Errors: as for reading a mesh; CAU_BAD_MESH where nothing is inside,
-// CAU_BAD_VALUE at "edge" or "labels", CAU_LIMIT at "edge" where it asks for too many cells. The
+// CAU_BAD_VALUE at "edge" or "labels", or where a chosen edge would need more than sixteen times
+// the tetrahedra that are aimed at, CAU_LIMIT at "edge" where it asks for too many cells. The
 // caller finishes *solid, on failure too. Threads: any; deterministic.
 cau_status cau_solid_make(const cau_solid_wish *wish, cau_solid *solid, cau_error *error);
 // Frees the bytes.

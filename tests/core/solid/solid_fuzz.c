@@ -8,7 +8,7 @@
 #include "mesh/mesh.h"
 #include "solid/domain.h"
 
-enum { MOST_BYTES = 1 << 16, ONE_IN = 64 }; // larger inputs only take time
+enum { MOST_BYTES = 1 << 16, ONE_IN = 64, TETRAHEDRA = 500 }; // more only takes time
 
 static void demand(int promise)
 {
@@ -58,7 +58,8 @@ static void make_solid(const uint8_t *data, size_t bytes)
 	cau_solid solid;
 	cau_mesh mesh;
 	cau_error error = {0};
-	cau_solid_wish wish = {.file = "fuzz", .bytes = data, .byte_count = bytes};
+	cau_solid_wish wish = {
+		.file = "fuzz", .bytes = data, .byte_count = bytes, .tetrahedra = TETRAHEDRA};
 	cau_status status = cau_solid_make(&wish, &solid, &error);
 	demand(!status || error.reason[0]);
 	if (!status) {

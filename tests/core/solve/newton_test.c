@@ -258,7 +258,7 @@ static void settling_leaves_no_force(void **state)
 }
 
 // A taut sheet is left to A. With a crumpled corner, its slack triangles make up a region. A sheet
-// with a range is left to A.
+// with a range is a region, taut or not.
 static void what_is_slack_is_loose(void **state)
 {
 	(void)state;
@@ -268,14 +268,14 @@ static void what_is_slack_is_loose(void **state)
 		r.solver.newton_chosen = false;
 		cau_solver_evaluate(&r.solver);
 		assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
-		assert_int_equal(r.solver.loose.region.n, 0);
+		assert_int_equal(r.solver.loose.region.n > 0, law == RANGE);
 		for (int32_t v = 0; v < r.tissue.vertex_count; v++) // a corner comes back to where it was
 			if (r.tissue.rest[3 * v] > 0.02 && r.tissue.rest[3 * v + 1] > 0)
 				for (int c = 0; c < 3; c++)
 					r.solver.position[3 * v + c] = 0.2 * r.tissue.rest[3 * v + c];
 		cau_solver_evaluate(&r.solver);
 		assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
-		assert_int_equal(r.solver.loose.region.n > 0, law != RANGE);
+		assert_true(r.solver.loose.region.n > 0);
 		rig_finish(&r);
 	}
 }

@@ -1697,7 +1697,7 @@ export interface Scene {
   contact_friction?: number;
   /** side of the cells of heat, with energy `tissue` (0.0001 to 0.005 m) */
   cell_m?: number;
-  /** iterations of a step at most; with `accuracy` 0, of each (1 to 1000) */
+  /** iterations of a step at most (small tissue: up to 64); with `accuracy` 0, of each (1 to 1000) */
   iterations?: number;
   /** global system; `newton`: and Newton's method for all sheets */
   solver?: 'cholesky' | 'diagonal' | 'newton';
