@@ -13,16 +13,6 @@ static double rounding(const cau_step_solver *solver)
 	return solver->kernels->vectors->rounding;
 }
 
-// Two parts: of the sum; and of each element's residual R, which is the difference of
-// displacements. With w/2 |R|^2 of N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR in
-// the root mean square of all. Stiff tissue that bears next to nothing has more of the second.
-double cau_solver_noise(const cau_step_solver *solver)
-{
-	double elastic = fabs(cau_solver_elastic_energy(solver));
-	double of_residuals = 0.1 * rounding(solver); // one term each, not thousands
-	return rounding(solver) * elastic + of_residuals * sqrt(2 * solver->stiffness_j * elastic);
-}
-
 // ---- products of vectors by vertex
 typedef struct product {
 	cau_step_solver *solver;
@@ -290,7 +280,6 @@ static void forget_increments(cau_step_solver *solver)
 // The state between iterations of a round.
 typedef struct descent {
 	double objective, first, last; // J; norms of the first increment and of the last
-	int32_t most;                  // iterations
 	int32_t steps;                 // since the history was forgotten
 	int32_t backtracks_before;     // of the tick's earlier rounds
 	uint64_t touching;
@@ -355,15 +344,20 @@ static bool advance(cau_step_solver *solver, descent *d, int32_t k, bool acceler
 	return false;
 }
 
-int32_t cau_solver_iterations_most(const cau_step_solver *solver)
+static int32_t count_elements(const cau_tissue *tissue)
 {
-	const cau_tissue *tissue = solver->tissue;
-	int32_t elements = tissue->tetrahedron_count + tissue->triangle_count + tissue->link_count +
-	                   tissue->hinge_count;
-	int32_t effort = CAU_SOLVER_EFFORT / (elements > 0 ? elements : 1);
-	if (effort > CAU_ACCURACY_STEPS)
-		effort = CAU_ACCURACY_STEPS;
-	return solver->accuracy.wanted > 0 && effort > solver->iterations ? effort : solver->iterations;
+	return tissue->tetrahedron_count + tissue->triangle_count + tissue->link_count +
+	       tissue->hinge_count;
+}
+
+// Whether iteration k is the last that the step may take.
+static bool is_last(const cau_step_solver *solver, int32_t k)
+{
+	int64_t spent =
+		(k + 2) * (int64_t)count_elements(solver->tissue) + CAU_NEWTON_COST * solver->loose.work;
+	if (k + 1 < solver->iterations)
+		return false;
+	return solver->accuracy.wanted == 0 || k + 1 >= CAU_ACCURACY_STEPS || spent > CAU_SOLVER_EFFORT;
 }
 
 // One iteration. Returns whether the round ends.
@@ -390,7 +384,7 @@ static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *
 	if (meets_others(solver))
 		cau_accuracy_begin(&solver->accuracy);
 	d->near = cau_accuracy_is_reached(solver, norm) && !touches_elsewhere(solver);
-	bool ends = (d->near && solver->loose.settled) || k + 1 == d->most;
+	bool ends = (d->near && solver->loose.settled) || is_last(solver, k);
 	return (ends && spare(solver, d, norm)) ||
 	       advance(solver, d, k, accelerated, norm, status, error);
 }
@@ -398,9 +392,7 @@ static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
-	descent d = {.objective = solver->objective,
-	             .most = cau_solver_iterations_most(solver),
-	             .backtracks_before = solver->backtracks};
+	descent d = {.objective = solver->objective, .backtracks_before = solver->backtracks};
 	d.touching = solver->collide ? solver->collide->touching_hash : 0;
 	solver->spared = false;
 	forget_increments(solver);
@@ -410,13 +402,14 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	// Tissue that was guessed into tissue may have more energy than it began with.
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
 		go_back(solver, &d.objective);
-	for (int32_t k = 0; k < d.most; k++)
-		if (iterate(solver, &d, k, &status, error))
-			break;
+	for (int32_t k = 0; !iterate(solver, &d, k, &status, error) && !is_last(solver, k);)
+		k++;
 	if (status)
 		return status;
-	CAU_ASSERT(solver->backtracks - d.backtracks_before <= d.most * (CAU_MAX_BACKTRACKS + 1),
-	           "%d backtracks in %d iterations", solver->backtracks - d.backtracks_before, d.most);
+	CAU_ASSERT(solver->backtracks - d.backtracks_before <=
+	               solver->iterations_done * (CAU_MAX_BACKTRACKS + 1),
+	           "%d backtracks in %d iterations", solver->backtracks - d.backtracks_before,
+	           solver->iterations_done);
 	cau_accuracy_learn(&solver->accuracy);
 	if (solver->accuracy.wanted > 0)
 		solver->accuracy.error = fmax(solver->accuracy.error, solver->loose.left);

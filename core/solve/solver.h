@@ -21,6 +21,8 @@ enum {
 	// of an AMD EPYC: five milliseconds, a third of a tick of 60 Hz. Small tissue can have many
 	// iterations.
 	CAU_SOLVER_EFFORT = 160000,
+	CAU_NEWTON_COST =
+		14, // of an element that Newton's method assembles, in elements of an iteration
 	CAU_VERTEX_CHUNK = 256, // vertices in one share of a vertex loop
 };
 
@@ -57,7 +59,7 @@ struct cau_step_solver {
 	bool conservative;  // every law is the gradient of an energy
 	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are taken for loose
 	bool none_loose;    // in this tick: tissue is inverted, diverges or crosses (exempt.c)
-	int32_t iterations; // of a step, at most; with an accuracy to reach, cau_solver_iterations_most
+	int32_t iterations; // of a step, at most; with an accuracy to reach, see CAU_SOLVER_EFFORT
 	double tolerance;
 	double stiffness_j; // mean weight of triangles and tetrahedra
 	double step_s;      // one tick
@@ -148,9 +150,6 @@ void cau_solver_yield(cau_step_solver *solver);
 // apart.c: shortens trial_increment, to be taken from positions `from`, so that tissue crosses no
 // tissue. Returns whether it had to.
 bool cau_solver_keep_apart(cau_step_solver *solver, const double *from);
-// Iterations of a step at most: those of the scene, or, with an accuracy to reach, as many as take
-// CAU_SOLVER_EFFORT if these are more.
-int32_t cau_solver_iterations_most(const cau_step_solver *solver);
 // What rounding can do to E, J.
 double cau_solver_noise(const cau_step_solver *solver);
 // Where a first increment throws anything farther than all that a tick's iterations may lead
