@@ -14,10 +14,16 @@
 
 // A process may have 65,530 mappings by default. Shorter runs stay as they are, and a session adds
 // at most twice as many as the runs it is shown.
-enum { LEAST_RUN_BYTES = 64 << 10, MOST_RUNS = 64 };
+enum { LEAST_RUN_BYTES = 16 << 10, MOST_RUNS = 64 };
+
+typedef enum page_state {
+	UNTOUCHED, // of the system's zeros
+	ZERO,      // of its own
+	FULL,
+} page_state;
 
 typedef struct image_part {
-	size_t at, page_count; // in the file, in pages
+	size_t at, page_count; // in `place`
 } image_part;
 
 struct cau_image {
@@ -25,9 +31,11 @@ struct cau_image {
 	uint64_t key;
 	int32_t holders;
 	int file;
-	char *view;  // the whole file, to compare with
-	size_t page; // bytes: the system's, less than which nothing can be mapped
-	size_t page_count;
+	char *view;          // the whole file, to compare with
+	size_t page;         // bytes: the system's, less than which nothing can be mapped
+	size_t page_count;   // in the file
+	size_t listed_count; // of all parts
+	uint32_t *place;     // (listed_count): where in the file, in pages from 1 on; 0: all zero
 	int32_t part_count;
 	image_part part[CAU_IMAGE_PARTS];
 };
@@ -42,7 +50,7 @@ static size_t pages_of(const cau_image *image, const cau_pages *pages)
 	return pages->byte_count / image->page;
 }
 
-// Between arrays there are bytes that no one may touch; these two read them all the same.
+// Between arrays there are bytes that no one may touch; these three read them all the same.
 __attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b,
                                                               size_t bytes)
 {
@@ -53,6 +61,15 @@ __attribute__((no_sanitize("address"))) static bool same_page(const char *a, con
 	return differ == 0;
 }
 
+__attribute__((no_sanitize("address"))) static bool is_zero(const char *a, size_t bytes)
+{
+	const uint64_t *x = (const void *)a;
+	size_t k = 0;
+	while (k < bytes / 8 && !x[k])
+		k++;
+	return k == bytes / 8;
+}
+
 __attribute__((no_sanitize("address"))) static void copy_pages(char *to, const char *from,
                                                                size_t bytes)
 {
@@ -60,6 +77,18 @@ __attribute__((no_sanitize("address"))) static void copy_pages(char *to, const c
 	const uint64_t *y = (const void *)from;
 	for (size_t k = 0; k < bytes / 8; k++)
 		x[k] = y[k];
+}
+
+// Fills the page_state of each. Untouched ones are not read.
+static void look_at(const cau_image *image, const cau_pages *pages, uint8_t *state)
+{
+	const char *start = pages->start;
+	size_t count = pages_of(image, pages);
+	cau_pages_touched(pages, state);
+	for (size_t k = 0; k < count; k++)
+		state[k] = !state[k]                                       ? UNTOUCHED
+		           : is_zero(start + k * image->page, image->page) ? ZERO
+		                                                           : FULL;
 }
 
 // What a mapping may be refused for, their number and the address space, is looked at before the
@@ -82,16 +111,31 @@ static void destroy(cau_image *image)
 		munmap(image->view, bytes_of(image));
 	if (image->file >= 0)
 		close(image->file);
+	free(image->place);
 	free(image);
 }
 
-static void lay_out(cau_image *image, const cau_pages *pages, int32_t count)
+// Where each page goes: those that are not zero, one after the other.
+static bool lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 {
 	image->part_count = count < CAU_IMAGE_PARTS ? count : CAU_IMAGE_PARTS;
 	for (int32_t i = 0; i < image->part_count; i++) {
-		image->part[i] = (image_part){image->page_count, pages_of(image, &pages[i])};
-		image->page_count += image->part[i].page_count;
+		image->part[i] = (image_part){image->listed_count, pages_of(image, &pages[i])};
+		image->listed_count += image->part[i].page_count;
 	}
+	if (!image->listed_count || image->listed_count > CAU_IMAGE_BYTES / image->page)
+		return false;
+	image->place = calloc(image->listed_count, sizeof *image->place);
+	uint8_t *state = malloc(image->listed_count);
+	for (int32_t i = 0; i < image->part_count && image->place && state; i++) {
+		uint32_t *place = image->place + image->part[i].at;
+		look_at(image, &pages[i], state);
+		for (size_t k = 0; k < image->part[i].page_count; k++)
+			if (state[k] == FULL)
+				place[k] = (uint32_t)++image->page_count;
+	}
+	free(state);
+	return image->page_count > 0;
 }
 
 // A file in memory that nobody can run: systems may refuse any other (vm.memfd_noexec), and those
@@ -117,11 +161,23 @@ static bool open_file(cau_image *image)
 	return true;
 }
 
+// Where a listed page is in the file, or, of those that are not, NULL.
+static char *view_of(const cau_image *image, size_t listed)
+{
+	uint32_t place = image->place[listed];
+	return place ? image->view + (place - 1) * image->page : NULL;
+}
+
 static void fill(const cau_image *image, const cau_pages *pages)
 {
-	for (int32_t i = 0; i < image->part_count; i++)
-		copy_pages(image->view + image->part[i].at * image->page, pages[i].start,
-		           image->part[i].page_count * image->page);
+	for (int32_t i = 0; i < image->part_count; i++) {
+		const char *start = pages[i].start;
+		for (size_t k = 0; k < image->part[i].page_count; k++) {
+			char *to = view_of(image, image->part[i].at + k);
+			if (to)
+				copy_pages(to, start + k * image->page, image->page);
+		}
+	}
 }
 
 // The seal is refused while there is a way to write.
@@ -144,9 +200,7 @@ static cau_image *make(uint64_t key, const cau_pages *pages, int32_t count)
 	image->key = key;
 	image->file = -1;
 	image->page = (size_t)sysconf(_SC_PAGESIZE);
-	lay_out(image, pages, count);
-	bool fits = image->page_count > 0 && bytes_of(image) <= CAU_IMAGE_BYTES;
-	if (fits && open_file(image)) {
+	if (lay_out(image, pages, count) && open_file(image)) {
 		fill(image, pages);
 		if (seal(image))
 			return image;
@@ -219,14 +273,44 @@ int32_t cau_image_count(void)
 }
 
 // ---- showing
-// The next run of equal pages at or after *first: its length, 0 at the end. `equal`: all are.
-static size_t find_run(const cau_image *image, const image_part *part, const char *start,
-                       bool equal, size_t *first)
+// One part of a session, which is shown its equal pages.
+typedef struct showing {
+	const cau_image *image;
+	const image_part *part;
+	char *start;
+	uint8_t *state; // (page_count): page_state
+	bool equal;     // all are
+	int32_t runs;   // of all parts
+	size_t shown;   // pages of all parts
+} showing;
+
+static bool is_equal(const showing *s, size_t k)
 {
-	size_t k = *first, length = 0, least = LEAST_RUN_BYTES / image->page;
-	for (; k < part->page_count; k++) {
-		if (equal || same_page(image->view + (part->at + k) * image->page, start + k * image->page,
-		                       image->page)) {
+	const char *view = view_of(s->image, s->part->at + k);
+	return s->state[k] == FULL && view &&
+	       (s->equal || same_page(view, s->start + k * s->image->page, s->image->page));
+}
+
+// Not all that is zero may be given back (what is locked in memory): then it stays.
+static void give_back_zeros(const showing *s)
+{
+	size_t page = s->image->page, first = 0;
+	for (size_t k = 0; k <= s->part->page_count; k++) {
+		if (k < s->part->page_count && s->state[k] == ZERO)
+			continue;
+		if (k > first)
+			madvise(s->start + first * page, (k - first) * page, MADV_DONTNEED);
+		first = k + 1;
+	}
+}
+
+// The next run of equal pages at or after *first: its length, 0 at the end. Pages that lie side by
+// side in a part, and are in the image, do so in its file.
+static size_t find_run(const showing *s, size_t *first)
+{
+	size_t k = *first, length = 0, least = LEAST_RUN_BYTES / s->image->page;
+	for (; k < s->part->page_count; k++) {
+		if (is_equal(s, k)) {
 			length++;
 			continue;
 		}
@@ -238,22 +322,32 @@ static size_t find_run(const cau_image *image, const image_part *part, const cha
 	return length >= least ? length : 0;
 }
 
+static bool show_part(showing *s)
+{
+	const cau_image *image = s->image;
+	size_t length;
+	for (size_t k = 0; s->runs < MOST_RUNS && (length = find_run(s, &k)); k += length, s->runs++) {
+		size_t place = image->place[s->part->at + k] - 1;
+		if (!map_over(image, place, length, s->start + k * image->page))
+			return false;
+		s->shown += length;
+	}
+	return true;
+}
+
 size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count, bool equal)
 {
-	size_t shown = 0;
-	int32_t runs = 0;
-	for (int32_t i = 0; i < count && i < image->part_count; i++) {
-		const image_part *part = &image->part[i];
-		if (pages_of(image, &pages[i]) != part->page_count)
+	showing s = {.image = image, .equal = equal, .state = malloc(image->listed_count)};
+	bool mapped = s.state != NULL;
+	for (int32_t i = 0; mapped && i < count && i < image->part_count; i++) {
+		s.part = &image->part[i];
+		s.start = pages[i].start;
+		if (pages_of(image, &pages[i]) != s.part->page_count)
 			continue;
-		char *start = pages[i].start;
-		size_t length;
-		for (size_t k = 0; runs < MOST_RUNS && (length = find_run(image, part, start, equal, &k));
-		     k += length, runs++) {
-			if (!map_over(image, part->at + k, length, start + k * image->page))
-				return shown * image->page;
-			shown += length;
-		}
+		look_at(image, &pages[i], s.state);
+		give_back_zeros(&s);
+		mapped = show_part(&s);
 	}
-	return shown * image->page;
+	free(s.state);
+	return s.shown * image->page;
 }

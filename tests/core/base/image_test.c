@@ -10,13 +10,14 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
 #include "core/base/images_here.h"
 
-enum { PAGES = 64, KEY = 7, LEAST_RUN_BYTES = 64 << 10 };
+enum { PAGES = 64, KEY = 7, LEAST_RUN_BYTES = 16 << 10 };
 
 static size_t page; // bytes
 
@@ -131,7 +132,7 @@ static void nothing_can_write_an_image(void **state)
 	cau_pages_give_back(&a);
 }
 
-// What is shorter than 64 KiB, of another size, or in another place, stays as it is.
+// What is shorter than 16 KiB, of another size, or in another place, stays as it is.
 static void short_runs_and_others_stay_as_they_are(void **state)
 {
 	(void)state;
@@ -150,6 +151,96 @@ static void short_runs_and_others_stay_as_they_are(void **state)
 		cau_pages_give_back(&a[i]);
 		cau_pages_give_back(&b[i]);
 	}
+}
+
+static int touched_of(const cau_pages *pages)
+{
+	uint8_t touched[PAGES];
+	int count = 0;
+	cau_pages_touched(pages, touched);
+	for (int k = 0; k < PAGES; k++)
+		count += touched[k];
+	return count;
+}
+
+// The first and the last quarter of a are written, and zero again in all but a run of each: that
+// takes no memory any more, and the rest has never had any.
+static void zeros_are_in_no_image_and_take_no_memory(void **state)
+{
+	(void)state;
+	enum { FROM = 4, TO = 12, QUARTER = PAGES / 4 };
+	cau_pages a[2];
+	cau_image *image = NULL;
+	for (int i = 0; i < 2; i++) {
+		assert_true(cau_pages_take(&a[i], (size_t)PAGES * page));
+		char *byte = a[i].start;
+		for (int k = 0; k < PAGES; k++)
+			if (k < QUARTER || k >= 3 * QUARTER)
+				byte[(size_t)k * page + 7] = k % QUARTER >= FROM && k % QUARTER < TO ? (char)k : 0;
+		assert_true(touched_of(&a[i]) >= 2 * QUARTER);
+		image = cau_image_of(KEY, &a[i], 1, NULL);
+		assert_non_null(image);
+		assert_int_equal(cau_image_show(image, &a[i], 1, i == 0), (size_t)2 * (TO - FROM) * page);
+		assert_true(touched_of(&a[i]) <= 2 * (TO - FROM));
+		assert_int_equal(mappings("rw-p", NULL), 2 * (i + 1));
+		for (int k = 0; k < PAGES; k++)
+			assert_int_equal(byte[(size_t)k * page + 7], (k < QUARTER || k >= 3 * QUARTER) &&
+			                                                     k % QUARTER >= FROM &&
+			                                                     k % QUARTER < TO
+			                                                 ? (char)k
+			                                                 : 0);
+	}
+	for (int i = 0; i < 2; i++) {
+		cau_image_release(image);
+		cau_pages_give_back(&a[i]);
+	}
+}
+
+// A page that is zero where the image is not, and the other way round.
+static void zeros_of_one_are_not_shown_to_another(void **state)
+{
+	(void)state;
+	cau_pages a = patterned(), b = patterned(), c = patterned();
+	memset((char *)a.start + 8 * page, 0, page);
+	memset((char *)b.start + 20 * page, 0, page);
+	cau_image *image = cau_image_of(KEY, &a, 1, NULL);
+	assert_non_null(image);
+	assert_int_equal(cau_image_show(image, &b, 1, false), (size_t)(PAGES - 2) * page);
+	assert_true(is_patterned(&b, 20));
+	assert_int_equal(((char *)b.start)[20 * page + 1], 0);
+	assert_int_equal(cau_image_show(image, &c, 1, false), (size_t)(PAGES - 1) * page);
+	assert_true(is_patterned(&c, PAGES));
+	cau_image_release(image);
+	cau_pages_give_back(&a);
+	cau_pages_give_back(&b);
+	cau_pages_give_back(&c);
+}
+
+// No file can be opened, so all pages are looked at.
+static void without_the_systems_word_all_are_read(void **state)
+{
+	(void)state;
+	struct rlimit before, none;
+	cau_pages a = patterned(), b = patterned();
+	memset((char *)a.start + (size_t)PAGES / 2 * page, 0, (size_t)PAGES / 2 * page);
+	cau_pages_give_back(&b);
+	assert_true(cau_pages_take(&b, (size_t)PAGES * page));
+	memcpy(b.start, a.start, (size_t)PAGES / 2 * page);
+	assert_true(touched_of(&b) < PAGES);
+	cau_image *image = cau_image_of(KEY, &a, 1, NULL);
+	assert_non_null(image);
+	assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+	none = (struct rlimit){0, before.rlim_max};
+	assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+	int touched = touched_of(&b);
+	size_t shown = cau_image_show(image, &b, 1, false);
+	assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+	assert_int_equal(touched, PAGES);
+	assert_int_equal(shown, (size_t)PAGES / 2 * page);
+	assert_memory_equal(a.start, b.start, (size_t)PAGES * page);
+	cau_image_release(image);
+	cau_pages_give_back(&a);
+	cau_pages_give_back(&b);
 }
 
 static void each_key_has_its_own(void **state)
@@ -173,9 +264,15 @@ static void each_key_has_its_own(void **state)
 static void of_too_much_and_of_nothing_there_is_none(void **state)
 {
 	(void)state;
-	cau_pages much, nothing = {0};
+	cau_pages much, blank, nothing = {0};
 	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // never touched
 	assert_null(cau_image_of(KEY, &much, 1, NULL));
+	*(char *)much.start = 1;
+	assert_null(cau_image_of(KEY, &much, 1, NULL));
+	assert_true(cau_pages_take(&blank, (size_t)PAGES * page));
+	assert_null(cau_image_of(KEY, &blank, 1, NULL));
+	assert_int_equal(touched_of(&blank), 0); // by that look either
+	cau_pages_give_back(&blank);
 	assert_null(cau_image_of(KEY, &nothing, 1, NULL));
 	assert_null(cau_image_of(KEY, NULL, 0, NULL));
 	assert_int_equal(cau_image_count(), 0);
@@ -194,6 +291,9 @@ int main(void)
 		cmocka_unit_test(who_made_it_knows),
 		cmocka_unit_test(nothing_can_write_an_image),
 		cmocka_unit_test(short_runs_and_others_stay_as_they_are),
+		cmocka_unit_test(zeros_are_in_no_image_and_take_no_memory),
+		cmocka_unit_test(zeros_of_one_are_not_shown_to_another),
+		cmocka_unit_test(without_the_systems_word_all_are_read),
 		cmocka_unit_test(each_key_has_its_own),
 		cmocka_unit_test(of_too_much_and_of_nothing_there_is_none),
 	};

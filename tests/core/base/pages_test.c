@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -42,10 +44,33 @@ static void test_too_much_is_refused(void **state)
 	cau_pages_give_back(&pages);
 }
 
+// Those that were written, and no look makes more of them.
+static void test_touched_pages_are_known(void **state)
+{
+	(void)state;
+	enum { COUNT = 1500 }; // more than are asked for at once
+	static uint8_t touched[COUNT];
+	size_t page = (size_t)sysconf(_SC_PAGESIZE);
+	cau_pages pages;
+	assert_true(cau_pages_take(&pages, COUNT * page + 1)); // the last is a part of one
+	for (int round = 0; round < 2; round++) {
+		cau_pages_touched(&pages, touched);
+		for (int k = 0; k < COUNT; k++)
+			assert_int_equal(touched[k], 0);
+	}
+	memset(pages.start, 1, COUNT * page);
+	assert_int_equal(madvise((char *)pages.start + 700 * page, 500 * page, MADV_DONTNEED), 0);
+	cau_pages_touched(&pages, touched);
+	for (int k = 0; k < COUNT; k++)
+		assert_int_equal(touched[k], k < 700 || k >= 1200);
+	cau_pages_give_back(&pages);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_pages_are_zeroed_and_counted),
+		cmocka_unit_test(test_touched_pages_are_known),
 		cmocka_unit_test(test_too_much_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
