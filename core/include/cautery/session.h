@@ -112,9 +112,10 @@ bool cau_session_has_tension(const cau_session *session);
 uint64_t cau_session_tissue_hash(const cau_session *session);
 
 // Shares memory with other sessions of equal tissue in this program that also called this. Pages
-// with equal bytes exist once. The first write to a shared page copies it for the writer. Steps,
-// results and hashes do not change. Call it once, before the first step. Returns the bytes that are
-// shared now; writes make them fewer. Returns 0 where the system has no such memory.
+// with equal bytes exist once; pages of zeros take no memory and are not counted. The first write
+// to a shared page copies it for the writer. Steps, results and hashes do not change. Call it once,
+// before the first step. Returns the bytes that are shared now; writes make them fewer. Returns 0
+// where the system has no such memory.
 size_t cau_session_share(cau_session *session);
 
 // Creates the session's helper threads again, as threads of the caller. So they have the priority
