@@ -89,7 +89,7 @@ function maskOf(button: 0 | 2): number {
 }
 
 describe('a hold of energy in Chromium', () => {
-  const stage = new Stage(['--demo', 'fascia']);
+  const stage = new Stage(['--demo', 'fascia'], {}, 'processor'); // its page has no WebGL
   let door: Door;
   let holds: HoldStage;
 

@@ -4,15 +4,15 @@
 import type { Browser } from 'playwright-core';
 
 import { Daemon } from './daemon';
-import { launch, ViewerPage, type PageOptions } from './viewer_page';
+import { launch, ViewerPage, type Composing, type PageOptions } from './viewer_page';
 
 /** A browser for the tests of the `describe` in which it is made. */
 export class BrowserStage {
   browser!: Browser;
 
-  constructor() {
+  constructor(composing?: Composing) {
     beforeAll(async () => {
-      this.browser = await launch();
+      this.browser = await launch(composing);
     });
     afterAll(() => this.browser.close());
   }
@@ -22,8 +22,8 @@ export class BrowserStage {
 export class Stage extends BrowserStage {
   readonly daemon: Daemon;
 
-  constructor(settings: readonly string[], private readonly common: PageOptions = {}) {
-    super();
+  constructor(settings: readonly string[], private readonly common: PageOptions = {}, composing?: Composing) {
+    super(composing);
     this.daemon = new Daemon(settings);
     beforeAll(() => this.daemon.start());
     afterAll(() => this.daemon.end());

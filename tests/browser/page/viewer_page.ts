@@ -18,6 +18,11 @@ const FLAGS = [
   '--no-sandbox', '--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
 ];
+/**
+ * How the layers of a page become one picture: by Mesa, or by the processor without it, which takes an eighth of the time where
+ * little changes. WebGL is Mesa's in both.
+ */
+export type Composing = 'mesa' | 'processor';
 const PATIENCE_MS = 120_000; // two cores may be busy with other tests
 const PRESS_MS = 20_000; // a press that leads nowhere is repeated
 // Software draws the whole page anew for each picture of an animation, as long as the cue is there. Pages of which
@@ -30,10 +35,13 @@ export const COARSE = { coarse: true } as const;
 
 export interface PageOptions extends BrowserContextOptions {
   coarse?: boolean;
+  /** runs in the page before its scripts, each time that it loads */
+  before?: () => void;
 }
 
-export function launch(): Promise<Browser> {
-  return chromium.launch({ executablePath: '/usr/bin/chromium-headless-shell', headless: true, args: FLAGS });
+export function launch(composing: Composing = 'mesa'): Promise<Browser> {
+  const args = composing === 'processor' ? [...FLAGS, '--disable-gpu-compositing'] : FLAGS;
+  return chromium.launch({ executablePath: '/usr/bin/chromium-headless-shell', headless: true, args });
 }
 
 export class ViewerPage {
@@ -50,7 +58,7 @@ export class ViewerPage {
   }
 
   static async open(browser: Browser, url: string, options: PageOptions = {}, mode = 'research'): Promise<ViewerPage> {
-    const { coarse, ...others } = options;
+    const { coarse, before, ...others } = options;
     const context = await browser.newContext({ ...STILL, ...others });
     const page = await context.newPage();
     const viewer = new ViewerPage(page);
@@ -67,6 +75,7 @@ export class ViewerPage {
     page.on('websocket', (socket) => note(socket.url()));
     await page.addInitScript((kept) => localStorage.setItem('mode', kept), mode);
     if (coarse) await page.addInitScript(() => Object.defineProperty(window, 'devicePixelRatio', { value: 0.25 })); // the layout stays
+    if (before) await page.addInitScript(before);
     await page.goto(url);
     return viewer;
   }
