@@ -33,9 +33,7 @@ describe('devices beside mouse and keys', () => {
     viewer.page.evaluate(([number, axes]) => (window as unknown as { capReports(id: number, values: number[]): void }).capReports(number, axes), [id, values] as const);
 
   beforeAll(async () => {
-    viewer = await stage.openFirst();
-    await viewer.page.addInitScript(holdSpaceMouse);
-    await viewer.page.reload();
+    viewer = await stage.openFirst({ before: holdSpaceMouse });
     await viewer.live('d1-fascia');
     await viewer.page.locator('#devices > summary').click();
   });

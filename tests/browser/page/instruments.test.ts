@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // With energy `tissue` the tool in hand becomes another instrument, in a mode and with a power that its generator has.
-// Without it there is no generator to set.
+// Without it there is no generator to set: panels.test.ts.
 import AxeBuilder from '@axe-core/playwright';
 import type { Locator } from 'playwright-core';
 
@@ -44,17 +44,5 @@ describe('the form of the generator', () => {
     expect([await form.locator('select[name=profile]').inputValue(), await form.locator('select[name=mode]').inputValue(), await power().inputValue()]).toEqual(['monopolar-spatula', 'coagulation', '40']);
     await viewer.screenshot('instruments');
     expect(viewer.complaints).toEqual([]);
-  });
-});
-
-describe('a scene with temperatures', () => {
-  const stage = new Stage(['--demo', 'fascia'], COARSE);
-
-  it('has no form of a generator', async () => {
-    const viewer = await stage.open();
-    await viewer.live('d1-fascia');
-    await viewer.page.getByRole('tab', { name: 'Tools' }).click();
-    await viewer.page.locator('#panel-tools form select[name=shape]').first().waitFor();
-    expect(await viewer.page.locator('#panel-tools form', { hasText: 'Generator' }).isVisible()).toBe(false);
   });
 });

@@ -41,6 +41,14 @@ describe('panels', () => {
     await page.getByRole('tab', { name: 'Sessions' }).click();
   });
 
+  it('has no form of a generator in a scene with temperatures', async () => {
+    const { page } = viewer;
+    await page.getByRole('tab', { name: 'Tools' }).click();
+    await page.locator('#panel-tools form select[name=shape]').first().waitFor();
+    expect(await page.locator('#panel-tools form', { hasText: 'Generator' }).isVisible()).toBe(false);
+    await page.getByRole('tab', { name: 'Sessions' }).click();
+  });
+
   it('keeps the state under a name', async () => {
     const { page } = viewer;
     await page.locator('#snapshot > summary').click();

@@ -46,9 +46,7 @@ describe('plots over the session', () => {
   const spread = (places: readonly number[]): number => Math.max(...places) - Math.min(...places);
 
   beforeAll(async () => {
-    viewer = await stage.open();
-    await viewer.page.addInitScript(watchPlotWords);
-    await viewer.page.reload();
+    viewer = await stage.open({ before: watchPlotWords });
     await viewer.live('d1-fascia');
     const { tick } = await viewer.state();
     await viewer.until((then) => window.cautery.tick > then, tick + 120, 'two seconds without heat');
