@@ -19,8 +19,10 @@ interface Finger {
   id: number;
 }
 
+// One daemon and two pages, one after the other: the first has fingers, the second a pointer.
+const stage = new Stage(['--demo', 'fascia'], COARSE);
+
 describe('hands', () => {
-  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
   let fingers: CDPSession;
 
@@ -38,6 +40,7 @@ describe('hands', () => {
     await viewer.live('d1-fascia');
     fingers = await viewer.page.context().newCDPSession(viewer.page);
   });
+  afterAll(() => viewer.close());
 
   it('a finger leads the tool, which follows', async () => {
     const from = await viewer.project([-0.02, 0, 0]);
@@ -92,7 +95,6 @@ describe('hands', () => {
 });
 
 describe('hands that need a page in front', () => {
-  const stage = new Stage(['--demo', 'fascia'], COARSE);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
