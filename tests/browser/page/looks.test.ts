@@ -71,9 +71,7 @@ describe('the picture of the demo', () => {
 
 
   it('costs at most twice what the tissue alone on its cloth did', async () => {
-    const viewer = await stage.openFirst();
-    await viewer.page.addInitScript(countDrawing);
-    await viewer.page.reload();
+    const viewer = await stage.openFirst({ before: countDrawing });
     await viewer.live('d1-layers');
     await viewer.pause();
     await viewer.until(() => window.cautery.idle, null, 'the sharp picture');

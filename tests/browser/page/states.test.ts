@@ -89,6 +89,15 @@ describe('a picture that is not live, and its address', () => {
     await other.close();
   });
 
+  it('without WebGL says so, and everything else works', async () => {
+    const without = await stage.openFirst({ before: withoutWebGl });
+    await veil(without, 'offers no WebGL 2');
+    await without.until(() => window.cautery.tick > 0, null, 'frames come in');
+    await without.pause();
+    await without.resume();
+    await without.close();
+  });
+
   it('of a daemon that is gone says so until it is back', async () => {
     await stage.daemon.kill();
     await veil(viewer, 'No connection');
@@ -96,15 +105,6 @@ describe('a picture that is not live, and its address', () => {
     await stage.daemon.start();
     await unveiled(viewer);
     await viewer.live('d1-fascia');
-    await viewer.close();
-  });
-
-  it('without WebGL says so, and everything else works', async () => {
-    const without = await stage.openFirst({ before: withoutWebGl });
-    await veil(without, 'offers no WebGL 2');
-    await without.until(() => window.cautery.tick > 0, null, 'frames come in');
-    await without.pause();
-    await without.resume();
   });
 });
 
