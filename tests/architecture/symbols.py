@@ -31,7 +31,8 @@ ASSERTIONS = "core/types/assert.c"
 FAILED = "cau_assert_failed"
 RULES = ("cau_rule_broken", "cau_rule_enter", "cau_rule_leave")
 
-# What core and protocol must not call, and the sources that still may.
+# What core and protocol must not call, and the sources that still may. pages.c asks the system which
+# of its own pages were touched, and Linux answers in a file.
 SYSTEM = (
     ("sockets", r"socket|socketpair|connect|bind|listen|accept4?|send(to|msg|mmsg)?|recv(from|msg|mmsg)?"
                 r"|p?poll|p?select|epoll_\w+|getaddrinfo", ()),
@@ -40,7 +41,7 @@ SYSTEM = (
     ("the console", r"v?printf|puts|putchar|perror|stdout|stderr|getchar|scanf|stdin", (ASSERTIONS,)),
     ("ending the process", r"_?exit|_Exit|quick_exit|abort|atexit|signal|sigaction|raise|kill", (ASSERTIONS,)),
     ("other programs", r"system|popen|fork|vfork|exec[vl]\w*|posix_spawnp?|dlopen", ()),
-    ("files", r"fopen|freopen|fdopen|open|openat|creat|tmpfile|mkstemp", ("core/mesh/",)),
+    ("files", r"fopen|freopen|fdopen|open|openat|creat|tmpfile|mkstemp", ("core/mesh/", "core/base/pages.c")),
     ("threads", r"pthread_create|thrd_create|clone3?", ("core/base/",)),
     ("process-wide random numbers", r"s?rand|s?random|[dels]rand48|getrandom", ()),
     ("the environment", r"(secure_)?getenv|setenv|putenv|setlocale", ()),
