@@ -126,7 +126,7 @@ static bool may_stand(cau_step_solver *solver, double scale, double value, doubl
 static bool take_step(cau_step_solver *solver, bool accelerated, double slope, double *objective)
 {
 	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
-	double noise = cau_solver_noise(solver);
+	double noise = cau_solver_noise(solver, -slope);
 	if (solver->contact)
 		noise += cau_contact_work(solver->contact, solver);
 	double scale = 1;
@@ -196,7 +196,8 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
-	double most = solver->conservative ? cau_solver_noise(solver) : far_below * objective;
+	double most =
+		solver->conservative ? cau_solver_noise(solver, norm * norm) : far_below * objective;
 	bool touches = solver->collide && solver->collide->touching_count;
 	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
 }

@@ -88,15 +88,17 @@ double cau_solver_elastic_energy(const cau_step_solver *solver)
 	return energy_of_elements(solver) - cau_solver_viscous_energy(solver);
 }
 
-// Two parts: of the sum; and of each element's residual R, which is the difference of
-// displacements. With w/2 |R|^2 of N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR in
-// the root mean square of all. Stiff tissue that bears next to nothing has more of the second.
-double cau_solver_noise(const cau_step_solver *solver)
+// Of the sum. A step that promises less than what the rounding of each element's residual R may do
+// is judged by that: with w/2 |R|^2 of N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR
+// in the root mean square of all. In stiff tissue that bears next to nothing this is far more.
+// Where it is about the same, that of the sum stands.
+double cau_solver_noise(const cau_step_solver *solver, double promise)
 {
-	double rounding = solver->kernels->vectors->rounding;
 	double elastic = fabs(cau_solver_elastic_energy(solver));
-	double of_residuals = 0.1 * rounding; // one term each, not thousands
-	return rounding * elastic + of_residuals * sqrt(2 * solver->stiffness_j * elastic);
+	double of_sum = solver->kernels->vectors->rounding * elastic;
+	double one_term = 0.06 * solver->kernels->vectors->rounding; // not thousands
+	double of_residuals = one_term * sqrt(2 * solver->stiffness_j * elastic);
+	return of_residuals > 2 * of_sum && promise < of_residuals ? of_residuals : of_sum;
 }
 
 static void strain_part(void *context, int32_t index)

@@ -339,7 +339,7 @@ cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_erro
 		loose->settled = loose->fresh = false;
 	if (loose->moved)
 		*objective = cau_solver_evaluate(solver);
-	if (!(*objective <= before + cau_solver_noise(solver)))
+	if (!(*objective <= before + cau_solver_noise(solver, 0)))
 		give_up(solver, objective);
 	loose->given_up |= is_spent(solver);
 	return CAU_OK;

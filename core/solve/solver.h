@@ -150,8 +150,8 @@ void cau_solver_yield(cau_step_solver *solver);
 // apart.c: shortens trial_increment, to be taken from positions `from`, so that tissue crosses no
 // tissue. Returns whether it had to.
 bool cau_solver_keep_apart(cau_step_solver *solver, const double *from);
-// What rounding can do to E, J.
-double cau_solver_noise(const cau_step_solver *solver);
+// What rounding can do to E, J, where a step promises to lower it by `promise`.
+double cau_solver_noise(const cau_step_solver *solver, double promise);
 // Where a first increment throws anything farther than all that a tick's iterations may lead
 // together, what it would have to be shortened for touches nothing in this tick. Returns whether
 // that is so: then the increment is another.
