@@ -98,6 +98,8 @@ double cau_solver_noise(const cau_step_solver *solver, double promise)
 	double of_sum = solver->kernels->vectors->rounding * elastic;
 	double one_term = 0.06 * solver->kernels->vectors->rounding; // not thousands
 	double of_residuals = one_term * sqrt(2 * solver->stiffness_j * elastic);
+	if (solver->collide) // a fold that takes such steps may be driven into itself
+		return of_sum;
 	return of_residuals > 2 * of_sum && promise < of_residuals ? of_residuals : of_sum;
 }
 
