@@ -229,7 +229,7 @@ cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, boo
 	pthread_mutex_unlock(&lock);
 	if (image)
 		return image;
-	cau_image *own = make(key, pages, count); // copies for long, and nobody waits
+	cau_image *own = make(key, pages, count); // without the lock, as it copies for long
 	pthread_mutex_lock(&lock);
 	image = hold(key); // another thread's, made meanwhile
 	if (!image && own) {
@@ -291,7 +291,7 @@ static bool is_equal(const showing *s, size_t k)
 	       (s->equal || same_page(view, s->start + k * s->image->page, s->image->page));
 }
 
-// Not all that is zero may be given back (what is locked in memory): then it stays.
+// The system keeps pages that are locked in memory.
 static void give_back_zeros(const showing *s)
 {
 	size_t page = s->image->page, first = 0;

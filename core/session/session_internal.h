@@ -406,7 +406,8 @@ void cau_session_predict(cau_session *session);
 void cau_session_update_velocities(cau_session *session);
 // step.c: plastic flow after a solve.
 void cau_session_settle(cau_session *session);
-// share.c: the pages of what is large in it, in the same order for equal scenes; returns how many.
+// share.c: lists the pages of the session's large arrays, in the same order for equal scenes.
+// Returns their count.
 int32_t cau_session_pages(const cau_session *session, cau_pages pages[CAU_IMAGE_PARTS]);
 // stage timing
 void cau_session_stage_begin(cau_session *session);

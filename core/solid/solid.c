@@ -230,7 +230,8 @@ static cau_status mesh_with(work *of, double spacing, cau_error *error)
 	int64_t most = MORE_MOST * (int64_t)aim_of(of);
 	if (!status && !(of->wish->edge > 0) && of->tets.count > most) // before they are cut
 		return cau_fail(error, CAU_BAD_VALUE, "edge",
-		                "so thin a tissue needs more than %lld tetrahedra: make a sheet of it (as "
+		                "the tissue is so thin that its solid needs more than %lld tetrahedra: "
+		                "make a sheet of it (as "
 		                "fascia), or choose an edge",
 		                (long long)most);
 	return status ? status : cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);

@@ -31,14 +31,23 @@ static bool is_on_fat(const cau_step_solver *solver, const cau_local_work *work,
 	return false;
 }
 
-// Whether a triangle's strain is kept within a range. There it resists nothing.
+static int64_t count_chosen(const cau_step_solver *solver)
+{
+	int64_t count = 0;
+	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
+		count += solver->loose.region.chosen[v];
+	return count;
+}
+
+// Whether a live triangle on no fat has a range.
 static bool has_range(const cau_step_solver *solver, int32_t share, int32_t slot)
 {
 	return weight_of(solver, slot) > 0 &&
 	       cau_newton_stiffness(solver, &(cau_newton_element){share, slot}) == CAU_NEWTON_RANGE;
 }
 
-// Shares with triangles that are on no fat: only these are looked at.
+// Shares with triangles that are on no fat: only these are examined. Sheets with a range that have
+// too many vertices for a region stay with A.
 static bool list_shares(cau_step_solver *solver)
 {
 	cau_loose *loose = &solver->loose;
@@ -51,11 +60,17 @@ static bool list_shares(cau_step_solver *solver)
 		for (int32_t slot = work->first; slot < work->last; slot++) {
 			bool own = work->kind == CAU_ELEMENT_TRIANGLE && !is_on_fat(solver, work, slot);
 			any |= own;
-			loose->ranged[w] |= own && has_range(solver, w, slot);
+			if (!own || !has_range(solver, w, slot))
+				continue;
+			loose->ranged[w] = true;
+			for (int i = 0; i < 3; i++)
+				loose->region.chosen[vertex_of(solver, work, slot, i)] = 1;
 		}
 		if (any)
 			loose->share[loose->share_count++] = w;
 	}
+	if (loose->ranged && count_chosen(solver) > CAU_NEWTON_ROWS)
+		memset(loose->ranged, 0, (size_t)slots->work_count * sizeof *loose->ranged);
 	return loose->share && loose->ranged;
 }
 
@@ -77,16 +92,18 @@ static bool make_loose(cau_step_solver *solver)
 	return list_shares(solver);
 }
 
-static void choose_slack(const cau_step_solver *solver, int32_t share, uint8_t *chosen)
+static void choose_slack(const cau_step_solver *solver, int32_t share, bool ranges, uint8_t *chosen)
 {
 	const cau_local_work *work = &solver->slots.work[share];
-	bool all = solver->newton_chosen;
-	if (!all && !solver->elements.slack[work->number] && !solver->loose.ranged[share])
+	bool all = solver->newton_chosen, ranged = ranges && solver->loose.ranged[share];
+	if (!all && !ranged && !solver->elements.slack[work->number])
 		return;
 	for (int32_t slot = work->first; slot < work->last; slot++) {
 		if (!(weight_of(solver, slot) > 0) || is_on_fat(solver, work, slot))
 			continue;
-		if (all || cau_newton_stiffness(solver, &(cau_newton_element){share, slot}) < CAU_SLACK)
+		double stiffness =
+			all ? 0 : cau_newton_stiffness(solver, &(cau_newton_element){share, slot});
+		if (stiffness == CAU_NEWTON_RANGE ? ranged : stiffness < CAU_SLACK)
 			for (int i = 0; i < 3; i++)
 				chosen[vertex_of(solver, work, slot, i)] = 1;
 	}
@@ -130,12 +147,17 @@ static void leave_out(const cau_step_solver *solver, uint8_t *chosen)
 		chosen[v] = chosen[v] == CHOSEN && !solver->fixed[v];
 }
 
-static int64_t count_chosen(const cau_step_solver *solver)
+// Chooses the region, with or without sheets that have a range; how many vertices it has.
+static int64_t choose(cau_step_solver *solver, bool ranges)
 {
-	int64_t count = 0;
-	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
-		count += solver->loose.region.chosen[v];
-	return count;
+	cau_loose *loose = &solver->loose;
+	memset(loose->region.chosen, 0, (size_t)solver->tissue->vertex_count);
+	for (int32_t k = 0; k < loose->share_count; k++)
+		choose_slack(solver, loose->share[k], ranges, loose->region.chosen);
+	if (!count_chosen(solver))
+		return 0;
+	leave_out(solver, loose->region.chosen);
+	return count_chosen(solver);
 }
 
 cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error)
@@ -154,14 +176,9 @@ cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error)
 		cau_loose_finish(loose);
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
 	}
-	memset(loose->region.chosen, 0, n);
-	for (int32_t k = 0; k < loose->share_count; k++)
-		choose_slack(solver, loose->share[k], loose->region.chosen);
-	int64_t count = count_chosen(solver);
-	if (count) {
-		leave_out(solver, loose->region.chosen);
-		count = count_chosen(solver);
-	}
+	int64_t count = choose(solver, true);
+	if (count > CAU_NEWTON_ROWS && !solver->newton_chosen)
+		count = choose(solver, false);
 	if (count > CAU_NEWTON_ROWS && !solver->newton_chosen)
 		count = 0;
 	if (!count) {

@@ -3,8 +3,8 @@
 // its plane as within it. A tab along a cut, a flap or a sheet that hangs by an edge is soft there:
 // only mass and tension resist, and a step by A leaves 70 to 90 % of its motion undone.
 //
-// So the vertices of slack triangles (CAU_SLACK) make up a region R. N is all the rest. Each
-// iteration has two parts:
+// So the vertices of slack triangles (CAU_SLACK) and of sheets with a range make up a region R, if
+// it has at most CAU_NEWTON_ROWS vertices. N is all the rest. Each iteration has two parts:
 //
 //   settle     moves R to where E is least with N held still, by Newton's method in double with a
 //              line search of R's own share of E;

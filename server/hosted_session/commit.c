@@ -13,7 +13,7 @@ typedef struct commit {
 	cau_pending *pending;
 	uint64_t from_tick; // if it fails, the log is lost from here on
 	bool making;        // the session's first rows: without them there is no session
-	bool made;          // and the answer to its creator
+	bool made;          // the batch also has the answer to its creator
 } commit;
 
 static cau_pending *reversed(cau_pending *list)
@@ -73,7 +73,7 @@ static void committed(void *user, cau_status status, const char *reason)
 		if (done->making)
 			end_making(done->hosted, status, reason);
 	}
-	if (done->made && !status) // before its creator knows, who may ask for it at once
+	if (done->made && !status) // before the answer: the creator may use the session at once
 		done->hosted->creation.unanswered = false;
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {

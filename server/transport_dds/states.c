@@ -229,6 +229,7 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 	bool due = now_s >= cau_dds_states_due(session);
 	if (newcomers || due)
 		session->states_s = now_s;
+	memset(session->states_owed + count, 0, (size_t)(CAU_MAX_TOOLS - count)); // of removed tools
 	for (int32_t i = 0; i < count; i++) {
 		cau_hosted_tool *last = &session->states[i];
 		cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);

@@ -9,7 +9,7 @@ import socket
 import sys
 import unittest
 
-# Below the ports that Linux gives to whoever asks for any: a daemon or a connection of another test would get one of
+# Below the ports that Linux gives to programs that ask for any. A daemon or a connection of another test would get one of
 # those before its owner takes it.
 PORTS = range(23000, 32768)
 given = set()  # to the tests of this program
@@ -24,7 +24,7 @@ def free_ports(count):
         given.add(port)
         try:
             socket.create_server(("127.0.0.1", port)).close()
-        except OSError:  # somebody has it
+        except OSError:  # the port is in use
             continue
         ports.append(port)
     return ports

@@ -9,7 +9,7 @@ import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallScene, smallSession } from './wire/scene.mjs';
 
 const STEP_S = 1 / 60;
-const SLOW = process.env.E2E_SLOW === '1'; // sanitizers look at each path; figures and chances are for other builds
+const SLOW = process.env.E2E_SLOW === '1'; // with a sanitizer: fewer repeats, the same kinds of input
 const STEPS = SLOW ? 60 : 300, CUT_STEPS = SLOW ? 50 : 100, LONG_STEPS = 2500;
 const DEADLINE_TICKS = 15; // of 1/60 s, in the deadline of 250 ms
 const EPISODES = Number(process.env.E2E_EPISODES ?? (SLOW ? 3 : 10)), LOAD = Number(process.env.E2E_LOAD ?? 4);

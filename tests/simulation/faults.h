@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// word, promise that notices it, the seed that found it last, what is wrong. That seed is tried
-// before the others, so a search that finds is short. A seed that finds no more may stay here.
+// word, promise that notices it, the seed that found it last, what is wrong. The search
+// begins with that seed, so it is short where the seed still finds the fault.
 #define FAULT_TABLE(X)                                                                             \
 	X(watchdog_oversleeps, energy_silent, 14, "the watchdog looks half a second after it should")  \
 	X(worker_wake_lost, energy_cut, 49, "one in three wakes of a worker is lost")                  \

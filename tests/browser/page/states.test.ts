@@ -85,7 +85,7 @@ describe('a picture that is not live, and its address', () => {
     await other.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'the moment is offered');
     expect(await other.page.locator('#rewind').textContent()).toMatch(/^Rewind to \d+\.\d\d s$/);
     await other.live('d1-fascia');
-    expect((await other.state()).epoch).toBe(epoch); // and nobody was moved
+    expect((await other.state()).epoch).toBe(epoch); // the other viewer stays in its epoch
     await other.close();
   });
 
@@ -113,7 +113,7 @@ describe('a daemon with tokens', () => {
   const tokens = join(folder, 'tokens');
   beforeAll(() => writeFileSync(tokens, 'operate open-sesame-0123456789abcdef\nview only-looking-0123456789abcdef\n', { mode: 0o600 }));
   afterAll(() => rmSync(folder, { recursive: true }));
-  const stage = new Stage(['--demo', 'fascia', '--tokens', tokens], COARSE, 'processor'); // which reads them
+  const stage = new Stage(['--demo', 'fascia', '--tokens', tokens], COARSE, 'processor'); // the daemon reads the tokens from a file
   let viewer: ViewerPage;
 
   beforeAll(async () => {

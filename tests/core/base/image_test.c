@@ -91,7 +91,7 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(mappings("rw-p", NULL), 0);
 }
 
-// All pages of who made it are shown without a look, those of others are not.
+// The first session's pages are shown without a comparison. Those of further sessions are compared.
 static void who_made_it_knows(void **state)
 {
 	(void)state;

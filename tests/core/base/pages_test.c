@@ -44,7 +44,7 @@ static void test_too_much_is_refused(void **state)
 	cau_pages_give_back(&pages);
 }
 
-// Those that were written, and no look makes more of them.
+// Pages that were written count as touched. Asking touches none.
 static void test_touched_pages_are_known(void **state)
 {
 	(void)state;

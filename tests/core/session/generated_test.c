@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes that are drawn at random: slabs, sheets, strands and stacks of all laws, pinned somewhere,
 // that fall, are pressed, grasped and let go, or cut through. Sampled steps are computed again from
-// the same state until they have converged. What is asserted holds for all of them. Too many are
-// wrong by more than 1 %, or gain energy (.github/KNOWN_BUGS.md): these are counted and printed.
-// The environment variables CAUTERY_SCENES (how many) and CAUTERY_SCENES_SEED choose others.
+// the same state in up to 400 iterations, in the same precision. What is asserted holds for all of
+// them. Too many are wrong by more than 1 %, or gain energy (.github/KNOWN_BUGS.md): these are
+// counted and printed. The environment variables CAUTERY_SCENES (how many) and CAUTERY_SCENES_SEED
+// choose others.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -14,8 +15,8 @@
 enum { SCENES = CAU_TEST_SANITIZED ? 2 : 16, FIRST_SEED = 1000 };
 enum { TICKS = 150, SAMPLE_EVERY = 10, SAMPLES = TICKS / SAMPLE_EVERY, CONVERGED = 400 };
 static const double converged_residual = 1e-8, wanted = 0.01;
-// Of what a scene's elastic, kinetic and gravitational energies change by, at most. In single
-// precision the rounding of stiff sheets' energies is of that order.
+// A scene gains energy if its steps gain more than this in all, relative to the largest
+// energy_scale_j of a step.
 static const double gain_most = 0.01;
 static const double steps_right = 0.95; // share of a scene's steps
 // Share of steps with a true error above three times the reported one. One step more is chance.

@@ -2,7 +2,7 @@
 // Stands in the place of base/pages.h, by the linker, in tests that restore thousands of snapshots:
 // pages that are given back serve the next taker. To unmap them took half of such a test, because
 // each time the kernel interrupts the other processors. Pages that are kept are full of ones (no
-// number, or -1), so that what is read of them after they were given back is no good state.
+// number, or -1), so a read after they were given back finds no valid state.
 // Not under sanitizers and not in fuzzing: there such a read ends the program.
 #include <pthread.h>
 #include <string.h>

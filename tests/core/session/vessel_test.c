@@ -10,9 +10,9 @@ static const double sealed_m = -0.005, deep_m = -0.007, above_m = 0.04;
 enum {
 	TRAVEL = 12, // twice what the longest way, 48 mm, takes at the tools' 0.5 m/s
 	CLOSING = 40,
-	OPENING = 20,  // the jaws open in a few ticks; the rest is for tissue to come back
+	OPENING = 20,  // the jaws open in a few ticks, then the tissue springs back
 	SEALING = 180, // at most
-	HOLDING = 30,  // after the vessel is sealed, for what is beside its strongest place
+	HOLDING = 30,  // after the vessel is sealed: the rest of the seal gets strong too
 	CUTTING = CAU_TEST_SANITIZED ? 35 : 70
 };
 

@@ -280,6 +280,27 @@ static void what_is_slack_is_loose(void **state)
 	}
 }
 
+// A sheet with a range and too many vertices for a region stays with A. A crumpled sheet beside it
+// is a region all the same.
+static void a_large_sheet_with_a_range_is_left_to_a(void **state)
+{
+	(void)state;
+	rig r;
+	rig_begin(&r);
+	rig_add_sheet(&r, 40, 30)->sheet[0].limit = CAU_LIMIT_RANGE;
+	rig_add_sheet(&r, 6, 5);
+	rig_build(&r, NULL, 1);
+	rig_factor(&r);
+	int32_t first = r.tissue.layer[1].first_vertex, n = r.tissue.vertex_count;
+	assert_true(first > CAU_NEWTON_ROWS);
+	for (int32_t i = 3 * first; i < 3 * n; i++)
+		r.solver.position[i] *= 0.2;
+	cau_solver_evaluate(&r.solver);
+	assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
+	assert_int_equal(r.solver.loose.region.n, n - first);
+	rig_finish(&r);
+}
+
 // Fat goes on by A, and so does a law that has no energy.
 static void other_tissue_is_left_to_a(void **state)
 {
@@ -310,6 +331,7 @@ int main(void)
 		cmocka_unit_test(it_is_joined_to_the_rest_symmetrically),
 		cmocka_unit_test(settling_leaves_no_force),
 		cmocka_unit_test(what_is_slack_is_loose),
+		cmocka_unit_test(a_large_sheet_with_a_range_is_left_to_a),
 		cmocka_unit_test(other_tissue_is_left_to_a),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

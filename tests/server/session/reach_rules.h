@@ -41,7 +41,8 @@ typedef struct reach_event {
 typedef struct reach_move {
 	cau_logic *logic, *scratch;
 	const cau_logic *before; // the event; of all events of a state, so none changes it
-	bool silence_is_cut;     // `scratch` is `before`, with those dark who were silent by now
+	bool
+		silence_is_cut; // `scratch` is `before`, with energy off for drivers that are silent by now
 	cau_action action;
 	cau_effects effects;
 	reach_state books;

@@ -90,12 +90,12 @@ typedef struct reach_packed {
 
 extern const char *const reach_tool_names[REACH_TOOLS];
 
-const cau_asker *reach_asker(int client); // the last one is an admin; 0: nobody
+const cau_asker *reach_asker(int client); // the last one is an admin; 0: no client
 int reach_tool_index(const char *name);
 bool reach_is_fresh(double alive_s, double now_s);
 // `logic` has room for REACH_QUEUE orders. Tickets are places in `orders`.
 void reach_decode(const reach_state *state, cau_logic *logic);
-// All that means something: drives and orders beyond their counts do not.
+// Copies all but the drives and orders beyond their counts, which have no meaning.
 void reach_copy_machine(const cau_logic *from, cau_logic *to);
 // All but the test's own books, which are taken from `books`; its orders are those of the machine.
 void reach_encode(const cau_logic *logic, const reach_state *books, reach_state *state);

@@ -28,7 +28,7 @@ interface Asked {
   steps: number;
 }
 /** Where the point ended, and its distance there. */
-interface Told {
+interface Answer {
   distance: number;
   point: Vector3;
 }
@@ -44,19 +44,19 @@ function makeRandom(): () => number {
 }
 
 /** What the core answers to all points, in one run of its program: to start it takes longer than to answer. */
-function askCore(shape: Shape, [hot, tip, shaft]: Sizes, asked: readonly Asked[]): Told[] {
+function askCore(shape: Shape, [hot, tip, shaft]: Sizes, asked: readonly Asked[]): Answer[] {
   const program = process.env['CAUTERY_TOOL_DISTANCES'];
   if (program === undefined) throw new Error('CAUTERY_TOOL_DISTANCES names no program');
   const head = [TOOL_SHAPES.indexOf(shape), hot, tip, shaft].join(' ');
   const input = asked.map(({ jaw, part, point: { x, y, z }, steps }) => `${head} ${jaw} ${part} ${x} ${y} ${z} ${steps}\n`).join('');
   const { stdout, status } = spawnSync(program, { input, encoding: 'utf8', maxBuffer: 1 << 26 });
   expect(status).toBe(0);
-  const told = stdout.trim().split('\n').map((line) => {
+  const answers = stdout.trim().split('\n').map((line) => {
     const [distance, x, y, z] = line.split(' ').map(Number);
     return { distance, point: new Vector3(x, y, z) };
   });
-  expect(told).toHaveLength(asked.length);
-  return told;
+  expect(answers).toHaveLength(asked.length);
+  return answers;
 }
 
 /** Triangles of the hot or the cold part in the tool's frame. */
@@ -101,8 +101,8 @@ function sampleAround(random: () => number): Vector3[] {
 }
 
 /** Those that reached the core's surface near the tip. */
-function onSurface(told: readonly Told[]): Vector3[] {
-  return told.filter(({ distance, point }) => Math.abs(distance) < ON_SURFACE_M && point.length() < REACH_M).map(({ point }) => point);
+function onSurface(answers: readonly Answer[]): Vector3[] {
+  return answers.filter(({ distance, point }) => Math.abs(distance) < ON_SURFACE_M && point.length() < REACH_M).map(({ point }) => point);
 }
 
 function boxed(triangles: readonly Triangle[]): Drawn[] {
@@ -151,12 +151,12 @@ describe.each(TOOL_SHAPES)('the drawn %s', (shape) => {
         else parts.push({ jaw, part, triangles, drawn: sampleDrawn(triangles, random), around: sampleAround(random) });
       }
     }
-    const told = askCore(shape, sizes, parts.flatMap(({ jaw, part, drawn, around }) => [
+    const answers = askCore(shape, sizes, parts.flatMap(({ jaw, part, drawn, around }) => [
       ...drawn.map((point) => ({ jaw, part, point, steps: 0 })), ...around.map((point) => ({ jaw, part, point, steps: STEPS })),
     ]));
     for (const { jaw, part, triangles, drawn, around } of parts) {
-      const outside = Math.max(...told.splice(0, drawn.length).map(({ distance }) => distance));
-      const surface = onSurface(told.splice(0, around.length));
+      const outside = Math.max(...answers.splice(0, drawn.length).map(({ distance }) => distance));
+      const surface = onSurface(answers.splice(0, around.length));
       const boxes = boxed(triangles);
       const missing = Math.max(...surface.map((point) => distanceTo(boxes, point)));
       const where = `jaw ${jaw}, ${part === 0 ? 'hot' : 'cold'}`;
