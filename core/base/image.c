@@ -16,12 +16,6 @@
 // at most twice as many as the runs it is shown.
 enum { LEAST_RUN_BYTES = 16 << 10, MOST_RUNS = 64 };
 
-typedef enum page_state {
-	UNTOUCHED, // of the system's zeros
-	ZERO,      // of its own
-	FULL,
-} page_state;
-
 typedef struct image_part {
 	size_t at, page_count; // in `place`
 } image_part;
@@ -35,7 +29,7 @@ struct cau_image {
 	size_t page;         // bytes: the system's, less than which nothing can be mapped
 	size_t page_count;   // in the file
 	size_t listed_count; // of all parts
-	uint32_t *place;     // (listed_count): where in the file, in pages from 1 on; 0: all zero
+	uint32_t *place;     // (listed_count): where in the file, in pages from 1 on; 0: untouched
 	int32_t part_count;
 	image_part part[CAU_IMAGE_PARTS];
 };
@@ -50,7 +44,7 @@ static size_t pages_of(const cau_image *image, const cau_pages *pages)
 	return pages->byte_count / image->page;
 }
 
-// Between arrays there are bytes that no one may touch; these three read them all the same.
+// Between arrays there are bytes that no one may touch; these two read them all the same.
 __attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b,
                                                               size_t bytes)
 {
@@ -61,15 +55,6 @@ __attribute__((no_sanitize("address"))) static bool same_page(const char *a, con
 	return differ == 0;
 }
 
-__attribute__((no_sanitize("address"))) static bool is_zero(const char *a, size_t bytes)
-{
-	const uint64_t *x = (const void *)a;
-	size_t k = 0;
-	while (k < bytes / 8 && !x[k])
-		k++;
-	return k == bytes / 8;
-}
-
 __attribute__((no_sanitize("address"))) static void copy_pages(char *to, const char *from,
                                                                size_t bytes)
 {
@@ -77,18 +62,6 @@ __attribute__((no_sanitize("address"))) static void copy_pages(char *to, const c
 	const uint64_t *y = (const void *)from;
 	for (size_t k = 0; k < bytes / 8; k++)
 		x[k] = y[k];
-}
-
-// Fills the page_state of each. Untouched ones are not read.
-static void look_at(const cau_image *image, const cau_pages *pages, uint8_t *state)
-{
-	const char *start = pages->start;
-	size_t count = pages_of(image, pages);
-	cau_pages_touched(pages, state);
-	for (size_t k = 0; k < count; k++)
-		state[k] = !state[k]                                       ? UNTOUCHED
-		           : is_zero(start + k * image->page, image->page) ? ZERO
-		                                                           : FULL;
 }
 
 // What a mapping may be refused for, their number and the address space, is looked at before the
@@ -115,7 +88,7 @@ static void destroy(cau_image *image)
 	free(image);
 }
 
-// Where each page goes: those that are not zero, one after the other.
+// Where each page goes: those that were touched, one after the other.
 static bool lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 {
 	image->part_count = count < CAU_IMAGE_PARTS ? count : CAU_IMAGE_PARTS;
@@ -126,15 +99,15 @@ static bool lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 	if (!image->listed_count || image->listed_count > CAU_IMAGE_BYTES / image->page)
 		return false;
 	image->place = calloc(image->listed_count, sizeof *image->place);
-	uint8_t *state = malloc(image->listed_count);
-	for (int32_t i = 0; i < image->part_count && image->place && state; i++) {
+	uint8_t *touched = malloc(image->listed_count);
+	for (int32_t i = 0; i < image->part_count && image->place && touched; i++) {
 		uint32_t *place = image->place + image->part[i].at;
-		look_at(image, &pages[i], state);
+		cau_pages_touched(&pages[i], touched);
 		for (size_t k = 0; k < image->part[i].page_count; k++)
-			if (state[k] == FULL)
+			if (touched[k])
 				place[k] = (uint32_t)++image->page_count;
 	}
-	free(state);
+	free(touched);
 	return image->page_count > 0;
 }
 
@@ -278,30 +251,17 @@ typedef struct showing {
 	const cau_image *image;
 	const image_part *part;
 	char *start;
-	uint8_t *state; // (page_count): page_state
-	bool equal;     // all are
-	int32_t runs;   // of all parts
-	size_t shown;   // pages of all parts
+	uint8_t *touched; // (page_count)
+	bool equal;       // all are
+	int32_t runs;     // of all parts
+	size_t shown;     // pages of all parts
 } showing;
 
 static bool is_equal(const showing *s, size_t k)
 {
 	const char *view = view_of(s->image, s->part->at + k);
-	return s->state[k] == FULL && view &&
+	return s->touched[k] && view &&
 	       (s->equal || same_page(view, s->start + k * s->image->page, s->image->page));
-}
-
-// The system keeps pages that are locked in memory.
-static void give_back_zeros(const showing *s)
-{
-	size_t page = s->image->page, first = 0;
-	for (size_t k = 0; k <= s->part->page_count; k++) {
-		if (k < s->part->page_count && s->state[k] == ZERO)
-			continue;
-		if (k > first)
-			madvise(s->start + first * page, (k - first) * page, MADV_DONTNEED);
-		first = k + 1;
-	}
 }
 
 // The next run of equal pages at or after *first: its length, 0 at the end. Pages that lie side by
@@ -337,17 +297,16 @@ static bool show_part(showing *s)
 
 size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count, bool equal)
 {
-	showing s = {.image = image, .equal = equal, .state = malloc(image->listed_count)};
-	bool mapped = s.state != NULL;
+	showing s = {.image = image, .equal = equal, .touched = malloc(image->listed_count)};
+	bool mapped = s.touched != NULL;
 	for (int32_t i = 0; mapped && i < count && i < image->part_count; i++) {
 		s.part = &image->part[i];
 		s.start = pages[i].start;
 		if (pages_of(image, &pages[i]) != s.part->page_count)
 			continue;
-		look_at(image, &pages[i], s.state);
-		give_back_zeros(&s);
+		cau_pages_touched(&pages[i], s.touched);
 		mapped = show_part(&s);
 	}
-	free(s.state);
+	free(s.touched);
 	return s.shown * image->page;
 }
