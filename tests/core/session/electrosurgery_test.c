@@ -100,14 +100,20 @@ static void lips_move_with_what_is_left(void **state)
 	cau_session_destroy(session);
 }
 
+// Tissue that one watt does not part holds the needle up. Drawn on, a needle that is so thin for
+// such a mesh may pass through faces that are whole (.github/KNOWN_BUGS.md).
 static void one_watt_holds_the_needle_up(void **state)
 {
 	(void)state;
-	cau_session *session = cut_with(1, 1);
-	assert_int_equal(parted(session), 0);
+	cau_scene_def *scene = needle_over_sheet(1);
+	cau_session *session = stage_open(scene, 1);
+	go(session, 0, DWELL_TICKS);
 	assert_true(stage_tool(session, "hook")->raw_force_n[2] > 0);
+	go(session, DWELL_TICKS, DWELL_TICKS + DRAWN_TICKS);
+	assert_int_equal(parted(session), 0);
 	assert_ledger_closes(session);
 	cau_session_destroy(session);
+	free(scene);
 }
 
 // Off ends the power in that tick. Stored heat still goes on; then all cools down, and rests.
