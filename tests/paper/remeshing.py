@@ -58,8 +58,9 @@ also writes its buffers again (12 bytes a vertex, 4 for each corner of an elemen
 {chr(10).join(line for scene, of in found.items() for line in table(scene, of))}
 Four simplifications flatter the other method. Its cut has no width. Its system has only the elements of the cut layer,
 without membrane, links or pins. It does not collapse or smooth ill-shaped elements. Ticks without a change are free.
-Ours is flattered because the numbers that another thread factors meanwhile are not in its time. Ours is charged for all
-ticks of the cut, with or without a change. Vertices in the plane need no bisection, so a sheet with vertices on the line
-of cut is only opened. In the paper's terms, inserts and deletes of buffers are O(ins) and O(del), those of neighbours
-O(N_ins) and O(N_del). Bisection is O(re), the test of shapes O(ill). Ours is the share counts, O(n) at most.
+One simplification flatters our method: the time of the numeric factorisation in another thread is not included. The time
+of our method includes all ticks of the cut, with or without a change. Vertices in the plane need no bisection, so a
+sheet with vertices on the line of cut is only opened. In the paper's terms, inserts and deletes of buffers are O(ins) and
+O(del), those of neighbours O(N_ins) and O(N_del). Bisection is O(re), the test of shapes O(ill). Our method only updates
+the share counts, O(n) at most.
 """
