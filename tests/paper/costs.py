@@ -53,9 +53,10 @@ The elements nearest to the scene's line of cut are removed from A, in three way
 
 - exact downdates of the factor (rank 8), as a tick does with a few elements;
 - factoring the numbers again with the same pattern, as a background thread does with many;
-- ordering, analysing and factoring again, as a method must whose cuts add vertices.
+- ordering, analysing and factoring again, as needed by a method whose cuts add vertices.
 
-The third method's re-meshing is not in its time, so the last column flatters it. Times are in ms, one thread, the least of
+The time of the third method does not include re-meshing, so the last column flatters that method. Times are in ms, one
+thread, the least of
 five.
 
 | scene | elements | downdates | numbers again | order, pattern and numbers again | times the cheaper of ours |
@@ -64,8 +65,8 @@ five.
 
 ## Section 7.3: frames a second
 
-The table has the paper's frames, on a machine that it does not name, and steps a second here. Ours have ten iterations each,
-contact and a hot tool included, and no drawing.
+The table has the paper's frames a second, on a machine that the paper does not name, and our steps a second. Our steps
+have ten iterations each, with contact and a hot tool, and without drawing.
 
 | scene | triangles / tetrahedra | theirs | one thread | two threads |
 |---|---:|---:|---:|---:|

@@ -271,10 +271,10 @@ are, then two with other paths of the tool and an uneven ignition:
 
 - *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC with the spread of the
   paper's table, 17 degC. The hook's radius is 2 mm instead of 3, drawn at 4 mm/s instead of 2.
-- *fat, frayed*: cut across its tension instead of along it, at 4 mm/s instead of 2. The membrane is taut as the fat is
+- *fat, frayed*: cut across its tension instead of along it, at 4 mm/s instead of 2. The membrane is as taut as the fat
   (T = 0.3 along x). Both ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9 degC.
 
-All else is the paper's: temperatures, mean ignition, absorption, shrinkage, tension. The paper does not
+All other values are the paper's: temperatures, mean ignition, absorption, shrinkage, tension. The paper does not
 state the tool's size, speed and path. These paths, the bundles' width and the seed were chosen from about fifty runs.
 Another seed at the same setting left two strands instead of three.
 
@@ -284,13 +284,15 @@ Another seed at the same setting left two strands instead of three.
 
 A strand is a piece of tissue that joins both sides of a strip {2e3 * HALF_WIDTH_M:.0f} mm wide about the tool's path. Roughness is the
 root mean square of a lip's distance from its own running mean over {1e3 * WINDOW_M:.0f} mm. Open is the width without triangles, at {STATIONS}
-stations along the middle nine tenths of the cut, {REST_S} s after the tool has passed. Triangles gone and charred are of the
-visible layer.
+stations along the middle nine tenths of the cut, {REST_S} s after the tool has passed. Removed and charred triangles
+are counted in the visible layer.
 
-At 2 mm/s every bundle gets more than it can take. The fascia opens as a smooth ellipse, the fat as a straight trench. The
-table's spread alone changes that little. With the shipped hook no strand stays at 2 to 3.5 mm/s. With the thinner hook
-and 4 mm/s some bundles outlast their dose and stay across (the last of them where the cut ends). They hold the gap
-together beside them. Most of the roughness is the scallops between strands. The lips' own teeth are a cell or two
-long, 2 to 4 mm, which is as fine as a sheet of 6,000 triangles can fray. The fat's spread is a quarter of the fascia's. It
-parts whole, with uneven lips, one strand at most, and more char; tension across the cut opens it.
+At 2 mm/s every bundle gets more heat than it withstands. The fascia opens as a smooth ellipse, the fat as a straight
+trench. The spread of the paper's table alone changes little. With the shipped hook no strand stays at 2 to 3.5 mm/s.
+With the thinner hook
+and 4 mm/s some bundles withstand their dose and stay across (the last of them at the end of the cut). Beside these
+strands the gap is narrower. Most of the roughness comes from the curves of the lips between strands. The teeth of the
+lips are a cell or two long, 2 to 4 mm, the finest that a sheet of 6,000 triangles can have. The fat's spread is a
+quarter of the fascia's. The fat parts completely, with uneven lips, at most one strand, and more char; tension across
+the cut opens the cut.
 """

@@ -200,11 +200,12 @@ def page(details):
     return f"""## What was run
 
 The scene `fascia-power`: a needle of 1 mm is drawn through {LENGTH_MM} mm of taut fascia of 0.5 mm, with 30 W, 1,150 V, 7 mm/s
-and cells of 0.25 mm, where a table does not say otherwise. The sums of the ledger are made in different places of the
-program: delivered + from the blade = stored + boiled + perfused + surface + with removed tissue. Elements part whole, so
-the parted area is that of a strip as wide as an element. Severed is the length of the way along which a triangle on one of its
-sides is gone. Vaporised is tissue that is gone and had lost half of its water. The kerf is its mean width. Tissue that coagulated
-and is still there counts as two strips beside the severed length. `core_bioheat_*` compare heat, boiling, current, blades and
+and cells of 0.25 mm, where a table does not say otherwise. The sums of the ledger are computed independently in the
+program: delivered + from the blade = stored + boiled + perfused + surface + with removed tissue. Elements part as a
+whole, so the parted area is a strip as wide as an element. Severed is the length of the tool's path along which a
+triangle on one of its sides was removed. Vaporised is the removed tissue that had lost half of its water. The kerf is
+the mean width of the vaporised tissue. Coagulated tissue that remains counts as two strips beside the severed length.
+`core_bioheat_*` compare heat, boiling, current, blades and
 damage with closed forms, within 1 %.
 
 Greatest gap of the ledger in all {len(every)} runs: {worst:.1e} of what came in. Within {100 * LEDGER_MOST:.0f} %:
@@ -234,11 +235,12 @@ Greatest gap of the ledger in all {len(every)} runs: {worst:.1e} of what came in
 {table('mesh', details['cells'])}
 
 {within(details['cells'], {'severed_mm': ('severed', SAME_CUT), 'vaporised_mm3': ('vaporised', SAME_CUT)}, 'these meshes')}
-A coarse element holds the lips of the cut together until all of it is severed. So sparks reach more of them.
+A coarse element holds the lips of the cut together until all of it is severed. So sparks reach more of the lips.
 
 ## Layers
 
-Its parted area counts elements of all layers and links as if they were the fascia's. Its volumes are those of all layers.
+The parted area counts elements of all layers and links as if they belonged to the fascia. The volumes are those of all
+layers.
 
 {table('scene', details['layers'])}
 
@@ -247,8 +249,8 @@ The longest part of the way beside which no triangle of the fascia is gone: {det
 ## Liver
 
 A blade is drawn through {LENGTH_MM} mm of a slab of liver, 2 mm deep, after 1 s of dwelling: pure cut, no blood flow, 20 degC,
-as an organ that was taken out. Elements of 2 mm part whole, so the cut is as wide. Blades and speeds were chosen after a
-first look, and the table has all of them.
+as an organ that was taken out. Elements of 2 mm part as a whole, so the cut is 2 mm wide. Blades and speeds were chosen
+after first runs, and the table has all of them.
 
 {liver_table(details['liver'])}
 

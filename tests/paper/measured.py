@@ -502,16 +502,19 @@ def page(measured, terms):
     return f"""### Set-ups
 
 [setups.json](setups.json) has every number, with its source or the reason for an assumption. They were written down before
-the first run, and none was changed after it. Whoever wrote them knew the published values. Only cells, metal, current and a
-generator take part. Nothing moves. Force counts by friction alone.
+the first run, and none was changed after it. Their author knew the published values. The set-ups have only cells,
+metal, current and a generator. Nothing moves. Force has an effect only by friction.
 
-After the first run one law was set right: a seal counts where it is best, as in [core/vessel](../../core/vessel/README.md). Heat capacity of the shears' blade: {shears_metal()['upper_j_k']:.2f} J/K; cooling {1000 * shears_metal()['upper_w_k']:.1f} mW/K.
+After the first run one law was corrected: a seal counts at its best section, as in
+[core/vessel](../../core/vessel/README.md). Heat capacity of the shears' blade: {shears_metal()['upper_j_k']:.2f} J/K;
+cooling {1000 * shears_metal()['upper_w_k']:.1f} mW/K.
 
 {setups_table()}
 
 ### Values
 
-Of a temperature its rise above the start counts. A measurement counts where all of its values are within a factor of two.
+For a temperature its rise above the start is compared. A measurement counts as confirmed if all of its values are
+within a factor of two.
 
 {values_table(measured)}
 
@@ -529,10 +532,10 @@ What fails, and the likely reason:
 
 ### Without one term
 
-Before the first run one measurement was named for each term, which must fail without it: its values, or its order. Where nothing
-boils, water neither takes up heat nor leaves. A blade without heat capacity has a hundredth of it.
+Before the first run one measurement was named for each term, which must fail without it: its values, or its order.
+Without boiling, water neither takes up heat nor leaves the tissue. A blade without heat capacity has a hundredth of it.
 
 {terms_table(terms)}
 
-Grooves change the load, and not the greatest temperature: so contact area has no measurement here that needs it.
+Grooves change the load, and not the greatest temperature. So no measurement here needs the contact area.
 """

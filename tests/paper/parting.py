@@ -32,10 +32,13 @@ def page(found):
             f"{of['most_mm']:.1f} |" for name, of in found]
     return f"""## Section 6.1: two rules of parting
 
-A scene says what heat parts (`parting`). *edges* is the paper's rule: an edge gathers heat over its length (eq. 20), and
-its elements part with it. The paper's scenes have it, and so have all other figures of this page. *elements* is ours: each
+A scene chooses what heat parts (`parting`). *edges* is the paper's rule: an edge gathers heat over its length (eq. 20),
+and
+its elements part with it. The paper's scenes use this rule, and so do all other figures of this page. *elements* is our
+rule: each
 triangle and tetrahedron parts by the dose at its own middle, with its ignition drawn from a field over the rest shape.
-`layers` and scenes made of mesh files have it. By edges, the size of a cut depends on the mesh: half a cell all round is
+`layers` and scenes from mesh files use this rule. By edges, the size of a cut depends on the mesh: half a cell all
+round is
 removed with what the heat has parted ([validation.md](validation.md), "What a cut depends on"). Figure 7's cuts by both,
 at their end:
 
@@ -45,8 +48,9 @@ at their end:
 |---|---:|---:|---:|---:|---:|
 {chr(10).join(rows)}
 
-Figure 7 explains the columns. By elements only what the heat reaches is removed. So the same path of the tool takes less, and
-bundles that outlast their dose stay as bridges. The frayed fascia opens by a third of what it opens by edges. The frayed
-fat, drawn at 4 mm/s, is hardly divided. (Bridges that hang together beside the gap count as one strand.) In the paper's
-two cuts every bundle gets more than it can take; there the rules differ by the width of one cell.
+Figure 7 explains the columns. By elements only the tissue that heat reaches is removed. So the same path of the tool
+removes less, and bundles that withstand their dose stay as bridges. The frayed fascia opens by a third of its opening
+by edges. The frayed fat, drawn at 4 mm/s, is hardly divided. (Bridges that hang together beside the gap count as one
+strand.) In the paper's two cuts every bundle gets more heat than it withstands; there the rules differ by the width of
+one cell.
 """

@@ -49,10 +49,12 @@ def table(scene, of):
 def page(found):
     return f"""## Section 7.1: work and buffers of a cut
 
-The scene's cut by a method that changes the topology, beside ours, in one run. The other method
+This section compares the scene's cut by our method with a method that changes the topology, in one run. The other
+method
 ([tests/bench/remesh.c](../bench/remesh.c)) follows the tip with an upright plane. It bisects the edges that the plane
-crosses, in all elements around each. It doubles the vertices in the plane behind the tip, and gives one side's elements
-to the doubles. In each tick in which the mesh changed it assembles, orders, analyses and factors its system again. It
+crosses, in all elements around each such edge. It duplicates the vertices in the plane behind the tip, and connects the
+elements of one side to the duplicates. In each tick in which the mesh changed it assembles, orders, analyses and
+factors its system again. It
 also writes its buffers again (12 bytes a vertex, 4 for each corner of an element).
 
 {chr(10).join(line for scene, of in found.items() for line in table(scene, of))}

@@ -55,14 +55,16 @@ NOT_QUICK = {"viewer"}  # the browser's own tests hold the viewer; what is cut i
 PAPER_HEAD = """# The paper, reproduced
 
 This page reproduces what *Energized Soft Tissue Dissection in Surgery Simulation* shows, as far as a simulation can. It
-has their figures and numbers beside ours, every parameter, and the differences in plain words. One command writes this page
+compares the paper's figures and numbers with ours, and lists every parameter and every difference. One command writes
+this page
 and [validation.md](validation.md) beside it:
 
     tests/paper/run.py
 
-It uses the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)), `cautery-sim` and the viewer. `tests/paper/run.py
+The command uses the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)), `cautery-sim` and the viewer.
+`tests/paper/run.py
 --quick` is the same code in a small form. The test `paper_quick` compares its figures with `expected.json`, each within the
-tolerance given there. `--only NAME` makes one part. Section and equation numbers are the paper's.
+tolerance given there. `--only NAME` writes only the part `NAME`. Section and equation numbers are the paper's.
 """
 
 VALIDATION_HEAD = """# The method, validated
@@ -74,8 +76,9 @@ some of each in a small form (`expected.json`).
 
 ENERGY_HEAD = """# Energy, validated
 
-This page holds energy `tissue` ([core/bioheat](../../core/bioheat/README.md)) against its own ledger, and shows on what a cut
-by power depends. `tests/paper/run.py --only energy` writes it. The test `paper_quick` checks some of it (`expected.json`).
+This page checks energy `tissue` ([core/bioheat](../../core/bioheat/README.md)) by its energy ledger, and shows on what
+a cut by power depends. `tests/paper/run.py --only energy` writes it. The test `paper_quick` checks some of it
+(`expected.json`).
 """
 
 

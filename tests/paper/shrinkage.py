@@ -86,8 +86,9 @@ are areas over the cut's length: the removed area, at rest; and the opening in t
 
 Mildly taut, shrinkage moves the lips apart by {widening(cuts, 'mild', 'along'):.1f} mm along and
 {widening(cuts, 'mild', 'across'):.1f} mm across. In the paper's sheet it changes the opening by
-{widening(cuts, 'taut', 'along'):+.1f} mm. Tension opens the cut by far more than the shrinkage beside it, so figure 6 shows the
-effect only where tension is small. (A sheet without tension gives way to the hook and is not cut at all.)
+{widening(cuts, 'taut', 'along'):+.1f} mm. Tension opens the cut by far more than the shrinkage beside the cut. So
+figure 6 shows the effect of shrinkage only where tension is small. (A sheet without tension moves away from the hook
+and is not cut at all.)
 """
 
 

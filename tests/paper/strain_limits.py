@@ -71,14 +71,15 @@ def page(sheets):
 
 Six sheets of 100 mm hang by the ends of their upper edge for {HANGING_S} s, {ITERATIONS} iterations a step, uncut. From top
 to bottom: 60 % allowed along both material axes; 2 % along the first; 2 % along both. Left: the axes turned by 0.5 rad
-against the mesh's. Right: on them. As in the paper, the top sheets hang long. The middle ones shear or narrow to follow
+against the mesh's. Right: the axes along the mesh's axes. As in the paper, the top sheets become long. The middle ones
+shear or narrow to follow
 their stiff fibres. The bottom ones keep their shape.
 
 ![Six hanging sheets](figure-4.svg)
 
 {chr(10).join(rows)}
 
-Strain is |F a| - 1 of each triangle along its material axis a. The paper gives no numbers. A limit is a stiffness
-beyond it (`limit_stiffness_pa`), not a wall. Few triangles are strained beyond it: those beside the two pins that carry
-the whole weight. In the last two seconds no vertex moved further than {moved:.2g} mm.
+Strain is |F a| - 1 of each triangle along its material axis a. The paper gives no numbers. Beyond a limit there is a
+stiffness (`limit_stiffness_pa`), so strain can exceed the limit. Few triangles exceed it: those beside the two pins,
+which carry the whole weight. In the last two seconds no vertex moved further than {moved:.2g} mm.
 """
