@@ -59,7 +59,7 @@ def page(found):
     build/tests/paper_probe swing STEPS_PER_S
 
 A block of 40 x 40 x 20 mm without pins and weight starts at 0.11 m/s and spins at 10 rad/s about an
-axis that is none of its own. The table has the three quantities after ten seconds, 600 steps.
+axis that is not one of its principal axes. The table has the three quantities after ten seconds, 600 steps.
 
 | steps | momentum changed by, of itself | angular momentum along what it was | changed by, of itself | energy kept |
 |---|---:|---:|---:|---:|
@@ -67,8 +67,8 @@ axis that is none of its own. The table has the three quantities after ten secon
 
 ![Angular momentum and energy of a free block](validation-flight.svg)
 
-A block of 80 x 20 x 20 mm, held at one end, is released level. Only the method damps it: implicit Euler takes energy
-from motion, the more the longer its step. The table has the share that is left of the kinetic, elastic and potential
+A block of 80 x 20 x 20 mm, held at one end, is released level. Only the method damps the block: implicit Euler removes
+energy from motion, and more with a longer step. The table has the remaining share of the kinetic, elastic and potential
 energy above the sunk state at rest. The last column is the energy that all steps added without a source.
 
 | steps a second | after 0.5 s | after 1 s | added without a source |

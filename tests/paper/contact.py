@@ -289,7 +289,8 @@ def rest_said(rest):
                      f"At {sum(without)} of {len(without)} places touching tissue had no contact constraint." if any(without) else
                      "All of it had its contact constraint.",
                      f"A force changes by {most:.1%} at most though its ball does not move (ball of {restless.radius:g} mm, cells of "
-                     f"{its_cell:g} mm).", "A `-` is where more vertices would touch than the capacity for contact constraints.")
+                     f"{its_cell:g} mm).", "A `-` means that more vertices would be in contact "
+                     "than the capacity for contact constraints.")
 
 
 def cost_said(costs):
@@ -325,11 +326,13 @@ def page(details):
     build/tests/paper_contact_probe cost RADIUS_MM DEPTH_MM SPEED_MM_S TICKS
     PROXY_MATRIX={EVERY} build/tests/test_core_session_proxy_matrix
 
-Rigid balls without friction, pressed into a slab of {THICK_MM} mm that is bonded to its floor, E {1e-3 * YOUNG_MODULUS_PA:g} kPa and nu {POISSON:g} (stable
-neo-Hookean), until all rests, by steps of an accuracy of 1e-4. Cells are equal below the ball and grow outwards. They are counted
-along the diameter of the patch that the ball has by Hertz, 2 sqrt(R d). *Solution*: the same mesh by Newton's method with an
-active set, in double, of which nothing is core's ([tests/reference](../reference/README.md)). *Hertz*: his force with the
-correction of Dimitriadis et al. (2002) for a thin layer, for small strains.
+Rigid balls without friction are pressed into a slab of {THICK_MM} mm that is bonded to its floor, E
+{1e-3 * YOUNG_MODULUS_PA:g} kPa and nu {POISSON:g} (stable
+neo-Hookean), until everything rests, by steps of an accuracy of 1e-4. Cells are equal below the ball and grow outwards.
+They are counted
+along the diameter of the patch that the ball has by Hertz, 2 sqrt(R d). *Solution*: the same mesh by Newton's method
+with an active set, in double, without any code of core ([tests/reference](../reference/README.md)). *Hertz*: the force
+of Hertz with the correction of Dimitriadis et al. (2002) for a thin layer, for small strains.
 
 | ball, mm | depth, mm | cells a patch | force, mN | solution, mN | off it | Hertz, mN | off it |
 |---:|---:|---:|---:|---:|---:|---:|---:|
@@ -339,8 +342,8 @@ correction of Dimitriadis et al. (2002) for a thin layer, for small strains.
 
 ![Force by depth](validation-contact-force.svg)
 
-The same by mesh: off Hertz, mean of {PLACES} places along a cell. The last column is the range at all these places on meshes of
-{ENOUGH_CELLS} cells a patch and more.
+The same by mesh: off Hertz, mean of {PLACES} places along a cell. The last column is the range over all these positions
+on meshes of {ENOUGH_CELLS} cells a patch and more.
 
 | ball, mm | depth, mm | {' | '.join(f'{cells} cells' for cells in MESHES)} | least to most |
 |---:|---:|{'---:|' * len(MESHES)}---:|
@@ -350,7 +353,8 @@ The same by mesh: off Hertz, mean of {PLACES} places along a cell. The last colu
 
 ![Force by mesh](validation-contact-meshes.svg)
 
-A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:g}, at {SLIDING_PLACES} places along a cell. The table has the range of its force, of the mean.
+A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:g}, at {SLIDING_PLACES} places along a
+cell. The table has the range of its force, relative to the mean.
 
 | cells a patch | changes by | the mesh's solution by | asked | reached |
 |---:|---:|---:|---:|---|
@@ -360,9 +364,9 @@ A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:
 
 ![Force along a cell](validation-contact-sliding.svg)
 
-A ball rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more. The table has the depth of tissue inside it, mm, the deepest within
-half a second at {PLACES} places: vertices on all meshes, then faces by their cells. The last columns have the range of the force
-in that time, at the worst of the places.
+A ball rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more. The table has the largest depth of tissue
+inside the ball, mm, within half a second at {PLACES} positions: vertices on all meshes, then faces by their cells. The last
+columns have the range of the force in that time, at the worst position.
 
 | ball, mm | vertices | {' | '.join(f'faces, {cell} mm' for cell in REST_CELLS_MM)} | {' | '.join(f'force, {cell} mm' for cell in REST_CELLS_MM)} |
 |---:|---:|{'---:|' * 2 * len(REST_CELLS_MM)}
@@ -370,8 +374,9 @@ in that time, at the worst of the places.
 
 {rest_said(rest)}
 
-A ball is drawn through `fat`. The table has the processor time of a step of ten iterations on one thread, with the ball and
-with one that hangs above. Steps alternate; the mean is of {COST_TICKS} steps each. "Vertices" is the number that it touches.
+A ball is drawn through `fat`. The table has the processor time of a step of ten iterations on one thread, with the ball
+in the tissue and with a ball above it. Steps alternate; each mean is of {COST_TICKS} steps. "Vertices" is the number of
+vertices that the ball touches.
 
 | ball, mm | depth, mm | mm/s | vertices | with it, ms | without, ms | it costs, ms |
 |---:|---:|---:|---:|---:|---:|---:|
@@ -380,8 +385,9 @@ with one that hangs above. Steps alternate; the mean is of {COST_TICKS} steps ea
 {cost_said(costs)}
 
 Balls of 0.25 to 40 mm, a capsule, a hook and closed jaws, pressed at 0.01 to 1.5 m/s into a taut sheet, a slab and `layers` on
-cells of 4, 2 and 1 mm, five radii deep but at most 4 mm. These are every third press, without the slab of 1 mm cells;
-`core_session_proxy_matrix_all` tries all. A tool crossed if a face is above it, on the side from which it came.
+cells of 4, 2 and 1 mm, five radii deep but at most 4 mm. This is every third press, without the slab of 1 mm cells;
+`core_session_proxy_matrix_all` tries all presses. A tool has crossed if a face is above the tool, on the side from
+which the tool came.
 
 {crossing_said(*found["matrix"])}
 

@@ -103,22 +103,24 @@ def page(found):
     build/tests/test_core_session_cut_by_mesh --long
 
 `fat-neohookean` on a slab of {1e3 * SIZE_M[0]:.0f} x {1e3 * SIZE_M[1]:.0f} x {1e3 * SIZE_M[2]:.0f} mm, cells of 2 mm, cut for {2e3 * HALF_M:.0f} mm along its middle. The table has the rest volume
-of the removed tetrahedra, by the scene's `parting`. *Edges* is the paper's rule: a parted edge takes all that share it. *Elements* parts each
-tetrahedron by the dose at its middle. It has the mean of {OFFSETS} ways that lie otherwise in the cells, the least and
-the most. Beside it is the mean over that with the shipped cells.
+of the removed tetrahedra, by the scene's `parting`. *Edges* is the paper's rule: a parted edge removes all elements
+that share it. *Elements* parts each tetrahedron by the dose at its middle. The table has the
+mean over {OFFSETS} paths with different positions in the cells, the least and the most. Beside it is this mean over the mean
+with the shipped cells.
 
 | cells along an edge | by edges, mm^3 | of 1 x | by elements, mm^3 | of 1 x |
 |---:|---:|---:|---:|---:|
 {chr(10).join(by_mesh)}
 
-By edges, half a cell all round goes with what the heat has parted, so a coarse mesh loses more. By elements it loses
-what the heat reaches. The means of eight ways are held to 15 % over 1 to 2 x the cells and to 30 % at 0.5 x. Two tests hold
-them. `core_session_cut_by_mesh` runs such sessions by steps of 1/30 s, 0.5 x beside 1 x in every run, and the finer ones
-with `--long`. `core_dissect_doses` runs them on tissue at rest.
+By edges, half a cell on all sides is removed together with the parted elements, so a coarse mesh loses more. By
+elements the mesh loses what the heat reaches. Two tests require that the means of eight paths stay within 15 % over 1
+to 2 x the cells and within 30 % at 0.5 x. `core_session_cut_by_mesh` runs such sessions by steps of 1/30 s, 0.5 x and 1
+x in every run, and finer meshes with `--long`. `core_dissect_doses` runs the cuts on tissue at rest.
 
 ![Volume by mesh](validation-cuts.svg)
 
-The same with the shipped cells and one way, by step and by iterations (scenes end their steps at an error of 1 % unless said).
+The same with the shipped cells and one path, by step and by iterations (scenes end their steps at an error of 1 %
+unless said).
 
 | steps | by edges, mm^3 | by elements, mm^3 |
 |---|---:|---:|

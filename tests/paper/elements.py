@@ -31,11 +31,13 @@ def page(found):
 
     build/tests/test_core_session_equilibrium
 
-Static equilibria on the same mesh of linear tetrahedra with the same energy, by DOLFINx
-([tests/reference](../reference/README.md)), against sessions that are stepped in double until they are at rest. "Displacement off" is the
-largest difference of a displacement, of the largest one. "Force off" is the same of the supports' and the sphere's force.
-The test allows {ALLOWED:g}, {ALLOWED_CONTACT:g} with contact. The last column is no error of a solver. It is the difference of a mesh so coarse from a
-converged one (force of the pull, sinking of the tip, moment of the twist, force on the sphere). Linear tetrahedra lock.
+Static equilibria by DOLFINx, on the same mesh of linear tetrahedra with the same energy
+([tests/reference](../reference/README.md)), are compared with sessions that are stepped in double until they are at
+rest. "Displacement off" is the largest difference of a displacement, relative to the largest displacement. "Force off"
+is the same for the force of the supports and the sphere.
+The test allows {ALLOWED:g}, {ALLOWED_CONTACT:g} with contact. The last column is no error of a solver. It is the
+difference between this coarse mesh and a converged mesh (force of the pull, sinking of the tip, moment of the twist,
+force on the sphere). Linear tetrahedra lock.
 
 | what | case | displacement off | force off | this mesh against a converged one |
 |---|---|---:|---:|---:|

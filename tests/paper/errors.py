@@ -92,14 +92,16 @@ def page(found):
     build/bin/cautery-bench --scene NAME --steps {QUICK_STEPS} --error
     build/bin/cautery-bench --scene NAME --steps {STEPS} --accuracy {WANTED}
 
-Mean error of steps of so many iterations, under the scene's pull, against the converged step from the same state. It is
-relative to the step's own motion. `strain-xy-on` is a sheet that hangs free, with the system that all scenes share, and by Newton's steps
+The table has the mean error of steps by their number of iterations, under the scene's pull, against the converged step
+from the same state. The error is relative to the step's own motion. `strain-xy-on` is a sheet that hangs free, with the
+system that all scenes share, and by Newton's steps
 (`solver: "newton"`).
 
 {chr(10).join(pulled_rows(found["pulled"]))}
 
 {not_to_be_trusted(found["pulled"])}Ten iterations leave free sheets far off: A takes a sheet to be as stiff across its plane as within it.
-Newton's steps come near under their own weight (next table), but slowly under this pull, where limits are ranges.
+Newton's steps come near the solution under the sheet's own weight (next table), but slowly under this pull, where
+limits are ranges.
 
 ![Error by iterations](validation-error-by-iterations.svg)
 
@@ -109,9 +111,9 @@ Times are medians on one thread, on {machine['name']}, family {machine['family']
 the cores' time meanwhile). Compare the lines with each other, not with another machine's.
 
 Steps that end where they estimate {WANTED:.0%} (at most 40 iterations; Newton's 40 too), {STEPS} of them. The table has the distance
-to their converged step below which 95 % of sampled steps are, of all vertices or of the worst chunk of 256. It also has the
-iterations, and the speed as a multiple of that of ten iterations, alternating in one run. Tools are where the scene has
-them. A hanging sheet lies level, held along one edge, and is released.
+to their converged step below which 95 % of sampled steps are, of all vertices or of the worst chunk of 256. The table
+also has the iterations, and the speed as a multiple of the speed with ten iterations, alternating in one run. Tools are
+where the scene puts them. A hanging sheet is at first level, held along one edge, and is then released.
 
 | scene | 95 % are off by less than | iterations | speed over ten iterations |
 |---|---:|---:|---:|

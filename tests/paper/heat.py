@@ -78,15 +78,16 @@ def page(found):
     build/tests/test_core_heat_heat_grid
     build/tests/paper_probe heat STEP_MM NODES
 
-A point source that has spread for a second, left to spread on, nothing held: the largest error of a node, of the
-solution's peak.
+A point source has spread for a second and spreads further, and no node is held. The table has the largest error of a
+node, relative to the solution's peak.
 
 | spacing | off |
 |---|---:|
 {chr(10).join(gaussian)}
 
 A ball of {1e3 * BALL_M:g} mm, held at {HOT_C} degC in tissue of {AMBIENT_C} degC from the beginning. At a distance r from its middle the closed form of an
-infinite medium is R / r erfc((r - R) / (2 sqrt(alpha t))) of tool minus ambient. It is read at vertices of a strip of
+infinite medium is R / r erfc((r - R) / (2 sqrt(alpha t))) of tool minus ambient. The error is read at vertices of a
+strip of
 tissue through the ball, 0.25 mm apart, as far as {1e3 * REACH_M:g} mm. The table has the largest error outside the ball, of tool minus
 ambient ({HOT_C - AMBIENT_C} degC). The first line is the default of tools.
 
@@ -94,7 +95,7 @@ ambient ({HOT_C - AMBIENT_C} degC). The first line is the default of tools.
 |---|---:|---:|---:|
 {chr(10).join(rows)}
 
-Above zero is too warm. Mean of both sides of the ball.
+An error above zero means too warm. Errors are means of both sides of the ball.
 
 ![Error by distance after 1 s](validation-heat-1-s.svg)
 

@@ -47,7 +47,8 @@ def page(found):
     build/bin/cautery-sim --scene {SHEET} --seconds {strain_limits.HANGING_S} --vtu DIR
 
 The sheet `{SHEET}`, {LIMIT:.0%} allowed along both axes, hangs by two corners in {len(LOADS_M_S2)} gravities (the scene with another
-`gravity_m_s2`), {strain_limits.ITERATIONS} iterations a step. The table has the strain that 99 % of the triangles stay below, and the largest.
+`gravity_m_s2`), {strain_limits.ITERATIONS} iterations a step. The table has the strain below which 99 % of the
+triangles stay, and the largest strain.
 
 | gravity, m/s^2 | axis 1: 99 %, largest | axis 2: 99 %, largest |
 |---:|---:|---:|

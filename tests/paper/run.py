@@ -69,8 +69,10 @@ tolerance given there. `--only NAME` writes only the part `NAME`. Section and eq
 
 VALIDATION_HEAD = """# The method, validated
 
-This page has the method's errors where an answer is known, and shows on what its results depend. `tests/paper/run.py` writes
-it, with [the paper's page](README.md). Each section names the command that makes its numbers. The test `paper_quick` checks
+This page has the method's errors in cases with a known solution, and shows on what its results depend.
+`tests/paper/run.py` writes
+it, with [the paper's page](README.md). Each section names the command that computes its numbers. The test `paper_quick`
+checks
 some of each in a small form (`expected.json`).
 """
 
