@@ -93,9 +93,9 @@ struct cau_step_solver {
 
 	double (*now_s)(void); // NULL: no timing
 
-	// J, at the guess after the step has begun, at the solution after it has ended Results of the
-	// last step.
+	// J, at the guess after the step has begun, at the solution after it has ended
 	double objective;
+	// Results of the last step.
 	bool spared; // the end of the step was not evaluated: the elements' energies are of the iterate
 	             // before it
 	double local_s, contact_s;
