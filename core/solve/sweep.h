@@ -70,8 +70,8 @@ struct cau_sweep {
 	int32_t *forward_place, *backward_place;
 	int32_t place_count;
 	int32_t *column_node; // (n): supernode of each column
-	int32_t
-		*top_column; // (top_count): row number, in the factor's order, of each row above the tasks
+	// (top_count): row number, in the factor's order, of each row above the tasks
+	int32_t *top_column;
 	int32_t task_first[CAU_SWEEP_TASKS], task_last[CAU_SWEEP_TASKS]; // supernodes [first, last)
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
