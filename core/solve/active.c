@@ -8,11 +8,11 @@
 
 enum { MOST_STEPS = 24, MOST_ROUNDS = 2 };
 static const double enough = 1e-12; // relative to the square of the first residual
-static const double on_the_cone =
-	0.9999; // share of the largest friction force above which a contact constraint slips
+// share of the largest friction force above which a contact constraint slips
+static const double on_the_cone = 0.9999;
 static const double lost = 1e-9; // share of a reaction; a smaller remaining push counts as none
-static const double most_times =
-	20; // bound on all changes, relative to the largest change of one constraint alone
+// bound on all changes, relative to the largest change of one constraint alone
+static const double most_times = 20;
 
 typedef struct over_rows { // a vector by coordinate, for each active constraint
 	double of[3][CAU_MAX_ACTIVE];

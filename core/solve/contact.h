@@ -123,9 +123,8 @@ struct cau_contact_set {
 	// Kept columns of A^-1: part of the session's state, since they lag after cuts.
 	int32_t column_count;
 	int32_t column_vertex[CAU_MAX_COLUMNS];
-	uint64_t
-		// version of the factor from which each column was made
-		column_version[CAU_MAX_COLUMNS];
+	// version of the factor from which each column was made
+	uint64_t column_version[CAU_MAX_COLUMNS];
 	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count), m/N
 	// Columns that constraints use, ascending. If more than half of all columns are used, the list
 	// has all. Only these columns of answer[] and step[] are up to date.

@@ -8,6 +8,10 @@
 // with S of its corners. The nearest point of a tip of radius R then moves by r R L S dw, in
 // weights, with L_kl = grad w_k . grad w_l. So of the way dw_n to the nearest point, the contact
 // point moves by
+//
+//     (I + r R L S)^-1 dw_n.
+//
+// The moved point is then the nearest one, if the face responds linearly.
 #pragma once
 
 #include "solve/contact.h"

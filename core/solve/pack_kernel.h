@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packs one supernode of the factor into the panels of sweep.h. W' = [I - L_s^-1; L_r L_s^-1] is
 // computed from [-I; L_r] and L_s, sixteen rows at a time:
+//
+//     column j of W = column j of [-I; L_r] - sum over i > j of L_ij (column i of W)
+//
+// Columns are computed from the last to the first. The diagonal of -L_s^-1 is left out, because I
+// cancels it. Rows do not depend on each other. So sixteen rows of all columns stay in the nearest
+// cache until they are finished.
 #pragma once
 
 #include "base/simd.h"
