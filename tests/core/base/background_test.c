@@ -12,7 +12,7 @@
 enum { JOBS = 2000 };
 
 typedef struct job {
-	pthread_mutex_t gate; // held by the test while the job must not end
+	pthread_mutex_t gate; // locked by the test while the job must not end
 	int64_t value;
 	pthread_t thread;
 } job;
@@ -31,11 +31,11 @@ static void test_jobs_run_in_order_and_are_waited_for(void **state)
 	(void)state;
 	cau_background *background = cau_background_create();
 	assert_non_null(background);
-	cau_background_wait(background); // no job: at once
+	cau_background_wait(background); // returns at once without a job
 	job work = {.gate = PTHREAD_MUTEX_INITIALIZER, .value = 1};
 	int64_t expected = 1;
 	for (int i = 0; i < JOBS; i++) {
-		if (i % 39 == 0) // before the number is full
+		if (i % 39 == 0) // before the value overflows
 			work.value = 1, expected = 1;
 		cau_background_start(background, run, &work);
 		cau_background_wait(background);
@@ -46,7 +46,8 @@ static void test_jobs_run_in_order_and_are_waited_for(void **state)
 	cau_background_destroy(background);
 }
 
-// Start returns while the job cannot have ended: the caller holds what the job needs.
+// cau_background_start returns before the job ends: the caller still holds the lock that the job
+// needs.
 static void test_start_does_not_wait(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which laws may be safeguarded by their energy, and systems without a free row.
+// Which laws can be safeguarded by their energy, and systems without a free row.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
@@ -19,7 +19,7 @@ static void test_laws_with_an_energy(void **state)
 	}
 }
 
-// Everything pinned: nothing to factor, and a step does nothing.
+// If all vertices are pinned, there is no factor, and a step changes nothing.
 static void test_nothing_free(void **state)
 {
 	(void)state;

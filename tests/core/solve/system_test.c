@@ -4,7 +4,7 @@
 
 #include "core/rig/solve_scenes.h"
 
-// Sums of at most a hundred terms in another order.
+// Sums of at most a hundred terms, added in another order.
 static const double ASSEMBLY_TOLERANCE = 1e-13;
 
 static double entry(const cau_matrix *matrix, int32_t a, int32_t b)
@@ -85,7 +85,7 @@ static void test_rows_are_the_free_vertices(void **state)
 	}
 }
 
-// C C^T of the columns is w G^T G over the free rows.
+// C C^T of the appended columns is w G^T G over the free rows.
 static void test_columns_are_the_root_of_an_element(void **state)
 {
 	(void)state;

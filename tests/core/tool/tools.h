@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools, poses and random numbers for the tests of the tool and heat rooms.
+// Tools, poses and random numbers for the tests of core/tool and core/heat.
 #pragma once
 
 #include "base/vector.h"
 
-// For cmocka: two doubles within a named tolerance.
+// For cmocka: asserts that two doubles differ by at most a named tolerance.
 #define assert_near(value, expected, tolerance)                                                    \
 	assert_true(fabs((value) - (expected)) <= (tolerance))
 
-// A tool with the defaults of the table in scene.h, at the origin, not turned.
+// A tool with the defaults of the table in scene.h, at the origin, without rotation.
 static inline cau_tool_def tool_with_defaults(int shape)
 {
 	cau_tool_def tool = {.shape = shape, .pose = {.rotation = {1, 0, 0, 0}}};
