@@ -58,8 +58,8 @@ typedef struct cau_fat_group {
 	double stretch_min[3], stretch_max[3];
 	double shear_max;
 	double yield_strain, plastic_strain_max;
-	double viscous_mu,
-		viscous_lambda; // Pa s: Lame parameters at small strain, times the retardation time
+	// Pa s: Lame parameters at small strain, times the retardation time
+	double viscous_mu, viscous_lambda;
 } cau_fat_group;
 
 // Fascia and membrane. F = F_0 + [du_1 du_2] D_m'^-1 (eq. 8-10), 3 x 2.

@@ -89,8 +89,8 @@ static void drop_unused(cau_contact_set *set, cau_step_solver *solver)
 		move_column(set, k, kept);
 		from[kept++] = k;
 	}
-	for (int32_t i = 0; i < kept;
-	     i++) // in place: from[i] >= i, so nothing is overwritten before it is read
+	// in place: from[i] >= i, so nothing is overwritten before it is read
+	for (int32_t i = 0; i < kept; i++)
 		for (int32_t j = 0; j < kept; j++)
 			set->inverse[i * CAU_MAX_COLUMNS + j] =
 				set->inverse[from[i] * CAU_MAX_COLUMNS + from[j]];

@@ -62,8 +62,8 @@ static void forward_sweep(sweep_run *run)
 	const cau_step_solver *solver = run->solver;
 	const cau_sweep *sweep = &solver->sweep;
 	cau_pool_run(solver->pool, sweep->task_count, forward_task, run);
-	for (int32_t task = 0; task < sweep->task_count;
-	     task++) // in task order, so that the result does not depend on threads
+	// in task order, so that the result does not depend on threads
+	for (int32_t task = 0; task < sweep->task_count; task++)
 		solver->kernels->vectors->add_sums(sweep, task);
 	for (int32_t i = 0; i < sweep->top_node_count; i++)
 		solver->kernels->forward(sweep, sweep->top_node[i]);

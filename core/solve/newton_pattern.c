@@ -162,8 +162,8 @@ static int compare_rows(const void *a, const void *b)
 // Columns of L while they are found: the rows of each, and its children in the elimination tree.
 typedef struct growth {
 	cau_newton *newton;
-	int32_t *below_first,
-		*below;               // A's entries below the diagonal, by column, in the factor's order
+	// A's entries below the diagonal, by column, in the factor's order
+	int32_t *below_first, *below;
 	int32_t *child, *sibling; // (n): lists of children; -1 ends a list
 	int32_t *mark;            // (n): last column to which the row was added
 	int32_t count;            // blocks so far

@@ -24,8 +24,8 @@ cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *pan
 	if (!cau_pages_take(&panels->pages, panel + 2 * (size_t)sweep->padded_n * size))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
 	panels->panel = panels->pages.start;
-	char *d_inverse = (char *)panels->panel +
-	                  panel; // the panel has whole vectors of lanes, so d_inverse is aligned
+	// the panel has whole vectors of lanes, so d_inverse is aligned
+	char *d_inverse = (char *)panels->panel + panel;
 	panels->d_inverse = (cau_reals *)d_inverse;
 	panels->scale = (cau_reals *)(d_inverse + (size_t)sweep->padded_n * size);
 	return CAU_OK;

@@ -170,8 +170,8 @@ typedef struct space {
 	int count;
 	double energy[CAU_TANGENT_MOTIONS][CAU_TANGENT_MOTIONS]; // v_i . H v_j of the motions v, J
 	double place[CAU_TANGENT_MOTIONS][3]; // motion of the load's point of application, m
-	double factor[CAU_TANGENT_MOTIONS]
-				 [CAU_TANGENT_MOTIONS]; // Cholesky factor of `energy`, lower triangle
+	// Cholesky factor of `energy`, lower triangle
+	double factor[CAU_TANGENT_MOTIONS][CAU_TANGENT_MOTIONS];
 } space;
 
 // Adds the motion at index `count` to the space. Returns false if the energy is not positive
@@ -192,8 +192,8 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 		double sum = s->energy[k][i];
 		for (int j = 0; j < i; j++)
 			sum -= s->factor[k][j] * s->factor[i][j];
-		if (i == k &&
-		    !(sum > 1e-6 * s->energy[k][k])) // no new direction, or tissue without stiffness
+		// no new direction, or tissue without stiffness
+		if (i == k && !(sum > 1e-6 * s->energy[k][k]))
 			return false;
 		s->factor[k][i] = i == k ? sqrt(sum) : sum / s->factor[i][i];
 	}

@@ -44,8 +44,8 @@ static double longest(const cau_reals *vector, int32_t count)
 		most[v & 3] = square > most[v & 3] ? square : most[v & 3];
 	}
 	real low = most[0] > most[1] ? most[0] : most[1], high = most[2] > most[3] ? most[2] : most[3];
-	return sqrt((double)(low > high ? low : high)) *
-	       (1 + 1e-6); // an upper bound in spite of rounding
+	// an upper bound in spite of rounding
+	return sqrt((double)(low > high ? low : high)) * (1 + 1e-6);
 }
 
 static void take_coordinate(cau_reals *column, const cau_reals *vector, int c, int32_t count)

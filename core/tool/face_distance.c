@@ -93,8 +93,8 @@ double cau_tool_way_out(const cau_tool_def *tool, double jaw, cau_tool_part part
 	CAU_ASSERT(most_m >= 0, "%g m at most", most_m);
 	enum { STEPS_BACK = 48 };
 	double height = most_m;
-	for (int step = 0; step < STEPS_BACK && height > 0;
-	     step++) { // from outside towards the surface
+	// from outside towards the surface
+	for (int step = 0; step < STEPS_BACK && height > 0; step++) {
 		double distance =
 			cau_tool_distance(tool, jaw, part, cau_add_scaled(point, height, out), gradient);
 		if (distance <= near_enough_m)

@@ -72,8 +72,8 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(cau_image_show(image, &a, 1, false), (size_t)PAGES * page);
 	assert_ptr_equal(cau_image_of(KEY, &b, 1, NULL), image);
 	assert_int_equal(cau_image_show(image, &b, 1, false), (size_t)(PAGES - 1) * page);
-	assert_int_equal(mappings("rw-p", NULL),
-	                 3); // one mapping of a, two around the changed page of b
+	// one mapping of a, two around the changed page of b
+	assert_int_equal(mappings("rw-p", NULL), 3);
 	assert_true(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&b, 20));
 	((char *)a.start)[30 * page]++; // change a page of each afterwards
@@ -181,8 +181,8 @@ static void untouched_pages_are_in_no_image(void **state)
 		image = cau_image_of(KEY, &a[i], 1, NULL);
 		assert_non_null(image);
 		assert_int_equal(cau_image_show(image, &a[i], 1, i == 0), (size_t)2 * QUARTER * page);
-		assert_int_equal(touched_of(&a[i]),
-		                 0); // cau_image_show neither reads nor copies these pages
+		// cau_image_show neither reads nor copies these pages
+		assert_int_equal(touched_of(&a[i]), 0);
 		assert_int_equal(mappings("rw-p", NULL), 2 * (i + 1));
 		for (int k = 0; k < PAGES; k++)
 			assert_int_equal(byte[(size_t)k * page + 7], k < 3 * QUARTER ? 0 : 5);

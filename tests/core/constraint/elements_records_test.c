@@ -38,8 +38,8 @@ static void test_every_record_is_summed_once(void **state)
 			int32_t slot = r.solver.slots.slot_of[kind][i], found = 0;
 			for (int k = 0; k < map.vertex_count; k++) {
 				int32_t record = rig_record(&r, kind, slot, k);
-				for (int own = 0; own < map.vertex_count;
-				     own++) // the pair may have another order of vertices
+				// the pair may have another order of vertices
+				for (int own = 0; own < map.vertex_count; own++)
 					if (vertex_of[record] == map.vertex[own])
 						found |= 1 << own;
 				assert_int_equal(4 * vertex_of[record], e->record_vertex[record]);

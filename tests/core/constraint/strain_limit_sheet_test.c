@@ -186,8 +186,8 @@ static void test_range_of_what_is_flat_is_finite(void **state)
 		for (int e = 0; e < 6; e++)
 			size += fabs(flat[k][e / 3][e % 3]);
 		for (int e = 0; e < 9; e++)
-			if (!(fabs(got[e / 3][e % 3]) <=
-			      1 + 2 * size)) // at most as far as the set of admissible F
+			// at most as far as the set of admissible F
+			if (!(fabs(got[e / 3][e % 3]) <= 1 + 2 * size))
 				fail_msg("case %zu: %g", k, got[e / 3][e % 3]);
 	}
 	rig_finish(&r);

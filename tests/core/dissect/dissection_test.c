@@ -176,8 +176,8 @@ static void test_each_layer_has_its_own_ignition(void **state)
 		assert_int_equal(r.dissection.parted[edge], expected[k]);
 		assert_int_equal(layers, k ? expected[k] & ~expected[k - 1] : 0);
 		assert_counts(&r);
-		double charred =
-			fmin(1, exposure[k] / fat_at); // the layer that ignites first determines the value
+		// the layer that ignites first determines the value
+		double charred = fmin(1, exposure[k] / fat_at);
 		assert_near(cau_dissection_heated(&r.dissection, edge), charred, 1e-12);
 	}
 	rig_finish(&r);

@@ -220,8 +220,8 @@ static void books_are_those_of_a_recount(void **state)
 	memcpy(way.from, (double[]){-0.05, 0, 0}, sizeof way.from);
 	memcpy(way.to, (double[]){0.05, 0.01, 0.002}, sizeof way.to);
 	run(&r, &way);
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS;
-	     p++) { // of each kind, some elements are removed and some live
+	// of each kind, some elements are removed and some live
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
 		int32_t lost = 0, count = cau_tissue_element_count(&r.tissue, p);
 		uint8_t *shares = malloc((size_t)count), *alive = malloc((size_t)count);
 		assert_true(shares && alive);

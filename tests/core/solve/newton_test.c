@@ -271,8 +271,8 @@ static void what_is_slack_is_loose(void **state)
 		cau_solver_evaluate(&r.solver);
 		assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
 		assert_int_equal(r.solver.loose.region.n > 0, law == RANGE);
-		for (int32_t v = 0; v < r.tissue.vertex_count;
-		     v++) // move a corner back to 0.2 of its rest position
+		// move a corner back to 0.2 of its rest position
+		for (int32_t v = 0; v < r.tissue.vertex_count; v++)
 			if (r.tissue.rest[3 * v] > 0.02 && r.tissue.rest[3 * v + 1] > 0)
 				for (int c = 0; c < 3; c++)
 					r.solver.position[3 * v + c] = 0.2 * r.tissue.rest[3 * v + c];

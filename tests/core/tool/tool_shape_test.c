@@ -69,8 +69,8 @@ static void test_rows_say_what_shapes_have(void **state)
 	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		const cau_tool_family *family = rows[shape].family;
-		assert_true(family->cold &&
-		            family->cold_bound); // every shape has a cold part, which pushes
+		// every shape has a cold part, which pushes
+		assert_true(family->cold && family->cold_bound);
 		assert_int_equal(family->hot != NULL, rows[shape].hot);
 		assert_int_equal(family->hot_bound != NULL, rows[shape].hot);
 		assert_int_equal(family->thinnest_hot != NULL, rows[shape].hot);
@@ -245,11 +245,8 @@ static void test_known_surfaces(void **state)
 	     0,
 	     {-2e-3 - 5e-3 * SQUARE, 0, 2e-3 - 5e-3 * SQUARE},
 	     {-SQUARE, 0, -SQUARE}},
-		{CAU_TOOL_HOOK,
-	     CAU_PART_COLD,
-	     0,
-	     {-4e-3, 0, 5e-3},
-	     {0, 0, -1}}, // the neck's end on the heel
+		// the neck's end on the heel
+		{CAU_TOOL_HOOK, CAU_PART_COLD, 0, {-4e-3, 0, 5e-3}, {0, 0, -1}},
 		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {3e-3, 0, 4e-3}, {1, 0, 0}},
 		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {1e-3, 1.2e-3, 4e-3}, {0, 1, 0}},
 		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {1e-3, 0, -1.2e-3}, {0, 0, -1}},
