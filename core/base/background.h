@@ -4,7 +4,7 @@
 
 typedef struct cau_background cau_background;
 
-cau_background *cau_background_create(void);             // NULL: no memory or no thread
+cau_background *cau_background_create(void);             // NULL: there is no memory or no thread
 void cau_background_destroy(cau_background *background); // waits for the job; accepts NULL
 
 // Starts job(context). The previous job must have been waited for.

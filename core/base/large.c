@@ -10,7 +10,7 @@ enum { LEAST_LARGE = 64 << 10 };
 // Header before each piece. Its size keeps the piece aligned as malloc does.
 typedef struct head {
 	cau_pages pages; // empty if the piece was allocated by malloc
-	size_t bytes;    // of the piece
+	size_t bytes;    // size of the piece
 	size_t unused;
 } head;
 

@@ -32,7 +32,7 @@ enum {
 struct cau_arena_block {
 	struct cau_arena_block *next;
 	cau_pages pages;
-	size_t used; // from the start of the pages
+	size_t used; // bytes used so far, from the start of the pages
 	char padding[ALIGNMENT - sizeof(void *) - sizeof(cau_pages) - sizeof(size_t)];
 };
 

@@ -284,13 +284,13 @@ INLINE v3 m3_apply(m3 a, v3 v)
 {
 	return v3_add_scaled(v3_add_scaled(v3_scale(v.x, a.c[0]), v.y, a.c[1]), v.z, a.c[2]);
 }
-// A S, S symmetric
+// A S, for a symmetric S
 INLINE m3 m3_times_sym(m3 a, sym3 s)
 {
 	return (m3){{m3_apply(a, (v3){s.a00, s.a01, s.a02}), m3_apply(a, (v3){s.a01, s.a11, s.a12}),
 	             m3_apply(a, (v3){s.a02, s.a12, s.a22})}};
 }
-// A^T B, symmetric by assumption
+// A^T B, assumed to be symmetric
 INLINE sym3 m3_transpose_times(m3 a, m3 b)
 {
 	return (sym3){v3_dot(a.c[0], b.c[0]), v3_dot(a.c[1], b.c[1]), v3_dot(a.c[2], b.c[2]),

@@ -38,8 +38,8 @@ static const double CAU_SLACK = 0.25;
 // A range of slots with one law.
 typedef struct cau_sheet_group {
 	int32_t first_slot, slot_count, layer, material;
-	int limit, projection;                 // CAU_LIMIT_*, CAU_PROJECTION_*
-	double stretch_min[2], stretch_max[2]; // RANGE: sqrt(k_aa)
+	int limit, projection;                 // values CAU_LIMIT_* and CAU_PROJECTION_*
+	double stretch_min[2], stretch_max[2]; // for RANGE: limits of sqrt(k_aa)
 	double shear_max;
 	double viscosity_s; // retardation time; 0: none
 } cau_sheet_group;
@@ -101,7 +101,7 @@ typedef struct cau_fat_set {
 	                 // layer is viscous
 } cau_fat_set;
 
-// Trusses (section 5.2, last paragraph).
+// Trusses (section 5.2, last paragraph): elements with two vertices and a rest length.
 typedef struct cau_link_set {
 	int32_t slot_count;
 	uint16_t *record_at[2];
@@ -110,7 +110,8 @@ typedef struct cau_link_set {
 	void *weight;      // real, N/m: E A / L; 0 once removed
 } cau_link_set;
 
-// Bending: e = sum of c_i x_i over the four vertices of two triangles that share an edge.
+// Bending elements, with e = sum of c_i x_i over the four vertices of two triangles that share an
+// edge.
 typedef struct cau_hinge_set {
 	int32_t slot_count;
 	uint16_t *record_at[4];

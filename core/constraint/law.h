@@ -17,5 +17,5 @@ typedef struct cau_law {
 	const char *meaning;
 } cau_law;
 
-// `model`: CAU_MODEL_*
+// Returns the properties of a law; `model` is CAU_MODEL_*.
 const cau_law *cau_law_of(int model);

@@ -8,7 +8,7 @@
 
 INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 {
-	// F^T F - I, from H: exact at rest
+	// F^T F - I, computed from H so that it is exact at rest
 	return (sym2){2 * v3_dot(f0[0], h[0]) + v3_dot(h[0], h[0]),
 	              2 * v3_dot(f0[1], h[1]) + v3_dot(h[1], h[1]),
 	              v3_dot(f0[0], h[1]) + v3_dot(f0[1], h[0]) + v3_dot(h[0], h[1])};

@@ -7,7 +7,7 @@
 
 _Static_assert(CAU_MAX_LAYERS <= 16, "a bit of `parted` for each layer");
 
-static const double heat_capacity = 3500; // J/(kg K), soft tissue
+static const double heat_capacity = 3500; // J/(kg K), of soft tissue
 
 static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *arena,
                                        cau_error *error)

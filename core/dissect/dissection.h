@@ -32,9 +32,9 @@ typedef struct cau_over {
 
 typedef struct cau_tears {
 	int32_t over_count;    // overloaded elements in the last tick: part of the session's state
-	cau_over *over;        // ascending by place
+	cau_over *over;        // overloaded elements, ascending by `place`
 	int32_t elements_torn; // elements torn since creation, with those removed along with them
-	double widest_m[CAU_PRIMITIVE_KINDS]; // greatest size of an element
+	double widest_m[CAU_PRIMITIVE_KINDS]; // greatest size of an element, by kind of primitive
 	// Scratch.
 	cau_over *before;
 	int32_t *now, *found; // elements overloaded in this tick; number found in each part
@@ -49,7 +49,7 @@ typedef struct cau_dissection {
 	cau_tears tears;
 	double *exposure; // (edge_count): integral of (u_a + u_b)/2 dt while charring, degC s
 	uint16_t *parted; // (edge_count): a bit for each layer in which the edge has parted
-	uint8_t *share_count[CAU_PRIMITIVE_KINDS]; // live edges of each primitive
+	uint8_t *share_count[CAU_PRIMITIVE_KINDS]; // number of unparted edges of each primitive
 	cau_alive alive;
 	int32_t *live_elements; // (vertex_count): number of live triangles, tetrahedra and links at
 	                        // each vertex
@@ -59,7 +59,7 @@ typedef struct cau_dissection {
 	int32_t *triangle_hinge_first, *triangle_hinge; // hinges of each triangle
 	// State of the present tick.
 	int32_t touched_count;
-	int32_t *touched; // edges that gained exposure
+	int32_t *touched; // edges that gained exposure in this tick
 	uint8_t *touched_mark;
 	int32_t removed_count;
 	cau_removed *removed;

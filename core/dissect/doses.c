@@ -16,7 +16,7 @@
 // Length over which the ignition temperature changes if the layer has no bundles, m.
 static const double field_m = 1e-3;
 
-enum { KINDS = CAU_PRIMITIVE_LINK }; // triangles and tetrahedra
+enum { KINDS = CAU_PRIMITIVE_LINK }; // the kinds that have doses: triangles and tetrahedra
 
 static int32_t count_of(const cau_tissue *tissue)
 {

@@ -224,6 +224,6 @@ bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 		double outside = below > above ? below : above; // fmax would be a library call
 		squared += outside > 0 ? outside * outside : 0;
 	}
-	double reach = radius_m + 1e-6; // boxes are in float
+	double reach = radius_m + 1e-6; // for rounding: boxes are in float
 	return squared <= reach * reach;
 }

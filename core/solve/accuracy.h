@@ -40,7 +40,7 @@ enum {
 };
 
 typedef struct cau_accuracy {
-	double wanted; // largest error at which a step ends; 0: steps have a number of iterations
+	double wanted; // largest error at which a step ends; 0: steps have a fixed number of iterations
 	// What earlier steps have taught. This is part of a session's state.
 	double amplification[CAU_ACCURACY_DEPTHS]; // c_j
 	int32_t shallow_steps;                     // steps since one that took DEEP increments

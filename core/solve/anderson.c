@@ -8,8 +8,8 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// With contact A f = -grad E + reactions; the solver's gradient vector then holds that sum's
-// negative.
+// One mix of the history. With contact, A f = -grad E + reactions. The solver's gradient vector
+// then has the negative of that sum.
 typedef struct mix {
 	cau_step_solver *solver;
 	double weight[CAU_ANDERSON_WINDOW];

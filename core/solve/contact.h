@@ -32,7 +32,7 @@
 #include "tool/tool_shape.h"
 
 enum {
-	CAU_MAX_CONTACTS = 1024, // contact constraints
+	CAU_MAX_CONTACTS = 1024, // contact constraints of all tools
 	// of CAU_MAX_CONTACTS, for vertices that are held or near; the rest is for faces
 	CAU_MAX_VERTEX_ROWS = 768,
 	CAU_NEAR_ROWS = 192,      // of CAU_MAX_VERTEX_ROWS, for vertices that are only near
@@ -50,7 +50,7 @@ enum {
 	CAU_COLUMNS_RENEWED = 3, // lagging columns that are renewed each tick
 };
 
-// A tool as the contact sees it during one step.
+// A tool's state in contact during one step.
 typedef struct cau_contact_tool {
 	const cau_tool_def *def;
 	cau_pose anchor; // commanded pose at the tick's end
@@ -65,7 +65,7 @@ typedef struct cau_contact_tool {
 
 typedef struct cau_contact_row {
 	int32_t corner_count; // 1: a vertex; 3: a point of a face
-	int32_t face, above;  // as in cau_contact_memory
+	int32_t face, above;  // face of the point, and its side at the tool, as in cau_contact_memory
 	int32_t vertex[3];    // the corners
 	double weight[3];     // shares of the corners in the point, sum 1
 	double went;          // sum of the changes of weight[] in this iteration (follow.h)
@@ -78,11 +78,11 @@ typedef struct cau_contact_row {
 	double side[3];       // unit vector in the tool's frame, towards the tissue's side; 0: any side
 	double way_m;         // largest distance that the point may have to move along side[]
 	double slack_m;       // penetration that is allowed in this tick
-	double normal[3];     // outward from the tool
+	double normal[3];     // unit normal, outward from the tool
 	double gap;           // m, signed distance at the present iterate, plus slack_m
 	double no_slip[3][3]; // m, corners if they stuck to the tool at its anchor
 	double anchor[3];     // m, target of an attachment if the tool were at its anchor
-	double reaction[3];   // N, of the tool on the point
+	double reaction[3];   // N, force of the tool on the point
 } cau_contact_row;
 
 // A face that a tool pushed or penetrated at the end of a step.
@@ -120,7 +120,8 @@ struct cau_contact_set {
 	cau_contact_memory memory[CAU_MAX_MEMORY];
 	int32_t touched_count; // faces that the present step has found so far
 	cau_contact_memory touched[CAU_MAX_MEMORY];
-	// Kept columns of A^-1: part of the session's state, since they lag after cuts.
+	// Kept columns of A^-1. They are part of the session's state, because they lag behind the
+	// factor after cuts.
 	int32_t column_count;
 	int32_t column_vertex[CAU_MAX_COLUMNS];
 	// version of the factor from which each column was made

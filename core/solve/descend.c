@@ -260,9 +260,9 @@ static void find_increment(cau_step_solver *solver)
 		cau_solver_global(solver);
 }
 
-// The first increment is A's own. It moves a free piece exactly, as in a free fall. Vertices that
-// it would move farther than contact can follow are excluded from tissue contact. Then it is
-// computed again.
+// Finds the first increment, which is A's own: it moves a free piece exactly, as in free fall.
+// Vertices that it would move farther than contact can follow are excluded from tissue contact.
+// Then the increment is computed again.
 static void find_first_increment(cau_step_solver *solver, double *objective)
 {
 	cau_solver_global(solver);
@@ -282,7 +282,7 @@ static void forget_increments(cau_step_solver *solver)
 
 // The state between the iterations of a round.
 typedef struct descent {
-	double objective, first, last; // J; norms of the first increment and of the last
+	double objective, first, last; // J; norm of the first increment; norm of the last increment
 	int32_t steps;                 // increments in the history of Anderson acceleration
 	int32_t backtracks_before;     // backtracks of earlier rounds in this tick
 	uint64_t touching;

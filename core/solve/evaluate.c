@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gradient and value of eq. 4: inertia, elements, drag, tissue against tissue.
+// Gradient and value of eq. 4: inertia, elements, drag and tissue contact.
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "solve/solver.h"

@@ -52,14 +52,14 @@ cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t 
 int32_t cau_factor_size(const cau_factor *factor);
 const int32_t *cau_factor_permutation(const cau_factor *factor); // (n): row k of L is row p[k] of A
 const int32_t *cau_factor_places(const cau_factor *factor);      // (n): index in L of each row of A
-// Column j of L below the diagonal, rows ascending; *pivot is D_jj. Borrowed until the next
-// operation.
+// Returns the number of entries of column j of L below the diagonal, with their rows (ascending)
+// and values. *pivot is D_jj. The arrays are valid until the next operation.
 int32_t cau_factor_column(const cau_factor *factor, int32_t j, const int32_t **row,
                           const double **value, double *pivot);
 double cau_factor_least_pivot(const cau_factor *factor);
 
-// Reference solve in double, x = A^-1 b for three columns each of n (b and x n x 3 column-major).
-// Allocates on first use only.
+// Reference solve in double: x = A^-1 b for three columns of n each (b and x are n x 3,
+// column-major). Only the first call allocates memory.
 cau_status cau_factor_solve(cau_factor *factor, const double *b, double *x, cau_error *error);
 
 // Fills in the pages of the factor's arrays (CAU_FACTOR_PARTS); empty for a small array. Returns

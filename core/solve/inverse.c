@@ -5,7 +5,7 @@
 
 typedef struct sweep_run {
 	const cau_step_solver *solver;
-	const cau_reals *in; // by vertex
+	const cau_reals *in; // four reals for each vertex
 	cau_reals *out;
 	double sign;
 } sweep_run;

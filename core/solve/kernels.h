@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inner loops of a step, compiled once per precision and instruction set, chosen at run time.
+// The inner loops of a step. They are compiled once per precision and instruction set, and chosen
+// at run time.
 #pragma once
 
 #include "constraint/elements.h"
@@ -36,7 +37,7 @@ typedef struct cau_history {
 typedef struct cau_kernels {
 	const char *instruction_set;
 	bool single;
-	const cau_vectors *vectors; // of the same precision
+	const cau_vectors *vectors; // vector operations of the same precision
 
 	// Computes the records (N) and the energy (J) of the elements in `work`, at displacement u (m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,
@@ -62,7 +63,7 @@ typedef struct cau_kernels {
 	// definite. newton_solve sets field = H^-1 field.
 	bool (*newton_factor)(const cau_newton *newton);
 	void (*newton_solve)(const cau_newton *newton);
-	// Dot product in double of n reals from `first` on, in a fixed order.
+	// Returns the dot product in double of n reals from `first` on, in a fixed order.
 	double (*dot)(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n);
 	// increment[v] += sum of column[k][v] * load[k], in the order of the `count` columns, for v in
 	// [first, last). A column has one real for each vertex. A load has x, y and z.

@@ -111,7 +111,7 @@ static void choose_slack(const cau_step_solver *solver, int32_t share, bool rang
 
 enum { CHOSEN = 1, LEFT_OUT = 2, BESIDE = 4 };
 
-// Leaves out the vertices that share a triangle with a vertex that is left out.
+// Excludes the vertices that share a triangle with an excluded vertex.
 static void leave_out_ring(const cau_step_solver *solver, uint8_t *chosen)
 {
 	const cau_loose *loose = &solver->loose;

@@ -27,16 +27,17 @@ typedef struct cau_waiting {
 
 typedef struct cau_operation { // an element that was downdated
 	int32_t kind, element;
-	int32_t group; // elements of one update share it
+	int32_t group; // number that elements of one update have in common
 } cau_operation;
 
 typedef struct cau_matrix_update {
 	int32_t waiting_count, waiting_capacity;
-	cau_waiting *waiting;    // removed, still in the factor, in order of removal
+	cau_waiting *waiting;    // removed elements that the factor still contains, in order of removal
 	int32_t operation_count; // elements downdated since the last canonical factorisation
 	int32_t group_count;
 	cau_operation *operation; // (CAU_DOWNDATES_AT_MOST): the elements downdated, in order
-	uint8_t *canonical[CAU_ELEMENT_KINDS]; // alive at the last canonical factorisation
+	uint8_t *canonical[CAU_ELEMENT_KINDS]; // elements that were alive at the last canonical
+	                                       // factorisation
 	// The factor that is being computed in the background.
 	bool making;
 	uint64_t swap_tick;
@@ -51,7 +52,7 @@ typedef struct cau_matrix_update {
 	int32_t done; // elements downdated
 	cau_status due_status;
 	cau_error due_error;
-	uint8_t *touched; // (supernode_count)
+	uint8_t *touched; // (supernode_count): 1 if downdates changed the supernode
 	double least_pivot_bound;
 	int32_t refactorisations;
 	uint64_t longest_wait; // ticks

@@ -15,8 +15,8 @@ static const double SETTLED = 0.1, SETTLED_M = 5e-8;
 static const double SETTLED_EXACTLY_M = 1e-12; // if a step has no accuracy to reach: rounding
 // A motion that counts as none, m. Its error may be half a micrometre, which is 1 % of this.
 static const double NOTHING_M = 5e-5;
-// With tissue contact a vertex moves at most as far while R settles once as the fastest one of R
-// has moved in the tick, within these bounds, m. Pairs have to be searched that far.
+// Bounds, m, of the way of a vertex while R settles once, with tissue contact. Within the bounds,
+// the way is that of the fastest vertex of R in the tick. All pairs within the way must be known.
 static const double LEAST_WAY_M = 1e-4, MOST_WAY_M = 1e-3;
 // Most steps of Newton's method for R in one iteration, and for the part that still moves after
 // each of them. A tab that comes free and buckles takes up to 25.
@@ -24,7 +24,8 @@ enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
 // Least share of the decrease predicted by the slope that a step must bring [Armijo 1966].
 static const double ARMIJO = 1e-4;
 // On a quadratic, a full step lowers the energy by half of what the slope predicts. A step that
-// lowers it by more than this share was too short. The next step leaves negative eigenvalues out.
+// lowers it by more than this share was too short. The next step then replaces negative eigenvalues
+// by 0.
 static const double TOO_SHORT = 0.8;
 
 // ---- vectors by row
@@ -63,7 +64,7 @@ static void solve(cau_newton *newton, const cau_step_solver *solver, const cau_r
 	solver->kernels->newton_solve(newton);
 }
 
-// gradient_N += scale H_NR of
+// gradient_N += scale H_NR `of`
 static void spread(const cau_newton *newton, cau_step_solver *solver, double scale,
                    const double *of)
 {

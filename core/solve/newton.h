@@ -39,16 +39,16 @@ typedef struct cau_step_solver cau_step_solver;
 
 enum {
 	CAU_BLOCK = 12, // doubles of a 3 x 3 block: three columns of four, the last of each 0
-	// Rows of a region at most. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
+	// Most rows of a region. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
 	// than a tick of 60 Hz. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_ROWS = 1024,
-	// Elements that Newton's steps assemble in one step of a session, about ten milliseconds.
+	// Most elements that Newton's steps assemble in one step of a session: about ten milliseconds.
 	// Beyond that number the step continues with A, and its reported error includes the motion left
 	// undone. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_WORK = 24000,
 };
 
-// A slot of a share of the local step.
+// An element: a slot in a share of the local step.
 typedef struct cau_newton_element {
 	int32_t work, slot;
 } cau_newton_element;
@@ -73,7 +73,7 @@ typedef struct cau_newton {
 	double *inverse;  // (n x CAU_BLOCK): D^-1, m/N
 	double *column;   // (n x CAU_BLOCK): the column that is being computed, by row
 	double *field;    // (n x 4): right-hand side and solution
-	double *gradient; // (n x 4): of E, N
+	double *gradient; // (n x 4): gradient of E, N
 	double *from;     // (n x 4): positions before a step, m; or a solution that is kept
 	int32_t *next, *head, *at; // (n): lists of the columns that have a block in a row
 	int32_t row_room, block_room, element_room, coupling_room;
@@ -103,7 +103,7 @@ typedef struct cau_loose {
 	bool fresh;     // H is factored at R's present position
 	bool given_up;  // Newton's method is not used for the rest of this step
 	double way_m;   // with tissue contact: how far R's vertices may move in one settling
-	double still_m; // R is settled once no vertex moves farther in a step of Newton's method
+	double still_m; // m: R is settled once no vertex moves farther in a step of Newton's method
 } cau_loose;
 
 // Chooses R for this step, at the step's first guess. CAU_NO_MEMORY.

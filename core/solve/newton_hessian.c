@@ -82,7 +82,7 @@ typedef struct sheet_answer {
 	cau_vec3 residual[2];
 	double squared;
 	sheet_hessian *to;
-	double negative; // as in cau_newton
+	double negative; // factor for negative eigenvalues, as in cau_newton
 	// Viscosity's stress in the plane, over the element's weight. Across the plane it adds
 	// stiffness to that of the limit. If `across` is true, K already contains that part.
 	symmetric2 tension;

@@ -8,8 +8,8 @@
 #include "solve/newton.h"
 #include "solve/solver.h"
 
-// In one step of Newton's method a vertex that touches moves at most this share of the gap. Both
-// parts of a pair may move, so one step does not close the gap.
+// Share of the gap by which a vertex in contact may move in one step of Newton's method. Both parts
+// of a pair may move, so one step does not close the gap.
 static const double ROOM_SHARE = 0.45;
 
 static bool has_row(const cau_newton *newton, const int32_t vertex[4])

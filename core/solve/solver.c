@@ -107,7 +107,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->stiffness_j = mean_stiffness(tissue);
 	solver->step_s = scene->step_s;
 	solver->inertia_s = tissue->inertia_s;
-	// An error of x2 is 1 / gamma times as large in the velocity after two substeps.
+	// After two substeps, an error of x2 is 1 / gamma times as large in the velocity.
 	double share = solver->inertia_s / solver->step_s;
 	solver->accuracy.wanted = scene->tolerance > 0 ? 0 : share * scene->accuracy;
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;

@@ -24,7 +24,7 @@ enum {
 	// of 60 Hz. Small tissue can therefore have many iterations.
 	CAU_SOLVER_EFFORT = 160000,
 	CAU_NEWTON_COST = 14,   // cost of an element in Newton's assembly, in elements of an iteration
-	CAU_VERTEX_CHUNK = 256, // vertices in one share of a vertex loop
+	CAU_VERTEX_CHUNK = 256, // vertices in one chunk of a vertex loop
 };
 
 // Forces on vertices that are neither inertia nor elements: drag in char.
@@ -56,7 +56,7 @@ struct cau_step_solver {
 	uint64_t factor_version; // counts every change of the factor
 	uint64_t factor_epoch;   // counts changes that keep nothing of the old factor
 
-	bool diagonal;      // CAU_SOLVER_DIAGONAL
+	bool diagonal;      // diagonal system instead of A: CAU_SOLVER_DIAGONAL
 	bool conservative;  // every law is the gradient of an energy
 	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets count as loose
 	bool none_loose;    // in this tick no tissue counts as loose: some is inverted, diverges or
@@ -64,8 +64,8 @@ struct cau_step_solver {
 	// most iterations of a step; with an accuracy to reach see CAU_SOLVER_EFFORT
 	int32_t iterations;
 	double tolerance;
-	double stiffness_j; // mean weight of triangles and tetrahedra
-	double step_s;      // one tick
+	double stiffness_j; // J: mean weight of triangles and tetrahedra
+	double step_s;      // s: one tick
 	double inertia_s;   // s: h of M / h^2 in eq. 4 and in A: step_s with implicit Euler
 	cau_accuracy accuracy;
 	const uint8_t *fixed; // (vertex_count): pinned or frozen
@@ -91,7 +91,7 @@ struct cau_step_solver {
 	double *position_before; // (n x 3)
 	int32_t chunk_count;
 
-	double (*now_s)(void); // NULL: no timing
+	double (*now_s)(void); // clock for timings; NULL: no timings
 
 	// J, at the guess after the step has begun, at the solution after it has ended
 	double objective;

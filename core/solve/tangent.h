@@ -29,7 +29,7 @@ typedef struct cau_tangent {
 	cau_reals *change[CAU_TANGENT_MOTIONS]; // H motion, N
 } cau_tangent;
 
-// Where a load acts: a vertex and its share.
+// A part of a load: a vertex and its share.
 typedef struct cau_tangent_load {
 	int32_t vertex;
 	double share;
@@ -43,7 +43,7 @@ typedef struct cau_tangent_answer {
 	double mass_kg;   // mass of the tissue that moves with the point of application
 } cau_tangent_answer;
 
-// Errors: CAU_NO_MEMORY.
+// Allocates the scratch. CAU_NO_MEMORY.
 cau_status cau_tangent_create(cau_tangent *tangent, const cau_step_solver *solver,
                               cau_error *error);
 void cau_tangent_finish(cau_tangent *tangent);

@@ -27,7 +27,8 @@ typedef struct cau_tool_family {
 	cau_tool_jaws (*jaws)(const cau_tool_def *tool); // NULL if `between` is NULL
 } cau_tool_family;
 
-// cau_shape_sphere etc.: one for each row of the table, defined in the shape's own file.
+// cau_shape_sphere and the other families: one for each row of the table, defined in the shape's
+// own file.
 #define X(code, word, ...) extern const cau_tool_family cau_shape_##word;
 CAU_TOOL_SHAPE_TABLE(X)
 #undef X

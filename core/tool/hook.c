@@ -6,13 +6,13 @@
 #include "tool/distance.h"
 #include "tool/family.h"
 
-// Toe and heel are at x = +- half_foot.
+// Returns half the foot's length: toe and heel are at x = +- half_foot.
 static double half_foot(const cau_tool_def *tool)
 {
 	return tool->tip_length_m / 2;
 }
 
-// Radius of the heel's centre line.
+// Returns the radius of the heel's centre line.
 static double bend_of(const cau_tool_def *tool)
 {
 	return tool->tip_length_m / 4;

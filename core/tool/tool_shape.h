@@ -10,7 +10,7 @@
 typedef enum cau_tool_part {
 	CAU_PART_HOT,  // heats while energy is on, and drags; pushes only while energy is off
 	CAU_PART_COLD, // always pushes
-	CAU_PART_BOTH, // the nearer of the two
+	CAU_PART_BOTH, // hot and cold part together: the nearer one counts
 } cau_tool_part;
 
 // Returns the signed distance (m) to the part's surface at `point` in the tool's frame: tip at the

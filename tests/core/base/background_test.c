@@ -40,7 +40,7 @@ static void test_jobs_run_in_order_and_are_waited_for(void **state)
 		cau_background_start(background, run, &work);
 		cau_background_wait(background);
 		expected = 3 * expected + 1;
-		assert_int_equal(work.value, expected); // visible without a lock
+		assert_int_equal(work.value, expected); // the job's writes are visible without a lock
 	}
 	assert_false(pthread_equal(work.thread, pthread_self()));
 	cau_background_destroy(background);

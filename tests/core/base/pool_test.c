@@ -112,7 +112,8 @@ static void stall_once(void *context, int32_t index)
 	}
 	atomic_fetch_add(&work->by_helpers, 1);
 	if (!atomic_exchange(&work->stalled, 1))
-		nanosleep(&(struct timespec){.tv_nsec = stall_ns}, NULL); // the stall itself
+		// the stall: the helper sleeps in its part
+		nanosleep(&(struct timespec){.tv_nsec = stall_ns}, NULL);
 }
 
 // Runs loops until the helper has stalled in one. From then on the caller works alone.

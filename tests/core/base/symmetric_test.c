@@ -79,7 +79,8 @@ static void test_powers(void **state)
 		assert_near(root2[0] * root2[0] + root2[2] * root2[2], two[0], 3 * TOLERANCE);
 		assert_near(root2[1] * root2[1] + root2[2] * root2[2], two[1], 3 * TOLERANCE);
 		assert_near((root2[0] + root2[1]) * root2[2], two[2], 3 * TOLERANCE);
-		assert_true(root2[0] > 0 && root2[0] * root2[1] > root2[2] * root2[2]); // the positive root
+		// the root is positive definite
+		assert_true(root2[0] > 0 && root2[0] * root2[1] > root2[2] * root2[2]);
 	}
 }
 

@@ -11,7 +11,8 @@ enum { CAPACITY = 64, DRAWS = 40 };
 // adds about ten rounding errors. A stress is a difference of terms as large as E.
 static const double UNIAXIAL_TOLERANCE = 1e-11;
 static const double STRESS_TOLERANCE = 1e-11;
-// Psi from the stress by Simpson's rule over 200 parts of a straight path: h^4 / 180.
+// Psi from the stress by Simpson's rule over 200 parts of a straight path: relative error h^4 /
+// 180.
 static const double WORK_TOLERANCE = 1e-7;
 
 static void make(rig *r, int model, double young, double poisson)
@@ -129,8 +130,8 @@ static void test_energy_is_the_work_done(void **state)
 	}
 }
 
-// dF = -Psi P / |P|^2 with the printed St. Venant-Kirchhoff energy; the weight is (2 mu + 3 lambda)
-// V.
+// dF = -Psi P / |P|^2 with the printed St. Venant-Kirchhoff energy. The weight is (2 mu + 3 lambda)
+// times the volume.
 static void test_energy_constraint_by_hand(void **state)
 {
 	(void)state;

@@ -15,7 +15,8 @@ static void every_row_is_a_law(void **state)
 	(void)state;
 	for (int model = 0; model < CAU_MODEL_COUNT; model++) {
 		const cau_law *law = cau_law_of(model);
-		assert_true(law->poisson_most > 0 && law->poisson_most < 0.5); // 0.5: incompressible
+		// a ratio of 0.5 would be incompressible
+		assert_true(law->poisson_most > 0 && law->poisson_most < 0.5);
 		// if mu and lambda are positive, so are the evaluated parameters
 		assert_true(law->mu_mu > 0 && law->lambda_mu >= 0);
 		assert_true(law->meaning[0] != 0);

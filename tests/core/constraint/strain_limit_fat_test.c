@@ -76,7 +76,7 @@ static void test_target_is_the_nearest_of_its_metric(void **state)
 static void test_target_follows_the_fibre(void **state)
 {
 	(void)state;
-	static const double FIBRE[3] = {0.48, -0.6, 0.64}; // of length 1
+	static const double FIBRE[3] = {0.48, -0.6, 0.64}; // has length 1
 	rig r;
 	cau_layer_def *layer = begin(&r, CAU_LIMIT_TARGET);
 	memcpy(layer->fibre, FIBRE, sizeof FIBRE);

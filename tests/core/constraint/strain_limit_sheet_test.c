@@ -34,7 +34,7 @@ static void draw(uint64_t *random, double size, double f[3][3])
 	mat_multiply(turn, f, f);
 }
 
-// Residual R = F - P of the law, dimensionless.
+// Computes the residual R = F - P of the law, dimensionless.
 static void residual(rig *r, double f[3][3], double out[3][3])
 {
 	element_answer(r, 1, f, out);

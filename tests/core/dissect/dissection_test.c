@@ -119,7 +119,7 @@ static void test_counts_after_random_cuts(void **state)
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++)
 		for (int32_t e = 0; e < cau_tissue_element_count(&r.tissue, kind); e++)
 			dead += !r.dissection.alive.element[kind][e];
-	assert_int_equal(removed, dead); // each was reported once
+	assert_int_equal(removed, dead); // each removed element was reported once
 	assert_int_equal(r.dissection.elements_removed, dead);
 	assert_true(dead > 200);
 	rig_finish(&r);

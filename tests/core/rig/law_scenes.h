@@ -13,5 +13,5 @@ typedef struct law_scene {
 enum { LAW_SCENES = 14 };
 extern const law_scene law_scenes[LAW_SCENES];
 
-// A roof of four triangles over six points, no two in one plane, and its hinges.
+// Adds a roof of four triangles over six points, no two triangles in one plane, with its hinges.
 cau_layer_def *law_add_roof(rig *r);

@@ -8,7 +8,7 @@
 static const double LEAP_M = 0.025; // the grip's motion in one tick
 // Net force and torque at convergence, relative to the sums of the absolute values.
 static const double BALANCE_TOLERANCE = 1e-6;
-// Momentum: rounding of a converged step in double.
+// Momentum of a converged step: rounding in double.
 static const double MOMENTUM_TOLERANCE = 1e-9;
 
 // A block that is pinned at its bottom and gripped at its top.

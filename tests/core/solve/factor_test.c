@@ -4,7 +4,7 @@
 
 #include "core/rig/solve_scenes.h"
 
-// |A x - b| relative to |A| |x|: a few dozen roundings of a direct solve.
+// |A x - b| relative to |A| |x|: a direct solve has a few dozen roundings.
 static const double RESIDUAL_TOLERANCE = 1e-14;
 // Tolerance for solutions of a downdated against a fresh factor: 1e-10, or 1e-13 times the worst
 // ratio of an element's stiffness to a vertex's inertia, whichever is larger.

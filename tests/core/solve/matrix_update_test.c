@@ -187,7 +187,8 @@ static void test_cuts_during_the_making_are_not_lost(void **state)
 	assert_false(c.r.update.making);
 	solve_by_sweep(&c.r, c.load, c.solution);
 	solve_fresh(&c, CAU_PRECISION_DOUBLE, LAYERS, fresh);
-	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-7); // 10 MPa beside 5 kPa
+	// 10 MPa next to 5 kPa: larger rounding
+	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-7);
 	rig_finish(&c.r);
 }
 
@@ -272,7 +273,8 @@ static void test_nothing_left(void **state)
 	for (size_t i = 0; i < c.reals; i++) {
 		double expected =
 			c.load[i] * c.r.solver.step_s * c.r.solver.step_s / c.r.tissue.mass[i / 3];
-		assert_near(c.solution[i], expected, 1e-14 * fabs(expected)); // a division or two
+		// rounding of one or two divisions
+		assert_near(c.solution[i], expected, 1e-14 * fabs(expected));
 	}
 	rig_finish(&c.r);
 }

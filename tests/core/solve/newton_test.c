@@ -6,9 +6,9 @@
 
 #include "core/rig/solve_scenes.h"
 
-// Central differences of gradients over a hundredth of a micrometre: truncation and rounding.
+// Central differences of gradients at +-10 nm: truncation and rounding.
 static const double DIFFERENCE_M = 1e-8, DIFFERENCE_TOLERANCE = 1e-5;
-static const double SOLVE_TOLERANCE = 1e-9; // rounding times a condition of some 1e5
+static const double SOLVE_TOLERANCE = 1e-9; // rounding times a condition number of about 1e5
 
 enum { TAUT, LOOSE, RANGE, VISCOUS, LAWS };
 

@@ -13,7 +13,8 @@ static void test_laws_with_an_energy(void **state)
 		law_scenes[k].add(&r);
 		rig_build(&r, NULL, 1);
 		assert_int_equal(cau_solver_is_conservative(&r.tissue, 0), law_scenes[k].has_energy);
-		assert_int_equal(cau_solver_is_conservative(&r.tissue, 1), 0); // printed projections
+		// printed projections have no energy
+		assert_int_equal(cau_solver_is_conservative(&r.tissue, 1), 0);
 		assert_int_equal(r.solver.conservative, law_scenes[k].has_energy);
 		rig_finish(&r);
 	}
@@ -36,7 +37,7 @@ static void test_nothing_free(void **state)
 	rig_finish(&r);
 }
 
-// The diagonal system's step is the printed one: gradient over diagonal.
+// The diagonal system's step is that of the paper: gradient over diagonal.
 static void test_diagonal_step(void **state)
 {
 	(void)state;

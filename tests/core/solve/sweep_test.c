@@ -11,7 +11,7 @@
 typedef enum form { DOUBLES, FLOATS, NARROW, FORM_COUNT } form;
 static const char *const FORM_NAMES[] = {"doubles", "floats", "narrow"};
 static const double CLOSE[] = {1e-13, 5e-6, 3e-4};
-static const double REFINED = 1e-10; // after three increments
+static const double REFINED = 1e-10; // error after three increments
 static const char *const TIERS[] = {"baseline", "avx2", "avx512"};
 
 static void make(rig *r, int scene, form panels, const char *tier, int32_t threads)
@@ -119,7 +119,7 @@ static void test_increments_refine(void **state)
 		}
 }
 
-// Bit for bit, whatever the number of threads, before and after cuts.
+// Results are bit for bit the same for any number of threads, before and after cuts.
 static void test_threads_change_nothing(void **state)
 {
 	(void)state;

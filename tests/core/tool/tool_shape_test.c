@@ -18,7 +18,7 @@
 enum { POINTS = 2000 };
 
 static const double BOX_M = 0.015;      // half the box of random points
-static const double ROUNDING_M = 1e-14; // of distances near 0.1 m
+static const double ROUNDING_M = 1e-14; // rounding of distances near 0.1 m
 static const double JAWS[] = {0, 0.3, 1};
 
 typedef void (*check)(const cau_tool_def *tool, double jaw, cau_tool_part part);
@@ -93,7 +93,8 @@ static void check_lipschitz(const cau_tool_def *tool, double jaw, cau_tool_part 
 		return;
 	uint64_t random = 5;
 	for (int i = 0; i < POINTS; i++) {
-		double box = box_of(tool), reach = i % 2 ? box : box / 100; // far and near pairs
+		// both distant and near pairs of points
+		double box = box_of(tool), reach = i % 2 ? box : box / 100;
 		cau_vec3 a = random_point(&random, box);
 		cau_vec3 b = cau_add(a, random_point(&random, reach));
 		double change = cau_tool_distance(tool, jaw, part, a, NULL) -
@@ -140,7 +141,7 @@ static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part p
 		assert_true(cau_length(cau_sub(difference, g)) < fmax(TOLERANCE * 2, turned));
 		compared++;
 	}
-	assert_true(compared > POINTS * 99 / 100); // creases are thin
+	assert_true(compared > POINTS * 99 / 100); // few points are near creases
 }
 
 static void test_gradient(void **state)
@@ -212,7 +213,7 @@ static void test_tip_is_hot(void **state)
 		if (lacks(&tool, CAU_PART_HOT))
 			continue;
 		double d = cau_tool_distance(&tool, 0, CAU_PART_HOT, (cau_vec3){0, 0, 0}, NULL);
-		if (shape == CAU_TOOL_BIPOLAR) // between the closed plates
+		if (shape == CAU_TOOL_BIPOLAR) // the tip is between the closed plates
 			assert_near(d, 0, ROUNDING_M);
 		else
 			assert_near(d, -cau_tool_thinnest_hot_m(&tool), ROUNDING_M);
