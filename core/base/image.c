@@ -28,7 +28,7 @@ struct cau_image {
 	int file;
 	char *view;          // the whole file, read-only once sealed, for comparison
 	size_t page;         // page size of the system, bytes: the smallest mapping
-	size_t page_count;   // in the file
+	size_t page_count;   // pages in the file
 	size_t listed_count; // pages of all parts
 	uint32_t *place; // (listed_count): page in the file, counted from 1; 0: the page was untouched
 	int32_t part_count;
@@ -256,7 +256,7 @@ typedef struct showing {
 	const cau_image *image;
 	const image_part *part;
 	char *start;
-	uint8_t *touched; // (page_count)
+	uint8_t *touched; // (page_count): pages of the part that were touched
 	bool equal;       // all pages are known to be equal
 	int32_t runs;     // runs mapped so far, in all parts
 	size_t shown;     // pages mapped so far, in all parts

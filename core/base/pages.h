@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 typedef struct cau_pages {
-	void *start; // zeroed, aligned to a page
+	void *start; // first byte: zeroed memory, aligned to a page
 	size_t byte_count;
 } cau_pages;
 

@@ -19,7 +19,7 @@ enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
 // the caller works alone for a while, and twice as long each time this happens again soon. The time
 // is counted in parts, at least for some milliseconds. A part takes a few microseconds, while a
 // loop takes a hundred times longer in a large session than in a small one.
-enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // parts
+enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // all in parts
 
 struct cau_pool {
 	int32_t thread_count;

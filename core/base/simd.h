@@ -193,7 +193,7 @@ INLINE double v_sum(vreal a)
 typedef struct v3 {
 	vreal x, y, z;
 } v3;
-typedef struct m3 { // columns
+typedef struct m3 { // a 3 x 3 matrix by columns
 	v3 c[3];
 } m3;
 typedef struct sym2 {

@@ -46,14 +46,14 @@ typedef struct cau_sheet_group {
 
 typedef struct cau_fat_group {
 	int32_t first_slot, slot_count, layer, material;
-	int model;          // CAU_MODEL_*
+	int model;          // one of CAU_MODEL_*
 	int keeps_rotation; // 1: the law needs a rotation, which `polar` keeps, even if there is no
 	                    // limit
 	int limit, projection;
 	int plastic;            // 1: `plastic` holds C_p^(-1/2) - I
 	double mu, lambda;      // Pa, of the energy as it is evaluated (cau_law)
 	double stiffness;       // Pa: stiffness k with which the energy counts in A
-	double limit_stiffness; // Pa
+	double limit_stiffness; // Pa: stiffness of the strain limit
 	double target[6];       // TARGET: T^(1/2) of slots without a target of their own
 	double stretch_min[3], stretch_max[3];
 	double shear_max;
@@ -82,16 +82,16 @@ typedef struct cau_fat_set {
 	int32_t slot_count, group_count;
 	cau_fat_group *group;
 	uint16_t *record_at[4];
-	void *dm_inverse[9]; // real, 1/m: row-major
-	void *volume;        // real, m^3; 0 once removed
+	void *dm_inverse[9]; // real, 1/m: row-major D_m^-1
+	void *volume;        // real, m^3: volume of the element; 0 once removed
 	// real, N m: limit stiffness x volume if a limit or shrinkage acts, else 0. Kernels read it
 	// only if shrinkage acts and the law has no limit. With a limit, every slot's weight follows
 	// from its volume.
 	void *limit_weight;
 	void *target[6];         // real: T^(1/2): 00, 11, 22, 01, 02, 12
 	void *polar[4];          // real: rotation of the limit, or of corotated fat: w, x, y, z
-	void *plastic[6];        // real: C_p^(-1/2) - I
-	void *plastic_strain[6]; // real: e_p, with C_p = I + 2 e_p
+	void *plastic[6];        // real: C_p^(-1/2) - I, where C_p is the plastic metric
+	void *plastic_strain[6]; // real: plastic strain e_p, with C_p = I + 2 e_p
 	uint8_t *limited;        // (slot_count / CAU_BATCH): a slot of the batch has limit_weight > 0
 	uint8_t *targeted; // (slot_count / CAU_BATCH): a slot of the batch has a target other than its
 	                   // group's
@@ -106,7 +106,7 @@ typedef struct cau_link_set {
 	int32_t slot_count;
 	uint16_t *record_at[2];
 	void *rest[3];     // real, m: edge vector at rest
-	void *rest_length; // real, m
+	void *rest_length; // real, m: length at rest
 	void *weight;      // real, N/m: E A / L; 0 once removed
 } cau_link_set;
 
@@ -115,10 +115,10 @@ typedef struct cau_link_set {
 typedef struct cau_hinge_set {
 	int32_t slot_count;
 	uint16_t *record_at[4];
-	void *coefficient[4]; // real: c_i, sum 0
+	void *coefficient[4]; // real: coefficients c_i, sum 0
 	void *rest[3];        // real, m: e at rest
 	void *rest_length;    // real, m: |e| at rest
-	void *weight;         // real, N/m
+	void *weight;         // real, N/m: bending weight; 0 once removed
 } cau_hinge_set;
 
 typedef struct cau_elements {
@@ -130,7 +130,7 @@ typedef struct cau_elements {
 	void *gradient; // real: the records, (record_count x 4)
 	int32_t record_count;
 	int32_t *record_vertex; // (record_count): 4 x the record's vertex; 0 for padding
-	double *energy;         // (shares): J
+	double *energy;         // (shares): energy of each share, J
 	double rate_per_s;      // 1/h of viscosity; 0: no viscosity
 	double *viscous_j;      // (shares): viscosity's part of `energy`, J; NULL: no layer is viscous
 	bool *slack;            // (shares): whether a triangle of the share is slack

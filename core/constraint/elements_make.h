@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lays out a tissue's elements in slots (elements.h), and changes the slots with the elements.
+// Lays out a tissue's elements in slots (elements.h), and updates the slots when elements or
+// materials change.
 #pragma once
 
 #include "base/memory.h"

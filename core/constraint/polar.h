@@ -101,7 +101,7 @@ INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, const vmask *is_void,
                                                 rotation_lanes *q)
 {
-	vmask robust = v_set(0) > v_set(1); // none
+	vmask robust = v_set(0) > v_set(1); // no lane yet
 	for (int step = 0; step < POLAR_STEPS; step++) {
 		vmask hard = *is_void;
 		v3 h = *first;

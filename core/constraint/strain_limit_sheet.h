@@ -6,7 +6,7 @@
 
 #include "constraint/strain_range.h"
 
-typedef struct sheet_gradient { // F or R, 3 x 2
+typedef struct sheet_gradient { // F or R of a triangle, 3 x 2, by columns
 	v3 c[2];
 } sheet_gradient;
 

@@ -10,7 +10,7 @@
 #include "tissue/tissue.h"
 
 typedef struct cau_removed {
-	int32_t kind, element; // cau_element_kind
+	int32_t kind, element; // `kind` is a cau_element_kind
 } cau_removed;
 
 // Doses of triangles and tetrahedra, for scenes in which elements part one by one (doses.c). Arrays

@@ -26,7 +26,7 @@ typedef struct cau_near {
 	int32_t *face_first; // (block_count + 1): start of the faces that each block owns: those whose
 	                     // least vertex is in the block
 	int32_t *face;
-	cau_box *vertex_box, *edge_box; // (block_count)
+	cau_box *vertex_box, *edge_box; // (block_count): boxes of each block
 	int32_t vertex_count;
 } cau_near;
 

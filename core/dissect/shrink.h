@@ -7,7 +7,7 @@
 
 typedef struct cau_shrinking { // an element that is shrinking towards its target
 	int32_t kind, element;
-	double from[6], to[6]; // T^(1/2)
+	double from[6], to[6]; // T^(1/2) at the start, and the target's
 	double age_s;
 } cau_shrinking;
 
@@ -21,7 +21,7 @@ typedef struct cau_shrink {
 	                      // never changes again
 	int32_t active_count; // elements that are shrinking now
 	int32_t active_capacity;
-	cau_shrinking *active; // (active_capacity)
+	cau_shrinking *active; // (active_capacity): elements that are shrinking
 } cau_shrink;
 
 cau_status cau_shrink_create(cau_shrink *shrink, const cau_tissue *tissue, cau_arena *arena,

@@ -42,7 +42,7 @@ enum {
 typedef struct cau_accuracy {
 	double wanted; // largest error at which a step ends; 0: steps have a fixed number of iterations
 	// What earlier steps have taught. This is part of a session's state.
-	double amplification[CAU_ACCURACY_DEPTHS]; // c_j
+	double amplification[CAU_ACCURACY_DEPTHS]; // c_j by number of increments j
 	int32_t shallow_steps;                     // steps since one that took DEEP increments
 	double force_left; // relative error of a tool's force that the first increment leaves
 	double force_before[CAU_ACCURACY_TOOLS][3]; // N, the tools' forces at the end of the last step

@@ -66,7 +66,7 @@ typedef struct cau_contact_tool {
 typedef struct cau_contact_row {
 	int32_t corner_count; // 1: a vertex; 3: a point of a face
 	int32_t face, above;  // face of the point, and its side at the tool, as in cau_contact_memory
-	int32_t vertex[3];    // the corners
+	int32_t vertex[3];    // vertices of the point's corners
 	double weight[3];     // shares of the corners in the point, sum 1
 	double went;          // sum of the changes of weight[] in this iteration (follow.h)
 	bool free[3];         // whether each corner can move
@@ -113,7 +113,7 @@ struct cau_contact_set {
 	int32_t begun_count; // number of constraints at the start of the step; begun_reaction has their
 	                     // reactions
 	double begun_reaction[CAU_MAX_CONTACTS][3];
-	double begun_offset[CAU_MAX_TOOLS][3]; // m
+	double begun_offset[CAU_MAX_TOOLS][3]; // m: offsets of the tools at the start of the step
 	int32_t left_out_count; // constraints of this step for which the capacity was too small
 	int32_t memory_count; // faces of the last step, sorted by tool and face: part of the session's
 	                      // state
@@ -126,7 +126,7 @@ struct cau_contact_set {
 	int32_t column_vertex[CAU_MAX_COLUMNS];
 	// version of the factor from which each column was made
 	uint64_t column_version[CAU_MAX_COLUMNS];
-	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count), m/N
+	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count): whole columns of A^-1, m/N
 	// Columns that constraints use, ascending. If more than half of all columns are used, the list
 	// has all. Only these columns of answer[] and step[] are up to date.
 	int32_t used_count;

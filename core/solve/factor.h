@@ -19,9 +19,9 @@ enum {
 // Symmetric matrix: lower triangle by columns, rows ascending, with the diagonal.
 typedef struct cau_matrix {
 	int32_t n;
-	int32_t *first; // (n + 1)
-	int32_t *row;   // (first[n])
-	double *value;  // (first[n])
+	int32_t *first; // (n + 1): start of each column
+	int32_t *row;   // (first[n]): row of each entry
+	double *value;  // (first[n]): value of each entry
 } cau_matrix;
 
 // Orders `matrix` and finds the factor's pattern, without its values. `permutation` (n) is an order

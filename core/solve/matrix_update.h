@@ -49,13 +49,13 @@ typedef struct cau_matrix_update {
 	cau_status next_status;
 	// The downdates of this tick.
 	int updates_due;
-	int32_t done; // elements downdated
+	int32_t done; // elements downdated in this tick
 	cau_status due_status;
 	cau_error due_error;
 	uint8_t *touched; // (supernode_count): 1 if downdates changed the supernode
 	double least_pivot_bound;
 	int32_t refactorisations;
-	uint64_t longest_wait; // ticks
+	uint64_t longest_wait; // longest wait of a removed element for its downdate, ticks
 	cau_step_solver *solver;
 } cau_matrix_update;
 

@@ -56,14 +56,14 @@ typedef struct cau_newton_element {
 // A block of H between a row and a free vertex outside R.
 typedef struct cau_newton_coupling {
 	int32_t row, vertex;
-	double block[9]; // N/m, row-major
+	double block[9]; // N/m, by rows
 } cau_newton_coupling;
 
 // H_RR = L D L^T in blocks. Each vertex of R has one row of blocks, in the order of the factor of
 // A. Before the factorisation `block` and `pivot` hold H_RR.
 typedef struct cau_newton {
-	int32_t n;        // rows; 0: R is empty
-	uint8_t *chosen;  // (vertex_count): R
+	int32_t n;        // number of rows; 0: R is empty
+	uint8_t *chosen;  // (vertex_count): 1 for each vertex of R
 	int32_t *place;   // (vertex_count): row of each vertex, -1 outside R
 	int32_t *vertex;  // (n): vertex of each row
 	int32_t *first;   // (n + 1): where the blocks of each column of L, below its diagonal, begin

@@ -94,7 +94,7 @@ typedef struct sheet_answer {
 typedef struct sheet_polar {
 	bool full;
 	double stretches;   // tr S
-	symmetric2 inverse; // S^-1
+	symmetric2 inverse; // the inverse S^-1
 	cau_vec3 q[2];
 } sheet_polar;
 
@@ -249,8 +249,8 @@ static void add_viscosity(sheet_answer *answer, const cau_vec3 f[2], double shar
 // A triangle's vertices, G by vertex and column of F, and weight.
 typedef struct sheet_element {
 	int32_t vertex[3];
-	double g[3][2]; // 1/m
-	double weight;  // N m
+	double g[3][2]; // G by vertex, 1/m
+	double weight;  // weight of the element, N m
 	symmetric2 root;
 	cau_vec3 rest[2], kept[2]; // columns of F at rest; columns of the Q that the local step kept
 } sheet_element;

@@ -73,10 +73,10 @@ struct cau_step_solver {
 	double *position;             // x, (n x 3): the session's positions
 	double *predicted;            // s of eq. 4, (n x 3)
 	const double *position_start; // x_t, (n x 3); NULL: a step does not restart from x_t
-	double *external;             // N, (n x 3)
+	double *external;             // external forces, N, (n x 3)
 	cau_drag *drag;
 	int32_t drag_count;
-	cau_contact_set *contact; // NULL: none
+	cau_contact_set *contact; // contact of tools; NULL: none
 	cau_collide *collide;     // tissue contact; NULL: none
 
 	cau_reals *displacement;    // u = x - X
@@ -86,9 +86,9 @@ struct cau_step_solver {
 	cau_yield yield;            // scratch of yield.c, for tissue contact
 	cau_history history;        // for Anderson acceleration; history.step is trial_increment
 	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
-	double *chunk_energy;                                              // (chunk_count)
+	double *chunk_energy;    // (chunk_count): energy of each chunk, J
 	double *chunk_dot;       // (chunk_count x 2 CAU_ANDERSON_WINDOW)
-	double *position_before; // (n x 3)
+	double *position_before; // positions before the step, (n x 3)
 	int32_t chunk_count;
 
 	double (*now_s)(void); // clock for timings; NULL: no timings
@@ -133,7 +133,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error);
 // evaluate.c: computes the gradient of eq. 4 at the present position, and returns the objective (J,
 // in double, summed in a fixed order).
 double cau_solver_evaluate(cau_step_solver *solver);
-// Does the same while one thread calls `meanwhile`, which may change neither position nor elements.
+// Does the same as cau_solver_evaluate while one thread calls `meanwhile`. `meanwhile` may change
+// neither position nor elements.
 double cau_solver_evaluate_beside(cau_step_solver *solver, void (*meanwhile)(void *context),
                                   void *context);
 // Two parts of cau_solver_evaluate: the displacements, and all the rest.

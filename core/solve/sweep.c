@@ -15,7 +15,7 @@ enum {
 typedef struct draft {
 	int32_t first, last;   // columns [first, last)
 	int32_t subtree_first; // first column of its whole subtree
-	int64_t entries;       // true nonzeros
+	int64_t entries;       // nonzero entries without padding
 } draft;
 
 static int32_t pad(int32_t count)
@@ -236,7 +236,8 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 			backward[own + i] = 4 * row;
 			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
 		}
-		for (int32_t i = own + node->rows; i < node->padded_rows; i++) { // W' has zeros there
+		// for padded rows, where W' has zeros
+		for (int32_t i = own + node->rows; i < node->padded_rows; i++) {
 			forward[i] = node->spare;
 			backward[i] = 4 * node->first;
 		}

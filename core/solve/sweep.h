@@ -54,8 +54,8 @@ typedef struct cau_supernode {
 // The factor's values in packed form: the set in use, or a second set of the same layout for a
 // factor that is computed in the background.
 typedef struct cau_sweep_panels {
-	cau_pages pages; // one allocation that holds panel, d_inverse and scale
-	void *panel;     // reals, or narrow entries
+	cau_pages pages; // one allocation for panel, d_inverse and scale
+	void *panel;     // the panels: reals, or narrow entries
 	cau_reals *d_inverse, *scale;
 } cau_sweep_panels;
 

@@ -11,7 +11,7 @@
 typedef struct cau_system {
 	int32_t row_count;
 	int32_t *row_of_vertex; // (vertex_count): -1 for a pinned vertex
-	int32_t *vertex_of_row; // (row_count)
+	int32_t *vertex_of_row; // (row_count): vertex of each row
 	cau_matrix matrix;      // the pattern has all elements, removed ones too, so it never grows
 	double *diagonal;       // (vertex_count): A of the diagonal system (eq. 7), N/m
 } cau_system;

@@ -24,9 +24,9 @@ typedef struct cau_tangent {
 	cau_step_solver probe;
 	double *position;                       // m, (n x 3), positions of the probe
 	cau_reals *base;                        // gradient at the present state
-	cau_reals *load;                        // scratch
-	cau_reals *motion[CAU_TANGENT_MOTIONS]; // m
-	cau_reals *change[CAU_TANGENT_MOTIONS]; // H motion, N
+	cau_reals *load;                        // scratch: the load as a vector
+	cau_reals *motion[CAU_TANGENT_MOTIONS]; // motions of the space, m
+	cau_reals *change[CAU_TANGENT_MOTIONS]; // H times each motion, N
 } cau_tangent;
 
 // A part of a load: a vertex and its share.

@@ -100,9 +100,9 @@ static bool first_serves(const cau_step_solver *solver, double stiffer)
 	return stiffer * solver->collide->steepest <= surely * enough;
 }
 
-// True if the last step was enough: each step is assumed to lower E by the same factor less than
-// the one before. off[0] is the decrease in J of the first step, off[1] of the one before the last,
-// off[2] of the last.
+// True if the last step was enough. The decrease of E is assumed to shrink from step to step at
+// least as much as at the last one. off[0] is the decrease in J of the first step, off[1] of the
+// one before the last, off[2] of the last.
 static bool last_served(const double off[3])
 {
 	return off[2] * off[2] <= surely * enough * off[0] * off[1];

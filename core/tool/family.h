@@ -21,7 +21,7 @@ typedef struct cau_tool_family {
 	cau_ball (*hot_bound)(const cau_tool_def *tool); // a ball that contains the part at every jaw
 	                                                 // angle; NULL if `hot` is NULL
 	cau_ball (*cold_bound)(const cau_tool_def *tool);
-	double (*thinnest_hot)(const cau_tool_def *tool); // m; NULL if `hot` is NULL
+	double (*thinnest_hot)(const cau_tool_def *tool); // radius, m; NULL if `hot` is NULL
 	// NULL: the shape has no jaws.
 	bool (*between)(const cau_tool_def *tool, double jaw, cau_vec3 point, double *jaw_coordinate);
 	cau_tool_jaws (*jaws)(const cau_tool_def *tool); // NULL if `between` is NULL

@@ -19,7 +19,7 @@ static double bend_of(const cau_tool_def *tool)
 }
 
 typedef struct hook_neck {
-	double radius; // m
+	double radius; // radius of the neck, m
 	cau_vec3 low;  // one neck radius above the hot heel
 	cau_vec3 high; // on the axis, where the shaft's core begins
 } hook_neck;

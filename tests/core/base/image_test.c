@@ -20,7 +20,7 @@
 
 enum { PAGES = 64, KEY = 7, LEAST_RUN_BYTES = 16 << 10 };
 
-static size_t page; // bytes
+static size_t page; // page size, bytes
 
 // Fills each page with a pattern from its number and the index of each byte.
 static cau_pages patterned(void)
@@ -262,7 +262,7 @@ static void of_too_much_and_of_nothing_there_is_none(void **state)
 {
 	(void)state;
 	cau_pages much, blank, nothing = {0};
-	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // never touched
+	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // the pages were never touched
 	assert_null(cau_image_of(KEY, &much, 1, NULL));
 	*(char *)much.start = 1;
 	assert_null(cau_image_of(KEY, &much, 1, NULL));

@@ -64,7 +64,7 @@ static void test_shares_write_apart(void **state)
 		const cau_local_work *work = &r.solver.slots.work[w];
 		assert_int_equal(work->first_record, next);
 		next += work->record_count;
-		for (int32_t s = work->first; s < work->last; s++) // padding too
+		for (int32_t s = work->first; s < work->last; s++) // including padding
 			for (int i = 0; i < rig_vertex_count(work->kind); i++) {
 				int32_t record = rig_record(&r, work->kind, s, i);
 				assert_true(record >= work->first_record && record < next);

@@ -86,7 +86,7 @@ static void check_stress(int triangle)
 		rig_random_gradient(&random, 0.4, b);
 		rig_random_gradient(&random, 0.4, f);
 		take_strain(&r, triangle, a, 1);
-		take_strain(&r, triangle, b, 2.4); // as in a second substep
+		take_strain(&r, triangle, b, 2.4); // a share above 1, as in a second substep
 		strain_of(a, from);
 		strain_of(b, to);
 		for (int k = 0; k < 9; k++)

@@ -240,12 +240,13 @@ static void test_denatured_elements(void **state)
 			burnt b;
 			make(&b, fat, targeted);
 			int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE, edges = fat ? 6 : 3;
-			denature(&b, kind, 7, edges, 0.24, AXIS[fat]); // 0.5 is fully coagulated
+			// an edge heated by 0.5 counts as coagulated, so 0.24 is less than half
+			denature(&b, kind, 7, edges, 0.24, AXIS[fat]);
 			assert_int_equal(b.r.shrink.active_count, 0);
 			denature(&b, kind, 7, edges, 0.26, AXIS[fat]);
 			assert_int_equal(b.r.shrink.active_count, 1);
 			assert_target(&b.r.shrink.active[0], targeted, AXIS[fat]);
-			denature(&b, kind, 7, edges, 1, AXIS[fat]); // only once
+			denature(&b, kind, 7, edges, 1, AXIS[fat]); // an element gets its target only once
 			assert_int_equal(b.r.shrink.active_count, 1);
 			rig_finish(&b.r);
 		}
@@ -271,7 +272,7 @@ static void test_ramp(void **state)
 			            TARGET_TOLERANCE);
 		assert_true(ticks < 100);
 	}
-	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // within one tick
+	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // within one tick of the ramp's time
 	rig_finish(&b.r);
 }
 

@@ -95,7 +95,7 @@ static void fat_and_links_bear_what_their_parameters_say(void **state)
 	(void)state;
 	rig r;
 	rig_begin(&r);
-	cau_fat_material *fat = rig_add_slab(&r, 5, 4, 3)->fat; // 20 x 20 x 10 mm
+	cau_fat_material *fat = rig_add_slab(&r, 5, 4, 3)->fat; // cells of 20 x 20 x 10 mm
 	fat->young_modulus_pa = stiffness_pa;
 	fat->heat.tear_energy_j_m2 = tear_j_m2;
 	build(&r, CAU_PARTING_ELEMENTS);

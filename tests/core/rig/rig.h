@@ -35,8 +35,8 @@ void rig_begin(rig *r);
 
 // Adds a layer with its own mesh, named "layer<i>", with the defaults of its kind. The result
 // points into the scene. Change the layer before rig_build.
-cau_layer_def *rig_add_sheet(rig *r, int32_t cells_x, int32_t cells_y); // 0.1 x 0.08 m
-cau_layer_def *rig_add_slab(rig *r, int32_t x, int32_t y, int32_t z);   // 0.1 x 0.08 x 0.03 m
+cau_layer_def *rig_add_sheet(rig *r, int32_t cells_x, int32_t cells_y); // size 0.1 x 0.08 m
+cau_layer_def *rig_add_slab(rig *r, int32_t x, int32_t y, int32_t z);   // size 0.1 x 0.08 x 0.03 m
 // Adds a layer of triangles (count x 3) or tetrahedra (count x 4) over points (m, point_count x 3).
 cau_layer_def *rig_add_triangles(rig *r, int32_t point_count, const double *points, int32_t count,
                                  const int32_t *vertex);

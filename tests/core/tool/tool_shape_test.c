@@ -415,14 +415,14 @@ static void test_between_jaws(void **state)
 			if (k == 2 && !shears) // the hinge of shears is not in their faces' planes
 				assert_near(coordinate, 0, 1e-12);
 			previous = coordinate;
-			p.y = 0.01; // beside the jaws
+			p.y = 0.01; // the point is beside the jaws
 			assert_false(cau_tool_between_jaws(&tool, 1, p, &coordinate));
 		}
 		cau_vec3 above = {face, 0, tool.tip_length_m + 1e-3}, below = {face, 0, -3e-3};
 		assert_false(cau_tool_between_jaws(&tool, 1, above, NULL));
 		assert_false(cau_tool_between_jaws(&tool, 1, below, NULL));
 		cau_vec3 pressed = {face, 0, 1e-3}, beside = {face + 5e-3, 0, 1e-3};
-		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed on it
+		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed jaws hold it
 		assert_false(cau_tool_between_jaws(&tool, 0, beside, NULL));
 	}
 	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
@@ -442,7 +442,8 @@ static void test_turning_with_jaws(void **state)
 		cau_tool_jaws jaws = cau_tool_describe_jaws(&tool);
 		assert_near(jaws.share[0] + jaws.share[1], 1, 1e-12);
 		double arm = tool.tip_length_m / 2;
-		double off = shapes[i] == CAU_TOOL_SHEARS ? tool.hot_radius_m * 0.18 : 1e-9; // 1 - cos 0.6
+		// 0.18: 1 - cos 0.6
+		double off = shapes[i] == CAU_TOOL_SHEARS ? tool.hot_radius_m * 0.18 : 1e-9;
 		for (int side = 0; side < 2; side++) {
 			double sign = side ? 1 : -1;
 			cau_vec3 p = {jaws.face_m, 1e-3, tool.tip_length_m - arm};
