@@ -105,7 +105,7 @@ struct cau_contact_set {
 	// Tissue has been torn, so all columns are renewed. Jaws may hold tissue that hangs by little.
 	// Columns that still contain removed elements would move such tissue too far.
 	bool torn;
-	bool let_through;    // tools passed tissue that they could not hold: no side is remembered
+	bool let_through;    // tools passed tissue that no constraint could hold: no side is remembered
 	uint64_t pushing;    // hash of the active constraints after the last correction
 	bool others;         // the active constraints changed in the last correction
 	bool elsewhere;      // an active constraint's point moved along its face in the last correction

@@ -283,7 +283,7 @@ static void forget_increments(cau_step_solver *solver)
 // The state between the iterations of a round.
 typedef struct descent {
 	double objective, first, last; // J; norm of the first increment; norm of the last increment
-	int32_t steps;                 // increments in the history of Anderson acceleration
+	int32_t steps;                 // increments since the history was discarded
 	int32_t backtracks_before;     // backtracks of earlier rounds in this tick
 	uint64_t touching;
 	bool near; // the last increment was within the accuracy
