@@ -16,7 +16,8 @@
 //
 // Pairs are valid (find.c) for all positions at which no vertex is farther than its `reach_m` from
 // its `anchor`, from tick to tick. Positions beyond need another search. Neither the touching pairs
-// nor the order in which their forces are added depends on that, so no snapshot contains it.
+// nor the order in which their forces are added depends on when pairs were searched, so no snapshot
+// contains the pairs.
 #pragma once
 
 #include <stdatomic.h>
