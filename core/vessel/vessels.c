@@ -330,8 +330,8 @@ static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, i
 	              flow_m3_s * around->step_s);
 }
 
-// Follows the blood from one end: `step` is 1 or -1. Blood leaves where the vessel is parted, and
-// through holes of the wall. A seal that holds, or a shut lumen, ends its way.
+// Follows the blood from one end, in direction `step`, 1 or -1. Blood leaves where the vessel is
+// parted, and through holes of the wall. The blood stops at a seal that holds, or at a shut lumen.
 static run follow(cau_vessels *vessels, int32_t index, int step, double pressure_pa,
                   const cau_vessel_surroundings *around, bool shed)
 {

@@ -175,12 +175,13 @@ static void test_refusals(void **state)
 	expect_refusal(&tool, TICK_S, "diffusivity_m2_s");
 }
 
-// Exactly the nodes within the hot part hold, for every shape, turned, at any jaw angle; the rest
-// of the field lies between ambient and the tool, strictly so where it is not at the surface.
+// Exactly the nodes inside the hot part are held: for every shape, rotated, at any jaw angle. All
+// other values are between ambient and the tool's temperature. Away from the surface they are
+// strictly below the tool's temperature.
 static void test_hot_nodes_hold(void **state)
 {
 	(void)state;
-	// Cells: a node's value may round to the tool's there.
+	// Cells: nearer to the surface, a node's value may round to the tool's temperature.
 	static const double AT_THE_SURFACE = 0.05;
 	for (int shape = 0; shape < CAU_TOOL_GRASPER; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
