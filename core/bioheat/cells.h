@@ -21,7 +21,8 @@ enum {
 typedef struct cau_cells {
 	double side_m;
 	int32_t count, capacity;
-	int32_t *place;     // (capacity x 3): the cell's middle is at (place + 1/2) side_m
+	// (capacity x 3): position in the grid; the cell's middle is at (place + 1/2) side_m.
+	int32_t *place;
 	int32_t *neighbour; // (capacity x 6): the cell on each side; -1: no cell that conducts
 	uint8_t *material;  // (capacity)
 	float *fill;        // (capacity): share of the cube that is tissue, above 0, at most 1

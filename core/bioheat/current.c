@@ -7,8 +7,8 @@
 #include "base/vector.h"
 #include "cautery/assert.h"
 
-// Distance to the return electrode, about. The current of a sheet spreads in its plane. There the
-// potential falls with the logarithm of the distance, so this distance matters.
+// Approximate distance to the return electrode. The current of a sheet spreads in its plane, where
+// the potential falls with the logarithm of the distance. So the result depends on this distance.
 static const double return_m = 0.03;
 // Dry tissue conducts this share of its initial conductivity. If it were 0, the matrix would be
 // singular.

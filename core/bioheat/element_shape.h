@@ -29,7 +29,7 @@ typedef struct cau_element_shape {
 	// Rows of the inverse of the edges: they give a point's coordinates along the edges.
 	cau_vec3 row[3];
 	double half_m;  // half of a sheet's thickness, a link's radius
-	double side_m;  // of a cell
+	double side_m;  // side of a cell
 	double reach_m; // length from a cell's middle to its corners
 	cau_vec3 reach; // reach_m in coordinates along the edges
 } cau_element_shape;

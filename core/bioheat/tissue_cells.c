@@ -13,7 +13,7 @@
 // cells that stretching moves farther away.
 static const double stretch_most = 2;
 
-static const double surface_w_m2k = 20; // still gas, with radiation
+static const double surface_w_m2k = 20; // to still gas, with radiation
 
 // ---- elements
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tissue against tissue: the drawn surface keeps a thickness from itself, and never crosses itself.
 //
-// Pairs are a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
-// thickness h has an energy that is part of eq. 4 (energy.c): with d its distance,
+// A pair is a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
+// thickness h has an energy, which is part of eq. 4 (energy.c). For the distance d the energy is
 //
 //     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d),
 //
-// continuous with its slope and curvature [offset geometric contact, Chen et al. 2025]. Below a
-// hundredth of h the force grows linearly, so that it is finite where tissue was crossed before.
-// Friction opposes the motion since the tick's start, with the force that the pair had then.
+// The energy is continuous, with its slope and curvature [offset geometric contact, Chen et al.
+// 2025]. Below 0.002 h the force grows linearly, so the force is finite even where tissue
+// crossed tissue before. Friction opposes the motion since the tick's start, with the pair's force
+// at that time.
 //
 // No step crosses (filter.c). A plane separates a pair before and after every move. Corners move
-// straight, so it separates them all the way. A corner that would pass the plane is moved back to
-// its side, and stopped where that is not enough.
+// along straight lines, so the plane separates the pair during the whole move. A corner that would
+// pass the plane is moved back to its side. If that is not enough, the corner is stopped.
 //
-// Pairs are valid (find.c) for all positions at which no vertex is farther than its `reach_m` from
-// its `anchor`, from tick to tick. Positions beyond need another search. Neither the touching pairs
-// nor the order in which their forces are added depends on when pairs were searched, so no snapshot
-// contains the pairs.
+// Pairs are valid (find.c) while no vertex is farther than its `reach_m` from its `anchor`, from
+// tick to tick. Positions beyond need another search. Neither the touching pairs nor the order of
+// their forces depends on when pairs were searched, so no snapshot contains the pairs.
 #pragma once
 
 #include <stdatomic.h>
@@ -35,7 +35,7 @@ static const double cau_collide_most_step_m = 1e-3;
 typedef struct cau_collide_pair {
 	cau_gap_kind kind;
 	int32_t vertex[4];  // corners
-	double thickness_m; // less than the surface's where the pair is nearer at rest
+	double thickness_m; // m; less than the surface's thickness if the pair is nearer at rest
 	double stiffness;   // k, N/m
 	cau_vec3 plane;     // unit direction that separated the parts at the last measurement
 	double slope;       // dE/dd at the last evaluation, N; 0: the parts are apart
@@ -59,7 +59,7 @@ typedef struct cau_collide_box {
 } cau_collide_box;
 
 typedef struct cau_collide_found { // a pair as find.c lists it
-	int32_t first, second;         // vertex and face, or edges, of the tissue
+	int32_t first, second;         // indices in the tissue: vertex and face, or two edges
 	double thickness_m, stiffness;
 } cau_collide_found;
 
@@ -80,7 +80,7 @@ typedef enum cau_collide_need {
 typedef struct cau_collide {
 	const cau_tissue *tissue;
 	double thickness_m, friction;
-	const uint8_t *fixed; // (n): borrowed; vertices that no step moves
+	const uint8_t *fixed; // (n), n vertices; borrowed: 1 at vertices that no step moves
 	// (n): vertices excluded from contact in this tick: held by jaws, inverted, diverged. They are
 	// in no pair, and no filter moves them.
 	uint8_t *exempt;
@@ -90,12 +90,13 @@ typedef struct cau_collide {
 	double *stiffness; // N/m, (n): contact stiffness of each vertex
 	double *longest_m; // m, (n): longest edge of each vertex, at rest
 	cau_surface surface;
-	// Positions for which the pairs are valid.
+	// Range in which the pairs are valid: no vertex is farther than its reach from its anchor. If
+	// `found` is false, no pairs are known.
 	bool found;
-	double *anchor;  // m, (n x 3)
-	double *reach_m; // (n)
-	bool ahead;   // the next evaluation is where the last filtered step led, or at the tick's start
-	double *seen; // m, (n x 3): positions at which pairs were last measured
+	double *anchor;  // m, (n x 3): position around which the pairs of each vertex are known
+	double *reach_m; // m, (n): radius around the anchor
+	bool ahead;      // pairs are known to be valid at the positions of the next evaluation
+	double *seen;    // m, (n x 3): positions at which pairs were last measured
 	double *apart_m; // m, (most_pairs): lower bound of each pair's distance at `seen`
 	double slack_m;  // m: smallest remaining reach of any vertex at `seen`
 	double away_m;   // m: upper bound of any vertex's distance from `seen` to its present position
@@ -110,7 +111,7 @@ typedef struct cau_collide {
 	double steepest;        // largest ratio of curvature to stiffness of a touching pair
 	uint64_t touching_hash; // hash of the pairs that are nearer than half of their thickness
 	int32_t loaded_count;
-	uint8_t *is_loaded; // (n)
+	uint8_t *is_loaded; // (n): 1 at vertices that have a gradient
 	int32_t *loaded;    // (n): the loaded_count vertices that have a gradient
 	double *gradient;   // N, (n x 3): gradient of the energy; 0 at all other vertices
 	double *probe;      // m, (n x 3): input of cau_collide_apply, at loaded vertices
@@ -146,14 +147,14 @@ typedef struct cau_collide {
 	int32_t touched_count, *touched;              // blocks with a fresh part
 	cau_collide_lanes *block_lane, *touched_lane; // boxes of all faces of each block; boxes of the
 	                                              // fresh faces of `touched` blocks
-	uint8_t *is_touched;                          // (blocks)
+	uint8_t *is_touched;                          // (blocks): 1 if the block is in `touched`
 	cau_collide_box *place_box; // (blocks): crossed.c: boxes at the present positions
 	bool may_give_up;  // the search may stop early, as the result of a failed search is not used
 	atomic_bool fails; // the search has failed: the pairs exceed the capacity
 	atomic_int listed_count; // pairs that finished blocks have listed
 	// ---- filter.c: scratch
 
-	bool *stopped;   // (most_pairs)
+	bool *stopped;   // (most_pairs): the pair has been stopped in this step
 	double *wanted;  // m, (n x 3): the step before the filter changed it
 	double *room_m;  // m, (n): how far a pushed vertex may move
 	uint8_t *pushed; // (n): 1 at corners of pairs that came near; all 0 between calls
@@ -169,10 +170,10 @@ cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, do
 // Length of the longest filtered step, m.
 double cau_collide_most_step(const cau_collide *collide);
 
-// Begins a tick at positions x (m, n x 3). Before it the caller has listed the drawn surface,
-// filled `exempt`, and set `cut_short_count` to 1 if an exclusion is to be reported, else 0.
-// Searches pairs for steps as long as `collide->step`. Measures the energy at x and takes the
-// grips.
+// Begins a tick at positions x (m, n x 3). Before the call, list the drawn surface and fill
+// `exempt`. Set `cut_short_count` to 1 if an exclusion is to be reported, else to 0. The function
+// searches pairs for steps as long as `collide->step`, measures the energy at x, and makes a grip
+// of each touching pair.
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 
 // Returns the energy at x, J, with friction. Stores its gradient in `gradient`.
@@ -195,8 +196,8 @@ double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip
 // evaluation, without its negative part.
 void cau_collide_apply(cau_collide *collide);
 
-// Excludes also the vertices that cross at x. Call this before a tick in which an excluded vertex
-// takes part in contact again.
+// Excludes also the vertices that cross at x from contact. Call this before a tick in which an
+// excluded vertex takes part in contact again.
 void cau_collide_exempt_crossed(cau_collide *collide, const double *x);
 // Whether a vertex that was excluded in the last tick takes part in contact again.
 bool cau_collide_touches_again(const cau_collide *collide);
@@ -213,9 +214,9 @@ void cau_collide_let_go(cau_collide *collide, int32_t vertex);
 // evaluation, or those to which the last filter led.
 void cau_collide_stand(cau_collide *collide, const double *x);
 
-// Changes `collide->step` (m, n x 3), a wanted step from the present positions x, so that no pair
-// crosses on the way. With `guess` also so that no pair comes nearer than the thickness. Returns
-// whether it changed the step.
+// Changes `collide->step` (m, n x 3), the wanted step from the present positions x, so that no pair
+// crosses during the step. With `guess`, no pair comes nearer than its thickness either. Returns
+// whether the step was changed.
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess);
 
 // Measures the distances of all pairs at the present positions x. Steps from near x use these
@@ -237,8 +238,8 @@ bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest
 bool cau_collide_search(cau_collide *collide, cau_pool *pool);
 // order.c: sorts pairs by their parts; no two pairs have the same parts.
 void cau_collide_sort(cau_collide_found *found, int32_t count);
-void cau_collide_gather(
-	cau_collide *collide); // lists the pairs that all blocks found, up to the capacity
+// order.c: lists the pairs that all blocks found, up to the capacity.
+void cau_collide_gather(cau_collide *collide);
 // pair.c: true if the parts may come nearer than their thickness while each corner stays within its
 // reach. If so, *found gets the pair's thickness and stiffness.
 bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
@@ -253,8 +254,8 @@ bool cau_collide_covers_pushed(const cau_collide *collide, const double *x);
 double cau_collide_slack(const cau_collide *collide, const double *x);
 // Returns how far a filtered step may move the vertex, m, if `collide->step` is the wanted step.
 double cau_collide_room(const cau_collide *collide, int32_t vertex);
-double cau_collide_most_room(const cau_collide *collide,
-                             double step_m); // the same limit for a wanted step of length step_m
+// Returns how far a filtered step may move any vertex whose wanted step has the length step_m, m.
+double cau_collide_most_room(const cau_collide *collide, double step_m);
 // Marks the corners of elements that died since the last call as changed, so that their pairs are
 // searched again.
 void cau_collide_forget_dead(cau_collide *collide);

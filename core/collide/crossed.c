@@ -33,7 +33,7 @@ static bool meets(const cau_collide_box *a, const cau_collide_box *b)
 	       (b->least[1] <= a->most[1]) & (a->least[2] <= b->most[2]) & (b->least[2] <= a->most[2]);
 }
 
-// Six times the volume of a tetrahedron.
+// Returns six times the volume of a tetrahedron.
 static double volume(cau_vec3 a, cau_vec3 b, cau_vec3 c, cau_vec3 d)
 {
 	return cau_dot(cau_sub(b, a), cau_cross(cau_sub(c, a), cau_sub(d, a)));

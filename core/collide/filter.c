@@ -13,7 +13,8 @@
 
 // Share of its distance, or of the thickness if that is less, that a pair keeps in a step.
 static const double kept_share = 0.2;
-static const double kept_by_guess = 1;   // the same for the first guess, which so adds no energy
+// Share for the first guess, which so adds no contact energy.
+static const double kept_by_guess = 1;
 static const double least_share = 0.005; // share of the thickness: a pair this near comes no nearer
 static const double just = 1 - 1e-6; // share of a reach, so that rounding leads no vertex beyond it
 enum { PASSES = 8 };
@@ -21,7 +22,7 @@ enum { PASSES = 8 };
 typedef struct look {
 	cau_vec3 corner[4], step[4], after[4];
 	cau_vec3 normal;
-	double distance, floor; // before the step; least distance allowed after it
+	double distance, floor; // distance before the step; least distance allowed after it
 } look;
 
 static void see(const cau_collide *collide, const cau_collide_pair *pair, const double *x, look *l)

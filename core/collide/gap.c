@@ -53,8 +53,8 @@ static void nearest_on_face(const cau_vec3 *corner, double b[3])
 	b[0] = 1 - b[1] - b[2];
 }
 
-// Finds the nearest points of the two edges. `s` and `t` are the shares of each edge's second end
-// in its point.
+// Finds the nearest points of the two edges. `s` is the position of the point along the first edge,
+// 0 to 1, and `t` that along the second edge.
 static void nearest_on_edges(const cau_vec3 *corner, double *s, double *t)
 {
 	cau_vec3 d1 = cau_sub(corner[1], corner[0]), d2 = cau_sub(corner[3], corner[2]);

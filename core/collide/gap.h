@@ -15,7 +15,7 @@ typedef enum cau_gap_kind {
 // convex.
 typedef struct cau_gap {
 	double distance;  // m
-	double weight[4]; // by corner
+	double weight[4]; // weight of each corner
 	cau_vec3 normal;  // unit vector towards the part of corner 0; 0 if the parts meet
 } cau_gap;
 

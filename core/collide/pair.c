@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a pair is, and whether its parts may come near each other. This is asked of all parts whose
-// boxes meet (find.c). So cheap tests that exclude most pairs come first.
+// Decides which parts form a pair, and whether they may come near each other. All parts whose boxes
+// meet are tested (find.c). So cheap tests that exclude most pairs come first.
 #include <math.h>
 
 #include "cautery/assert.h"
@@ -9,9 +9,9 @@
 // A pair's thickness is at most this share of its distance at rest. Neighbours, between which the
 // surface itself may contract, have the smaller share.
 static const double near_share = 0.1, far_share = 0.5;
-// Share of the surface's thickness; a pair of less thickness is left out
+// Share of the surface's thickness; a pair of less thickness is left out.
 static const double least_thickness = 0.002;
-// More than any rounding of a distance.
+// A factor that exceeds any rounding of a distance.
 static const double surely = 1 + 1e-6;
 
 // Each kind of pair is compiled by itself, with the kind as a constant.

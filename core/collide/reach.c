@@ -8,11 +8,13 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double least_room = 0.4;   // share of the thickness, if no step is wanted
-static const double room_of_step = 1.5; // share of the step: a pushed vertex may move farther
-static const double room_of_tick = 0.1; // share of the thickness: for the steps of an iteration
-static const double ahead = 0.3;        // share of the thickness, in addition: for later ticks
-static const double used_up = 0.6; // share of the reach: beyond it, the next search anchors again
+// Share of the thickness: a pushed vertex may always move this far.
+static const double least_room = 0.4;
+static const double room_of_step = 1.5; // share of its step: a pushed vertex may move this far
+// Share of the thickness: extra reach for the steps of an iteration.
+static const double room_of_tick = 0.1;
+static const double ahead = 0.3;   // share of the thickness: extra reach for later ticks
+static const double used_up = 0.6; // share of the reach: vertices beyond it get new anchors
 enum { TRIES = 12 };
 
 double cau_collide_most_room(const cau_collide *collide, double step_m)
@@ -133,7 +135,7 @@ void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau
 	for (int tries = 0; tries < TRIES && need != CAU_COLLIDE_PLACE; tries++)
 		if (search_least(collide, pool, x, need, share /= 2))
 			return;
-	// Else even the touching pairs exceed the capacity
+	// if false, even the touching pairs exceed the capacity
 	collide->found = search_least(collide, pool, x, need, 0);
 }
 

@@ -18,9 +18,9 @@ double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, co
 // parts.
 int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
-// Returns cau_exposure_parts, or more if the grid needs it. Up to four parts, no point of the hot
-// part moves by more than half a cell of the tool's grid in one part. The field is then that of a
-// tool that moves, not of one that jumps.
+// Returns at least cau_exposure_parts, and as many as the grid needs, up to four. With as many
+// parts as needed, no point of the hot part moves by more than half a cell of the tool's grid in
+// one part. The field is then that of a tool that moves, not of one that jumps.
 int cau_heating_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
 // Returns the ignition temperature of edge `edge` in layer `layer`: mean + spread * g. g is

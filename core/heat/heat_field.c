@@ -22,7 +22,7 @@ void cau_heat_field_swap(cau_heat_field *field)
 
 // ---- between two nested fields
 
-// In cells of the finer field, twice the middle of a field is 2 origin + N - 1.
+// In cells of the finer field, twice its middle is 2 finer + N - 1.
 void cau_heat_field_origin_around(const int64_t finer[3], int32_t nodes, int64_t origin[3])
 {
 	for (int axis = 0; axis < 3; axis++) {

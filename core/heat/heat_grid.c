@@ -9,8 +9,8 @@
 static const double REST_C = 0.01; // a field is at rest if no node is farther from ambient
 
 // Within this difference from ambient, heat parts no tissue (tissue lives at 41 degC). If no
-// surface is held, the field only falls, so it will part none later. The outer fields would take
-// minutes to reach ambient. The innermost field alone takes seconds.
+// surface is held, the field only falls, so this heat parts no tissue later either. The outer
+// fields would take minutes to reach ambient. The innermost field alone takes seconds.
 static const double FAINT_C = 4;
 
 static int64_t node_count(const cau_heat_grid *grid)
@@ -42,7 +42,7 @@ int64_t cau_heat_grid_substeps(double step_m, double diffusivity_m2_s, double du
 	CAU_ASSERT(step_m > 0 && diffusivity_m2_s >= 0, "a grid of %g m with %g m^2/s", step_m,
 	           diffusivity_m2_s);
 	double parts = 6 * diffusivity_m2_s * duration_s / (step_m * step_m);
-	// The tolerance keeps a value at the limit within it despite rounding.
+	// a value exactly at the limit is within the limit, despite rounding
 	parts = ceil(parts * (1 - 1e-12));
 	return (int64_t)fmin(fmax(parts, 1), 1e9);
 }

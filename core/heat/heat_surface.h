@@ -13,8 +13,8 @@ typedef struct cau_heat_surface {
 	// Cells, (N x N x N): signed distance of each node, negative inside, while held; exact within a
 	// cell of the surface, elsewhere only the sign is valid.
 	float *distance;
-	float *rate; // scratch, (N x N x N): for cau_diffuse_around
-	float *pull; // scratch, (N x N x N): for cau_diffuse_around
+	float *rate; // scratch, (N x N x N): rate of each node for cau_diffuse_around
+	float *pull; // scratch, (N x N x N): pull of each node for cau_diffuse_around
 } cau_heat_surface;
 
 // Finds the hot part's surface at `pose`, and marks it as held.

@@ -11,7 +11,7 @@
 
 // Limits below which an element counts as flat, relative to its longest edge L. They apply to the
 // height of a triangle, 2 A / L^2, and to 6 V / L^3 of a tetrahedron. If coordinates have six
-// digits, a flat element has about 1e-7.
+// digits, a flat element has a value of about 1e-7.
 static const double flat_triangle = 1e-6;
 static const double flat_tetrahedron = 1e-8;
 static const double diagonal_min_m = 1e-9;
@@ -118,8 +118,7 @@ static int32_t drop_unused(cau_mesh *mesh, int32_t *map)
 	return dropped;
 }
 
-// Checks that the bounding diagonal and the coordinates are within the limits of doubles'
-// precision.
+// Checks the bounding diagonal against both limits, and the coordinates against the upper limit.
 static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 {
 	double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -145,7 +144,7 @@ static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 	return CAU_OK;
 }
 
-// Merges each vertex with a near vertex of lower index, whose position remains.
+// Merges each vertex into a near vertex of lower index. The position of the lower vertex remains.
 static cau_status merge_vertices(cau_mesh *mesh, int32_t *map, int32_t *merged, cau_error *error)
 {
 	cau_status status = check_bounds(mesh, error);
@@ -248,7 +247,8 @@ static cau_status drop_degenerate(cau_mesh *mesh, cau_mesh_report *done, cau_err
 	return CAU_OK;
 }
 
-// Sets flat texture triangles to zero, because they give no material direction. Returns how many.
+// Sets flat texture triangles to zero, because they give no material direction. Returns their
+// number.
 static int32_t drop_flat_textures(cau_mesh *mesh)
 {
 	int32_t count = 0;

@@ -23,7 +23,7 @@ static cau_status check_turn(const cau_mesh_def *def, cau_error *error)
 	return cau_fail(error, CAU_BAD_VALUE, "texture_turn_rad", "must be a finite angle");
 }
 
-// Fails also if the cells make more elements than one mesh may have.
+// Checks the numbers of cells. Fails also if the cells make more elements than one mesh may have.
 static cau_status check_product(const int32_t cells[3], int axes, int elements_per_cell,
                                 cau_error *error)
 {

@@ -127,7 +127,8 @@ static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t 
 
 // ---- version 1: text only; $NOD has the format of $Nodes of version 2.2
 
-// number-of-elements, then: elm-number elm-type reg-phys reg-elem number-of-nodes node-numbers
+// Reads number-of-elements, then: elm-number elm-type reg-phys reg-elem number-of-nodes
+// node-numbers
 static void read_elements_1(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -148,7 +149,7 @@ static void read_elements_1(gmsh_file *gmsh)
 
 // ---- version 2.2: text or binary
 
-// number-of-nodes (text), then: node-number x y z
+// Reads number-of-nodes (text), then: node-number x y z
 static void read_nodes_2(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -178,7 +179,7 @@ static void read_tagged_element(gmsh_file *gmsh, int64_t number, int64_t type, i
 	read_element(gmsh, number, type, (int32_t)region, 4);
 }
 
-// number-of-elements; text: elm-number elm-type number-of-tags tags node-numbers
+// Reads elm-number elm-type number-of-tags tags node-numbers for each element.
 static void read_text_elements(gmsh_file *gmsh, int64_t count)
 {
 	cau_scan *scan = gmsh->scan;
@@ -190,7 +191,8 @@ static void read_text_elements(gmsh_file *gmsh, int64_t count)
 	}
 }
 
-// Binary: blocks of elm-type num-elm-follow num-tags, then elm-number tags node-numbers of each
+// Reads binary blocks of elm-type num-elm-follow num-tags, then elm-number tags node-numbers of
+// each element.
 static void read_binary_elements(gmsh_file *gmsh, int64_t count)
 {
 	cau_scan *scan = gmsh->scan;
@@ -389,7 +391,8 @@ static void read_node_block(gmsh_file *gmsh)
 	}
 }
 
-// number of blocks, number of nodes, least and greatest node number (size each), then the blocks.
+// Reads number of blocks, number of nodes, least and greatest node number (size each), then the
+// blocks.
 static void read_nodes_4(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -410,7 +413,8 @@ static void read_nodes_4(gmsh_file *gmsh)
 	cau_node_map_seal(&gmsh->nodes, scan);
 }
 
-// dimension(int) tag(int) type(int) number of elements(size), then element and node numbers(size).
+// Reads dimension(int) tag(int) type(int) number of elements(size), then element and node
+// numbers(size).
 static void read_element_block(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -426,7 +430,8 @@ static void read_element_block(gmsh_file *gmsh)
 	}
 }
 
-// number of blocks, number of elements, least and greatest number (size each), then the blocks.
+// Reads number of blocks, number of elements, least and greatest number (size each), then the
+// blocks.
 static void read_elements_4(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -442,8 +447,8 @@ static void read_elements_4(gmsh_file *gmsh)
 
 // ---- the sections of each version
 
-// The names are text in binary files too: number of names, then dimension, number and "name" of
-// each.
+// Reads the names, which are text in binary files too: number of names, then dimension, number and
+// "name" of each.
 static void read_names(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;

@@ -16,10 +16,11 @@ typedef struct cau_mesh {
 	double *position; // m, (vertex_count x 3)
 	// Vertices, (triangle_count x 3), counter-clockwise seen from outside.
 	int32_t *triangle;
-	int32_t *triangle_region;    // (triangle_count): physical group or material of the file, else 0
-	double *texture;             // UV of each corner, (triangle_count x 3 x 2), or NULL
-	int32_t *tetrahedron;        // vertices, (tetrahedron_count x 4), positive volume
-	int32_t *tetrahedron_region; // (tetrahedron_count)
+	int32_t *triangle_region; // (triangle_count): physical group or material of the file, else 0
+	double *texture;          // UV of each corner, (triangle_count x 3 x 2), or NULL
+	int32_t *tetrahedron;     // vertices, (tetrahedron_count x 4), positive volume
+	// (tetrahedron_count): physical group or material of the file, else 0.
+	int32_t *tetrahedron_region;
 } cau_mesh;
 
 // Makes the mesh of `def`: generates the mesh or reads its file or bytes, scales to metres, cleans.
@@ -49,7 +50,7 @@ bool cau_is_tissue_size(double longest_m);
 double cau_guess_unit(double longest);
 const char *cau_unit_name(double unit_m); // as "millimetres"
 
-// Generators (deploy/scenes). See cau_mesh_def for sizes.
+// Generators of meshes (used by deploy/scenes). cau_mesh_def describes the sizes.
 cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error);
 cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error);
 cau_status cau_mesh_make_pattern(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error);

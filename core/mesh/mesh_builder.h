@@ -27,7 +27,7 @@ typedef struct cau_cell {
 
 // The name of a region in the file.
 typedef struct cau_region_name {
-	int32_t dimension; // 2 or 3; 0: both
+	int32_t dimension; // dimension of its elements: 2 or 3; 0: both
 	int32_t region;
 	cau_word name;
 } cau_region_name;

@@ -74,7 +74,7 @@ static bool is_binary_stl(const unsigned char *bytes, size_t byte_count, bool mo
 // Returns the format that the first bytes identify, or NULL.
 static const cau_mesh_format *format_of_start(const unsigned char *bytes, size_t byte_count)
 {
-	size_t blank = 0; // before the first word of a text
+	size_t blank = 0; // white space before the first word of a text
 	while (blank < byte_count && (bytes[blank] == ' ' || (bytes[blank] >= 9 && bytes[blank] <= 13)))
 		blank++;
 	for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {

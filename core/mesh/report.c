@@ -236,7 +236,7 @@ static void measure_quality(const cau_mesh *mesh, cau_mesh_report *report)
 {
 	const double *x = mesh->position;
 	bool solid = mesh->tetrahedron_count > 0;
-	double squares = 0; // of all edges, m^2
+	double squares = 0; // sum of the squares of all edges, m^2
 	report->least_quality = 1;
 	for (size_t i = 0; i < (size_t)mesh->tetrahedron_count; i++) {
 		const int32_t *t = mesh->tetrahedron + 4 * i;

@@ -12,7 +12,8 @@ static const double cells_most = 16e6;
 // Cells of a block along an axis. Measured for 2, 3, 4 and 8: blocks of 2 query most boxes, blocks
 // of 8 most points. Blocks of 3 and 4 take the same time for balls, shells and slivers.
 enum { BLOCK = 4 };
-enum { STACK = 64 }; // spans; 16 million cells are halved 24 times, and once more along each axis
+// Most boxes on the stack; 16 million cells are halved 24 times, and once more along each axis.
+enum { STACK = 64 };
 
 typedef struct grid {
 	const cau_domain *domain;

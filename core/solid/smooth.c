@@ -17,7 +17,7 @@ static const double better = 1e-3; // least gain in quality of a move
 // Share of the lattice's spacing within which the interface is searched.
 static const double reach_share = 0.25;
 static const double steps[] = {1, 0.5, 0.25, 0.1};
-static const double nudges[] = {0.2, 0.08, 0.03, -0.05}; // share of the spacing
+static const double nudges[] = {0.2, 0.08, 0.03, -0.05}; // trial moves, as shares of the spacing
 
 // A face between two labels, seen from the tetrahedron of `label`. `other` may be 0, the outside.
 typedef struct wall {
@@ -27,7 +27,7 @@ typedef struct wall {
 typedef struct smoother {
 	const cau_domain *domain;
 	cau_tets *tets;
-	cau_around around; // tetrahedra
+	cau_around around; // tetrahedra around each vertex
 	int32_t *face;     // (wall_count x 3), facing out of `label`
 	wall *wall;
 	int32_t wall_count;

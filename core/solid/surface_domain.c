@@ -13,7 +13,7 @@
 enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // UNEVEN = 8 keeps the depth of the tree below 125
 // A node that is this many radii away counts as one dipole.
 static const double far_radii = 2.5;
-// Of lengths and winding numbers; sums have errors of about 1e-10.
+// Margin for rounding of lengths and winding numbers; sums have errors of about 1e-10.
 static const double rounding = 1e-6;
 
 typedef struct node {
@@ -25,8 +25,8 @@ typedef struct node {
 
 typedef struct tree {
 	const cau_mesh *surface;
-	int32_t *order; // triangles
-	double *middle; // (triangle_count x 3)
+	int32_t *order; // triangles, in the order of the nodes
+	double *middle; // (triangle_count x 3): centre of each triangle
 	node *node;
 	int32_t node_count;
 } tree;

@@ -12,7 +12,7 @@ enum { REACH = 4 }; // voxels along each axis that vote
 // centres. label_at() reads eight or all 64 voxels for each. So 512 is half of the least number of
 // reads for a block.
 enum { READ_MOST = 512 };
-// Of an index, in voxels, and of votes; both have errors of about 1e-10.
+// Margin for rounding of an index, in voxels, and of votes; both have errors of about 1e-10.
 static const double rounding = 1e-6;
 
 static int32_t voxel_at(const cau_volume *volume, const int64_t index[3])

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 static const double STEP_M = 1e-9; // difference of positions, m
-// Relative; the gradient has a kink where two nearest points are equally near
+// Relative error. The gradient has a kink where two nearest points are equally near.
 static const double DIFFERENCE = 1e-4;
 static const double ROUNDING = 1e-12;
 

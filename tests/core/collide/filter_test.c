@@ -136,7 +136,7 @@ static void scant_room_changes_nothing(void **state)
 	double *wanted = malloc(3 * (size_t)n * sizeof *wanted), *held = malloc(3 * (size_t)n * 8);
 	for (int32_t i = 0; i < 3 * n; i++)
 		wanted[i] =
-			// Some vertices push others to their limit
+			// some vertices push others to their limit
 			3e-5 * sheets_draw(&s) - (i % 15 == 2) * 9e-4;
 	memcpy(s.collide.step, wanted, 3 * (size_t)n * sizeof *wanted);
 	cau_collide_begin(&s.collide, s.pool, s.x);

@@ -17,7 +17,8 @@
 #include "mesh/mesh.h"
 
 enum { SIDE = 40, LABELS = 3 };
-static const double radius = 16; // of the ball, in voxels of one millimetre, around the middle
+// Radius of the ball, in voxels of one millimetre; its centre is the middle.
+static const double radius = 16;
 
 // ---- a ball of voxels in sectors, one label each
 static int label_of(const double x[3], int labels)
@@ -80,7 +81,7 @@ static void put_box(FILE *out, double size, int turned)
 typedef struct measured {
 	// Volume of each region; area of the faces that have one tetrahedron.
 	double volume[LABELS + 1], border;
-	// Odd_edges: edges of the border that an odd number of its faces share.
+	// `odd_edges`: edges of the border that an odd number of its faces share.
 	int32_t tetrahedra, odd_edges;
 } measured;
 
