@@ -18,7 +18,7 @@ typedef struct cau_bioheat_material {
 	double conductivity_w_mk; // thermal conductivity
 	double density_kg_m3;
 	double specific_heat_j_kgk;
-	double water;               // mass fraction
+	double water;               // mass fraction of water
 	double electric_s_m;        // electric conductivity at 37 degC, at the generator's frequency
 	double perfusion_w_m3k;     // blood flow times its heat capacity
 	double damage_log_rate;     // ln(A), A in 1/s: rate of damage (Arrhenius)

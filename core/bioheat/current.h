@@ -18,7 +18,8 @@ typedef struct cau_current {
 	// (capacity): V at 1 V; the next solve starts from it, so it is part of the state.
 	double *potential;
 	// Results of the last solve.
-	double conductance_s; // between the electrodes, or to the return electrode: heat at 1 V
+	double conductance_s; // conductance between the electrodes, or to the return electrode: heat at
+	                      // 1 V
 	// Current that arrives at 0 V, per volt; equals conductance_s within the residual.
 	double returned_s;
 	double far_w;    // heat beyond the region, at 1 V

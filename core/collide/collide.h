@@ -27,7 +27,7 @@
 #include "collide/lanes.h"
 #include "collide/surface.h"
 
-enum { CAU_COLLIDE_SLICE = 2048 }; // pairs of a kind that a block may have
+enum { CAU_COLLIDE_SLICE = 2048 }; // most pairs of each kind in one block
 // The longest filtered step, m, unless the thickness is longer. It limits how far pairs are
 // searched.
 static const double cau_collide_most_step_m = 1e-3;

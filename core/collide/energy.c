@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy of touching pairs, a part of eq. 4, and its gradient. Pairs are measured in parallel
-// shares. Energies and forces are added in the order of the pairs.
+// Energy of touching pairs, a part of eq. 4, and its gradient. Pairs are measured in parallel, in
+// shares of SHARE pairs. Energies and forces are added in the order of the pairs.
 #include <math.h>
 #include <string.h>
 
@@ -268,7 +268,7 @@ bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
 		cau_collide_see(collide, pool, x);
 		cau_collide_evaluate(collide, pool, x); // cau_collide_apply needs values of the new pairs
 		all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
-		collide->cut_short_count = cut_short; // no step is shortened for this
+		collide->cut_short_count = cut_short; // this search shortened no step
 	}
 	for (int32_t i = 0; i < count; i++)
 		collide->pushed[vertex[i]] = 0;

@@ -10,7 +10,7 @@
 #include "base/vector.h"
 
 typedef struct cau_heat_field {
-	double step_m; // between nodes
+	double step_m; // distance between nodes
 	// Node (0,0,0) in whole cells of the world: its position is origin * step_m.
 	int64_t origin[3];
 	float *temperature; // degC, (N x N x N)

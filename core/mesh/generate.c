@@ -110,7 +110,7 @@ cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_erro
 	int32_t *triangle = mesh->triangle;
 	for (int32_t i = 0; i < cells[0]; i++)
 		for (int32_t j = 0; j < cells[1]; j++, triangle += 6) {
-			int32_t a = i * (cells[1] + 1) + j, b = a + cells[1] + 1; // b: next along x
+			int32_t a = i * (cells[1] + 1) + j, b = a + cells[1] + 1; // b: the next vertex along x
 			memcpy(triangle, (int32_t[]){a, b, b + 1, a, b + 1, a + 1}, 6 * sizeof *triangle);
 		}
 	CAU_ASSERT(triangle == mesh->triangle + 3 * (size_t)mesh->triangle_count,

@@ -20,7 +20,7 @@ enum { CAU_CORNERS_MAX = 8, CAU_REGION_NAMES_MAX = 4096 };
 
 // A cell that is split after all vertices are known.
 typedef struct cau_cell {
-	int32_t shape; // cau_shape
+	int32_t shape; // a cau_shape
 	int32_t region;
 	int32_t vertex[CAU_CORNERS_MAX];
 } cau_cell;

@@ -158,7 +158,7 @@ static bytes take_bytes(const cau_vtu_coding *coding, const cau_vtu_array *array
 	if (base64)
 		coded = decode_base64(coding, from, left);
 	else
-		coded = (bytes){(unsigned char *)from, left}; // only read
+		coded = (bytes){(unsigned char *)from, left}; // the bytes are only read
 	if (!coding->scan->status)
 		out = coding->zlib ? inflate_blocks(coding, &coded) : copy_plain(coding, &coded);
 	if (base64)

@@ -17,8 +17,8 @@ typedef struct cau_vtu_coding {
 } cau_vtu_coding;
 
 typedef struct cau_vtu_array {
-	cau_word type;   // "Float32"
-	cau_word format; // "ascii", "binary", "appended"
+	cau_word type;   // such as "Float32"
+	cau_word format; // "ascii", "binary" or "appended"
 	int64_t offset;  // position in the appended data
 	const unsigned char *text;
 	size_t text_bytes; // bytes between the tags

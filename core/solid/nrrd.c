@@ -139,7 +139,7 @@ static cau_status read_space(header *of, const char *text)
 	char words[64], *rest = words;
 	double turn[3];
 	snprintf(words, sizeof words, "%.60s", text);
-	if (strlen(words) == 3) // RAS, LPS
+	if (strlen(words) == 3) // such as RAS or LPS
 		snprintf(words, sizeof words, "%s-%s-%s", strpbrk(text, "Ll") ? "left" : "right",
 		         strpbrk(text, "Pp") ? "posterior" : "anterior",
 		         strpbrk(text, "Ii") ? "inferior" : "superior");
@@ -221,7 +221,7 @@ static void read_segment(header *of, const char *key, const char *text)
 	if (!of->volume->segment)
 		of->volume->segment = calloc(CAU_SEGMENT_MAX, sizeof *of->volume->segment);
 	if (!of->volume->segment)
-		return; // segments without names are allowed
+		return; // memory ran out: segments have no names
 	cau_segment *segment = &of->volume->segment[number];
 	long value = strtol(text, NULL, 10);
 	if (strcmp(end, "_LabelValue") == 0 && value > 0 && value <= CAU_LABEL_VALUE_MAX)

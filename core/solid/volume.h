@@ -29,7 +29,7 @@ typedef struct cau_segment {
 } cau_segment;
 
 typedef struct cau_volume {
-	const char *format; // "NRRD"
+	const char *format; // such as "NRRD"
 	int32_t size[3];
 	uint8_t *voxel; // index in `label`, 0: outside; the first axis is the fastest
 	int32_t label_count;

@@ -42,7 +42,7 @@ static void gradient_is_the_energys(void **state)
 		off += fabs((up - down) / (2 * STEP_M) - gradient[i]) > DIFFERENCE * most;
 	}
 	assert_int_equal(off, 0);
-	for (int c = 0; c < 3; c++) // action and reaction
+	for (int c = 0; c < 3; c++) // action equals reaction
 		assert_true(fabs(total[c]) < 1e-9 * most);
 	free(x);
 	free(gradient);

@@ -49,7 +49,7 @@ static void expect_least(cau_gap_kind kind, const cau_vec3 corner[4])
 		way = cau_add_scaled(way, gap.weight[i], corner[i]);
 	}
 	assert_true(fabs(sum) < ROUNDING);
-	assert_true(cau_gap_distance(kind, corner) == gap.distance); // to the bit
+	assert_true(cau_gap_distance(kind, corner) == gap.distance); // equal to the bit
 	assert_true(gap.distance <= grid + ROUNDING && gap.distance >= grid - GRID_STEP);
 	assert_true(cau_length(cau_add_scaled(way, -gap.distance, gap.normal)) < ROUNDING);
 	assert_true(cau_gap_along(kind, corner, gap.normal) >= gap.distance - ROUNDING);
@@ -63,7 +63,7 @@ static void random_parts(void **state)
 		cau_vec3 corner[4];
 		for (int i = 0; i < 4; i++)
 			corner[i] = (cau_vec3){draw(&random), draw(&random), draw(&random)};
-		if (k % 3 == 0) // parallel edges, and a vertex whose nearest point may be outside the face
+		if (k % 3 == 0) // parallel edges, and a vertex in the plane of the face, outside it
 			corner[3] = cau_add(corner[2], cau_sub(corner[1], corner[0]));
 		expect_least(CAU_GAP_VERTEX_FACE, corner);
 		expect_least(CAU_GAP_EDGE_EDGE, corner);

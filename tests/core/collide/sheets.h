@@ -20,7 +20,7 @@ static inline double sheets_draw(sheets *s) // returns a random number from -1 t
 	return (double)(s->random >> 11) / 4503599627370496.0 - 1;
 }
 
-// Makes the sheets. Their contact has `thickness_m`. The upper sheet lies `apart_m` above the lower
+// Makes the sheets. Their contact has `thickness_m`. The upper sheet is `apart_m` above the lower
 // one.
 static inline void sheets_begin(sheets *s, double thickness_m, double friction, double apart_m)
 {

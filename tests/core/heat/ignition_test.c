@@ -12,7 +12,7 @@
 #include "heat/exposure.h"
 
 enum { DRAWS = 100000 };
-static const double MEAN_C = 172, SPREAD_C = 17; // fascia
+static const double MEAN_C = 172, SPREAD_C = 17; // of fascia
 
 static void test_statistics(void **state)
 {
