@@ -38,8 +38,8 @@ static void tell_core(cau_hosted *h, int kind, const char *tool)
 	snprintf(command.tool, sizeof command.tool, "%s", tool);
 	command.tick = h->core.tick;
 	cau_energy_off_or_hold(&h->identity, &h->core, &command);
-	if (cau_decisions_state(&h->decisions) !=
-	    CAU_SESSION_FAULTED) // the log of a faulted session has ended
+	// the log of a faulted session has ended
+	if (cau_decisions_state(&h->decisions) != CAU_SESSION_FAULTED)
 		cau_record_command(&h->record, &command, NULL, NULL, 0);
 }
 

@@ -11,9 +11,8 @@
 
 // Estimates of a job's time; they order the builder's jobs.
 #define READ_BYTES_PER_S 20e6 // reading speed for text
-#define FILL_S                                                                                     \
-	1.0 // Added if the surface may be filled. The thread for short jobs then leaves the job to
-	    // others.
+// Added if the surface may be filled. The thread for short jobs then leaves the job to others.
+#define FILL_S 1.0
 
 enum { MENDS_MAX = 16 };
 

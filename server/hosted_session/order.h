@@ -10,6 +10,7 @@
 #include "session/asker.h"
 
 // The kinds of orders, and the functions that serve them at a tick border (slice.h).
+//
 //    CHANGE(KIND, ask, apply)  waits in the session's queue. ask: CAU_ASK_<ask> of session/logic.h,
 //                              as which it is decided; for a COMMAND it depends on the command
 //    READ(KIND, apply)         changes nothing, and waits in a queue of its own (read_requests.c)

@@ -20,9 +20,8 @@
 #define RESTORED_VERTEX_S 6e-6
 #define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
 
-#define KEPT_S                                                                                     \
-	60.0 // An unused core is freed after this time, because it takes as much memory as the
-	     // session's own.
+// An unused core is freed after this time, because it takes as much memory as the session's own.
+#define KEPT_S 60.0
 
 // ---- answers ------------------------------------------------------------------------------------
 static cau_stream_def define(const cau_hosted_identity *identity, const cau_session_info *info,

@@ -6,8 +6,8 @@
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
-#define BORDER_SOON_S                                                                              \
-	0.0334 // If the next tick border of a running session is at most this far, reads wait for it.
+// If the next tick border of a running session is at most this far, reads wait for it.
+#define BORDER_SOON_S 0.0334
 
 enum {
 	FILES_AT_ONCE = 2, // most files of one session with the builder: each has a copy of its state
