@@ -11,8 +11,8 @@
 //         then serves no more; the target serves only after it has seen the proof;
 //     one daemon serves in the end: once the row exists, any courier can take the proof to the
 //         target; without the row the source continues and states that this move will never happen,
-//         so that the target may forget the session. A proof that was not written exists only in the
-//         source's memory, and is lost with that memory.
+//         so that the target may forget the session. A proof that was not written exists only in
+//         the source's memory, and is lost with that memory.
 #pragma once
 
 #include <stdbool.h>
