@@ -13,7 +13,7 @@
 
 // ---- time ---------------------------------------------------------------------------------------
 
-enum { BYTES_OF_VERTEX = 100 }; // of a mesh file, estimated
+enum { BYTES_OF_VERTEX = 100 }; // estimated bytes of a mesh file for each vertex
 
 // Size of a mesh file, looked up where the core will read it (core/mesh/mesh_make.c). Returns 0 if
 // there is no such file, because the building then ends soon.

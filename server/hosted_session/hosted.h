@@ -192,7 +192,7 @@ typedef struct cau_hosted_counts {
 	double energy_gain_j;
 	double realtime_factor;
 	int32_t half_rate; // subscribers that receive frames at half the rate
-	int32_t contacts_left_out, touching_cut_short; // of the last step
+	int32_t contacts_left_out, touching_cut_short; // counts of the last step
 	bool resting; // the tissue is resting: steps change nothing until something wakes it
 } cau_hosted_counts;
 void cau_hosted_count(cau_hosted *hosted, cau_hosted_counts *counts);

@@ -45,8 +45,7 @@
 typedef enum cau_order_kind { CAU_ORDER_TABLE(KIND, KIND) CAU_ORDER_COUNT } cau_order_kind;
 #undef KIND
 
-// ---- arguments of some orders
-// ---------------------------------------------------------------------
+// ---- arguments of some orders -------------------------------------------------------------------
 
 typedef struct cau_tool_order {
 	char tool[CAU_NAME_BYTES];

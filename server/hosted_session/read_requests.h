@@ -12,7 +12,7 @@
 typedef struct cau_hosted_reads {
 	pthread_mutex_t lock;
 	cau_order *first;  // under the lock: the waiting requests
-	int32_t count;     // under the lock
+	int32_t count;     // under the lock: number of waiting requests
 	atomic_int files;  // files of this session that the builder makes now
 	cau_shelf *copies; // memory for the copies from which files are made
 } cau_hosted_reads;

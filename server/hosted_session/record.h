@@ -41,7 +41,7 @@ typedef struct cau_hosted_record {
 	bool batch_acts;        // `batch` has log entries since its last checkpoint
 	cau_pending *pending;   // answers that wait for the commit of `batch`
 	uint64_t logged_tick;   // tick of the last log entry
-	uint32_t logged_order;  // number of log entries of that tick
+	uint32_t logged_order;  // number of that tick's next log entry
 	bool logged_acts;       // some of these entries are commands
 	bool touched;           // commands or cuts came since the last checkpoint
 	double checkpoint_s;    // time of the last checkpoint

@@ -179,7 +179,7 @@ static bool is_repeated(const arrival *a, const cau_move_asked *asked, const con
 	       a->pieces == (int64_t)found->index + 1 && strcmp(a->seal, found->seal) == 0;
 }
 
-// Called with the lock.
+// Called with the lock of cau_moves.
 static void answer_received(const arrival *a, const cau_reply *reply)
 {
 	cau_wire_move_received result = {.pieces = a->pieces,

@@ -59,7 +59,7 @@ void cau_move_answer(const cau_reply *reply, const void *result)
 {
 	cau_error error = {0};
 	cau_outcome outcome = {0};
-	if (!reply->answer) // no receiver, and no method whose name the answer needs
+	if (!reply->answer) // without a receiver there is no method, whose name the answer needs
 		return;
 	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
 	outcome.text = text;

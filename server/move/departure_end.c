@@ -199,7 +199,7 @@ static bool is_own_fault(cau_status status)
 	       status == CAU_LIMIT;
 }
 
-// Called with the lock.
+// Called with the lock of cau_moves.
 static void go_away(cau_moves *moves, departure *d)
 {
 	cau_tombstone_put(moves, &d->becomes);
@@ -230,7 +230,7 @@ static void decided(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// Called with the lock.
+// Called with the lock of cau_moves.
 static void write_tombstone(cau_moves *moves, departure *d, const cau_reply *reply)
 {
 	cau_error error = {0};

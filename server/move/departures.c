@@ -9,7 +9,9 @@
 #include "move/internal.h"
 
 enum {
-	PIECE_BYTES = 4 << 20, // and at most one table row more; one commit of the target's store
+	// Size of a piece, which is exceeded by at most one table row. The target commits one piece at
+	// a time.
+	PIECE_BYTES = 4 << 20,
 	TOMBSTONES_MOST = 100000,
 };
 
@@ -26,7 +28,7 @@ static void destroy(departure *d)
 	free(d);
 }
 
-// Called with the lock.
+// Called with the lock of cau_moves.
 static departure *find(cau_moves *moves, const char *id)
 {
 	departure *d = moves->departures;

@@ -34,20 +34,21 @@
 // ---- orders -------------------------------------------------------------------------------------
 
 // What an order asks for, as far as decisions depend on it. All of these orders change something.
-// Requests that only read a session wait elsewhere (hosted_session/read_requests.c).
+// Requests that only read a session wait elsewhere (hosted_session/read_requests.c). The text
+// after a colon names the clients that may send the order.
 typedef enum cau_ask {
 	CAU_ASK_TISSUE,    // pins, forces, gravity, materials: no tool is concerned
-	CAU_ASK_TOOL_ADD,  // the client that adds a tool drives it
+	CAU_ASK_TOOL_ADD,  // add a tool, which the client then drives
 	CAU_ASK_TOOL_KEEP, // configure a tool: for its driver, or for any client if there is no driver
 	CAU_ASK_TOOL_REMOVE, // remove a tool: for its driver, or for any client if there is no driver
 	CAU_ASK_TOOL_USE,    // move, open or close a tool: for its driver
 	// move a tool without an answer: for its driver; only the newest motion of a tick counts
 	CAU_ASK_MOTION,
-	CAU_ASK_ENERGY_ON,  // for the tool's driver
-	CAU_ASK_ENERGY_OFF, // for any client with the role operate; accepted even if the queue is full
-	CAU_ASK_TAKE_OVER,  // of a tool without a driver: for any client; of any tool: for an admin
-	CAU_ASK_HAND_OVER,  // to another client or to none: for the tool's driver
-	CAU_ASK_REQUEST_TAKEOVER, // asks the tool's driver to hand it over
+	CAU_ASK_ENERGY_ON,  // turn energy on: for the tool's driver
+	CAU_ASK_ENERGY_OFF, // turn energy off: for the role operate; accepted even if the queue is full
+	CAU_ASK_TAKE_OVER, // become the driver: for any client if there is none, otherwise for an admin
+	CAU_ASK_HAND_OVER, // change the driver to another client or to none: for the tool's driver
+	CAU_ASK_REQUEST_TAKEOVER, // ask the tool's driver to hand it over
 	CAU_ASK_PAUSE,            // accepted even if the queue is full
 	CAU_ASK_RESUME,
 	CAU_ASK_STEP,
@@ -141,6 +142,7 @@ typedef struct cau_drive {
 
 // ---- events and effects -------------------------------------------------------------------------
 
+// The kinds of events, and the members of cau_logic_event that a kind uses.
 typedef enum cau_logic_event_kind {
 	CAU_LOGIC_ORDER, // uses `asked`
 	CAU_LOGIC_ALIVE, // uses client, alive_s, and tool ("": all tools that the client drives)
@@ -183,6 +185,7 @@ typedef struct cau_logic_event {
 	int32_t tool_count;
 } cau_logic_event;
 
+// The kinds of effects, and the members of cau_effect that a kind has.
 typedef enum cau_effect_kind {
 	CAU_EFFECT_REFUSE,   // with ticket, status, code, path, reason
 	CAU_EFFECT_REPLACED, // with ticket: a newer motion has replaced the order
@@ -212,6 +215,7 @@ typedef struct cau_effects {
 
 // ---- the worker's acts --------------------------------------------------------------------------
 
+// The acts of the worker, and the members of cau_action that an act has.
 typedef enum cau_act {
 	CAU_ACT_NOTHING, // wait until cau_logic_due_s
 	CAU_ACT_REFUSE,  // with ticket, motion, error, code: refuse the order

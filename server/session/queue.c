@@ -104,8 +104,7 @@ int32_t cau_logic_waiting(const cau_logic *logic)
 	return logic->count;
 }
 
-// True if an order waits for a border. Motion in a running session waits for the border that comes
-// anyway.
+// True if an order is due now. Motion in a running session waits for the border that comes anyway.
 bool cau_queue_is_due(const cau_logic *logic)
 {
 	bool running = logic->state == CAU_SESSION_RUNNING;
@@ -338,7 +337,7 @@ static cau_status no_room_for_later(const cau_logic *logic, uint32_t client, cau
 	return CAU_OK;
 }
 
-// Returns why the order finds no capacity; CAU_OK if it does.
+// Returns why there is no capacity for the order; CAU_OK if there is.
 static cau_status no_room(const cau_logic *logic, const cau_asked *asked, int32_t *code,
                           cau_error *error)
 {

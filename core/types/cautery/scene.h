@@ -330,6 +330,7 @@ typedef struct cau_tool_def {
 } cau_tool_def;
 
 // ---- blood vessels -----------------------------------------------------------------------------
+
 // A tube of blood within a layer of fat, with energy `tissue` (core/vessel/README.md).
 #define CAU_VESSEL_TABLE(X)                                                                        \
 	X(radius_m, 1.5e-3, 1e-4, 0.01, "m", "outer radius of the tube")                               \

@@ -52,7 +52,8 @@ static void destroyed_after_the_last_border_it_is_made_first(void **state)
 	assert_int_equal(hosted_stored_sessions(), 0);
 }
 
-// The order was sent twice because no answer came. Both get the answer, which is stored once.
+// The order was sent twice because no answer came. Both orders get the answer, which is stored
+// once.
 static void a_resend_of_its_destruction_gets_the_same_answer(void **state)
 {
 	(void)state;
@@ -111,8 +112,7 @@ static void a_resend_is_looked_for_once_its_first_is_on_the_disk(void **state)
 	assert_int_equal(hosted_await(4)->status, CAU_OK);
 }
 
-// ---- orders that wait for a session that ends: answered then, not when its last reference is
-// released
+// ---- waiting orders are answered when the session ends, not when its last reference is released
 static void assert_refused_as_gone(int asked)
 {
 	assert_int_equal(hosted_await(asked)->code, CAU_RPC_NOT_HERE);

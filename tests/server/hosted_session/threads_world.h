@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session among threads: clients that send requests, threads that cause losses, the worker that
-// steps, and the store that commits. The double checks the tools of each tick. Exactly the tools
-// are energized that were decided so when the tick began, and none by an enable from before a loss.
+// steps, and the store that commits. The double checks the tools of each tick. A tool must be
+// energized exactly if that was decided when the tick began, and never by an enable from before a
+// loss.
 #pragma once
 
 #include "hosted_session/internal.h"
@@ -19,11 +20,11 @@ enum {
 // A moment on the way of an enable through the session.
 typedef enum moment {
 	NOWHERE,
-	WAITING,    // between its arrival and its application
-	TAKEN,      // while the core takes the command
-	APPLIED,    // between its application and the tick
-	COMMITTING, // while its row is being written
-	STEPPING,   // within the tick that it heats
+	WAITING,    // between the enable's arrival and its application
+	TAKEN,      // while the core takes the enable
+	APPLIED,    // between the enable's application and the tick
+	COMMITTING, // while the enable's row is being written
+	STEPPING,   // within the tick that the enable heats
 	MOMENT_COUNT
 } moment;
 

@@ -291,7 +291,7 @@ static bool may_advance(const world *w, const ticket_book *ticket)
 	return true;
 }
 
-// True if the wire page allows the order.
+// True if protocol/README.md allows the order.
 static bool may(const world *w, const ticket_book *ticket)
 {
 	const cau_asked *asked = &ticket->asked;
@@ -517,7 +517,7 @@ static void note_advance(world *w, ticket_book *ticket)
 	w->advance_left = ticket->asked.ticks;
 }
 
-// Notes the results of an order that was done, as the wire page states them.
+// Notes the results of an order that was done, as protocol/README.md states them.
 void oracle_note_done(world *w, ticket_book *ticket)
 {
 	const cau_asked *asked = &ticket->asked;

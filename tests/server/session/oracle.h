@@ -22,9 +22,9 @@ void oracle_check_room(world *w, const ticket_book *ticket);
 // Notes that a client is lost.
 void oracle_note_loss(world *w, int client, bool for_good);
 // Notes an energy-off for a tool that does not exist. Enables that came in before `before` have no
-// effect when the tool is added. oracle_note_cancel: the client cancels one order for a later tick,
-// or (0) all.
+// effect when the tool is added.
 void oracle_note_off_of_none(world *w, const char *tool, uint64_t before);
+// Notes that the client cancels one order for a later tick, or (0) all.
 void oracle_note_cancel(world *w, int client, uint64_t ticket);
 // Notes a check for silent drivers. A later sign of life does not undo a silence that it found.
 void oracle_note_silence(world *w);
@@ -33,7 +33,7 @@ void oracle_note_life(world *w, int client, const char *name, double alive_s);
 // Notes that the worker cuts off a tool's energy. An event that came in must be the reason.
 void oracle_note_cut(world *w);
 
-// Check the worker's act: to do or refuse an order; to begin a tick.
+// The next two functions check the worker's act: to do or refuse an order; to begin a tick.
 void oracle_check_decision(world *w);
 void oracle_check_tick(world *w);
 // Ends lock-step and drops the remaining ticks.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Books that the rules keep beside the machine: which enables still count, which tools should be
-// energized, and which order is next. They are written from the wire page and share no code with
-// the machine.
+// energized, and which order is next. They are written from protocol/README.md and share no code
+// with the machine.
 #pragma once
 
 #include "server/session/reach_state.h"
