@@ -39,7 +39,7 @@ typedef struct fake_state { // everything that a snapshot holds
 	int32_t tool_count;
 	cau_tool_state tools[CAU_MAX_TOOLS];
 	cau_pose target[CAU_MAX_TOOLS];
-	// a force of 1000 N on any vertex faults the session at this tick, the one after the force
+	// a force of 1000 N along x faults the session at this tick, the one after the force
 	uint64_t trouble_tick;
 	bool faulted;
 	int32_t queued;
