@@ -12,8 +12,9 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 	CAU_ASSERT(parts >= 1, "a way in %d parts", parts);
 	double duration = session->solver.step_s / parts;
 	for (int part = 1; part <= parts; part++) {
-		cau_pose pose = tool->state.pose; // the last part ends exactly at the tool's pose, where a
-		                                  // restore looks for the tool's surface
+		// the last part ends exactly at the tool's pose, where a restore looks for the tool's
+		// surface
+		cau_pose pose = tool->state.pose;
 		if (part < parts)
 			pose = cau_pose_between(&tool->pose_before, &pose, (double)part / parts);
 		cau_heat_grid_advance(&tool->grid, def, &pose, tool->state.jaw, tool->state.energized,

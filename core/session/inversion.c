@@ -28,8 +28,8 @@ bool cau_session_is_inverted(const double *position, const int32_t vertex[4])
 	cau_vec3 from = cau_vec3_of(position + 3 * (size_t)vertex[0]), side[3];
 	for (int k = 0; k < 3; k++)
 		side[k] = cau_sub(cau_vec3_of(position + 3 * (size_t)vertex[k + 1]), from);
-	return !(cau_dot(side[0], cau_cross(side[1], side[2])) >
-	         0); // at rest the volume is positive (mesh/mesh.h)
+	// at rest the volume is positive (mesh/mesh.h)
+	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0);
 }
 
 void cau_session_forget_inversion(cau_session *session)

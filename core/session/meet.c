@@ -97,6 +97,6 @@ void cau_session_begin_collide(cau_session *session)
 	cau_collide_begin(collide, session->pool, session->position_start);
 	if (cau_collide_filter(collide, session->pool, session->position_start, true))
 		stop_guess(session, guess);
-	cau_collide_see(collide, session->pool,
-	                guess); // from here on the filter allows short steps only
+	// from here on the filter allows short steps only
+	cau_collide_see(collide, session->pool, guess);
 }

@@ -87,9 +87,8 @@ void cau_session_begin_pinch(const cau_session *session, cau_tool *tool)
 	double thickest = 0;
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		const cau_grasp *grasp = &tool->grasp[k];
-		double arm = fmax(jaws.hinge_m - grasp->local[2],
-		                  jaws.hinge_m / 2); // at least half the jaw's length, so that a point at
-		                                     // the hinge does not divide by 0
+		// at least half the jaw's length, so that the angle stays finite at the hinge
+		double arm = fmax(jaws.hinge_m - grasp->local[2], jaws.hinge_m / 2);
 		thickest = fmax(thickest, thickness_m(session, grasp) / arm);
 	}
 	double least = least_share * (held.high - held.low + thickest);

@@ -88,7 +88,7 @@ typedef struct cau_mesh_report {
 	cau_mesh_region region[CAU_MESH_REGION_MAX]; // the first regions
 	double least_m[3], most_m[3];                // bounding box
 	double unit_m;                               // metres in one unit of the file, as used
-	// 1: neither the scene nor the file states the unit.
+	// 1: the unit was guessed, because neither the scene nor the file states it.
 	int32_t unit_guessed;
 	// A unit with which the mesh has the size of tissue; 0: no proposal is needed.
 	double proposed_unit_m;
