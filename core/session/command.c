@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands: checked when submitted, queued in order, applied at tick borders.
+// Commands are checked when submitted, queued in order, and applied at tick borders.
 #include <math.h>
 #include <string.h>
 

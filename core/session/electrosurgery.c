@@ -192,7 +192,8 @@ static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 		}
 }
 
-// The exposure that viewers see: 0.5 for coagulated tissue, rising to 1 for dry or removed tissue.
+// Shows the heat of an edge as an exposure: 0.5 for coagulated tissue, rising to 1 for dry or
+// removed tissue.
 static void show_heat(cau_session *session, int32_t edge)
 {
 	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
@@ -311,7 +312,7 @@ static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 	double right = cau_pose_to_local(&tool->state.pose, at).x;
 	current->electrode[current->electrode_count++] = (cau_electrode_cell){
 		.cell = cell, .over_length_m = over, .potential = is_bipolar(tool) && right < 0 ? 0 : 1};
-	// Sparks reach farther than heat goes from metal to tissue.
+	// Sparks reach farther than the distance over which heat flows from metal to tissue.
 	bool pressed = distance <= reach_of_metal_m(session);
 	if (bioheat->contact_count < bioheat->cells.capacity)
 		bioheat->contact[bioheat->contact_count++] =
@@ -378,7 +379,7 @@ static bool has_ended(const cau_tool *tool)
 	return tool->state.definition.load_rise_off > 0 && tool->least_ohm < 0;
 }
 
-// Whether the tool sparks.
+// Whether the tool's generator, mode and shape produce sparks now.
 static bool sparks(const cau_tool *tool)
 {
 	return tool->state.energized && !has_ended(tool) && tool->state.definition.peak_v >= spark_v &&

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How vertices move through a tick: predicted before the solve, their velocities after it.
+// Motion of the vertices in a tick: their prediction before the solve, and their velocities after
+// it.
 #include <math.h>
 
 #include "session/session_internal.h"

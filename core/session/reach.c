@@ -125,7 +125,7 @@ static double way_out(const reach *r, const passage *p, const double weight[3], 
 static int32_t find_touch(const reach *r, passage *p, double distance, cau_vec3 gradient)
 {
 	CAU_ASSERT(p->way >= 0, "a way of %g m", p->way);
-	const double least_share = 0.3; // of the gradient along the normal
+	const double least_share = 0.3; // least share of the gradient along the normal
 	double when = 0;
 	for (int step = 0; step < STEPS_ON_WAY && distance > touch_m && when < 1; step++) {
 		when = fmin(when + distance / p->way, 1);

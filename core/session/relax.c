@@ -67,7 +67,7 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 	double gravity[3], accuracy = session->solver.accuracy.wanted,
 					   enough = still * mean_edge_m(&session->tissue);
 	memcpy(gravity, session->scene->gravity_m_s2, sizeof gravity);
-	if (!is_pinned(session)) // a free body relaxes without falling
+	if (!is_pinned(session)) // without pins a body would fall
 		memset(session->scene->gravity_m_s2, 0, sizeof gravity);
 	// Exact steps need fewer steps in all than approximate ones.
 	session->solver.accuracy.wanted = 0;

@@ -31,18 +31,19 @@ typedef struct cau_tool {
 	cau_tool_state state;
 	cau_pose target; // commanded by the driver; state.asked_pose follows within the speed limits
 	double jaw_target;
-	double jaw_before;    // at the start of the tick
-	cau_pose pose_before; // at the start of the tick
+	double jaw_before;    // opening at the start of the tick
+	cau_pose pose_before; // actual pose at the start of the tick
 	// proxy.c: the other end of the virtual coupling, at the end and the start of the tick
 	cau_pose anchor, anchor_before;
 	cau_pose led;          // pose to which the anchor is led in the substep
 	cau_pose asked_before; // state.asked_pose at the start of the tick
-	cau_pose tick_pose;    // pose_before and jaw_before of the tick, during its second substep
+	// The tick's pose_before and jaw_before, kept during its second substep.
+	cau_pose tick_pose;
 	double tick_jaw;
 	// Share of its motion to `led` that the anchor makes in a tick; below 1 when held back.
 	double pace;
 	cau_heat_grid grid;
-	cau_blade blade; // with energy `tissue`: electrosurgery.c
+	cau_blade blade; // the metal of the hot part, with energy `tissue`: electrosurgery.c
 	// Least load since energy came on, ohm; 0: no current yet; below 0: load_rise_off was reached.
 	double least_ohm;
 	int32_t grasp_count;
@@ -50,7 +51,7 @@ typedef struct cau_tool {
 	double least_open_rad; // pinch.c: smallest opening that the held tissue permits, rad
 } cau_tool;
 
-// energy.c: energy that a tick added without a source, and the shares whose laws it changed.
+// energy.c: energy gain of a tick, and the shares whose material law the tick changed.
 typedef struct cau_energy {
 	double gain_j; // energy gain of the last tick
 	// Energy at the tick's start and work in it (cautery/session.h: energy_scale_j).
@@ -60,7 +61,7 @@ typedef struct cau_energy {
 	bool stale;       // every share must be evaluated before the next tick
 	bool marked;      // the shares that are `dirty` must be evaluated before the next tick
 	uint8_t *dirty;   // (work_count): 1 for a share whose material law changed
-	double *sum_j;    // (chunk_count x 4): scratch
+	double *sum_j;    // (chunk_count x 4): scratch for sums
 } cau_energy;
 
 // inversion.c: inverted tetrahedra. Snapshots do not hold the ticks, so a count begins at 0 after a
@@ -73,7 +74,7 @@ typedef struct cau_inversion {
 	bool followed;       // `ticks` may contain numbers other than 0
 } cau_inversion;
 
-// rest.c: whether the tissue is at rest, and since when it has been quiet.
+// rest.c: whether the tissue is at rest, and for how long it has been quiet.
 typedef struct cau_rest {
 	bool resting;
 	int32_t quiet_ticks; // ticks without motion; 0: something moves
@@ -82,7 +83,7 @@ typedef struct cau_rest {
 
 // spin.c: the pieces of tissue that are connected by living elements.
 typedef struct cau_spin {
-	bool stale;      // the pieces must be found again
+	bool stale;      // the pieces must be found again before use
 	int32_t removed; // number of removed elements when the pieces were found
 	int32_t piece_count;
 	int32_t *piece;  // (n): piece of a vertex
@@ -106,12 +107,12 @@ typedef struct cau_substep {
 	double local_s, contact_s, residual, error;
 } cau_substep;
 
-typedef struct cau_contact_watch cau_contact_watch; // tool_contact.c
+typedef struct cau_contact_watch cau_contact_watch; // contact records of tools: tool_contact.c
 
-// Results of possible.c's last check of the edges, and its scratch.
+// Results of the last check of edge lengths (possible.c), and its scratch memory.
 typedef struct cau_watch {
 	double left_m;        // least length by which an edge may still grow before it is too long
-	double *farthest2_m2; // by chunk of vertices: square of the farthest move of the tick
+	double *farthest2_m2; // by chunk of vertices: squared farthest motion in the tick
 	int32_t *astray;      // by chunk of vertices: a vertex that moved too far, or -1
 	int32_t chunk_count;  // number of chunks of edges
 	double *room_m; // by chunk of edges: least length by which one of its edges may still grow
@@ -131,11 +132,11 @@ struct cau_session {
 	cau_dissection dissection;
 	cau_shrink shrink;
 	cau_near near;
-	cau_tissue_cells *cells; // of energy `tissue`; NULL: energy `paper`
-	cau_vessels *vessels;    // NULL: the scene has none
+	cau_tissue_cells *cells; // cells of energy `tissue`; NULL: energy `paper`
+	cau_vessels *vessels;    // the scene's vessels; NULL: none
 	cau_contact_set contact;
 	cau_collide collide;             // meet.c: solver.collide points here, or is NULL
-	struct cau_candidate *candidate; // reach.c: scratch
+	struct cau_candidate *candidate; // reach.c: scratch memory
 	double *position_unheld;         // m, (n x 3): touch.c: solution before missed faces were added
 	// touch.c: result of cau_session_farthest after the last solve, and before missed faces were
 	// added
@@ -144,13 +145,13 @@ struct cau_session {
 
 	uint64_t tick;
 	bool faulted;
-	double *position, *velocity; // (n x 3)
-	double *position_start;      // x at the start of the tick
-	double *external;            // N, (n x 3), set by commands
+	double *position, *velocity; // m, m/s, (n x 3)
+	double *position_start;      // m, (n x 3): position at the start of the tick
+	double *external;            // N, (n x 3): forces set by commands
 	uint8_t *pinned;             // (n): pinned by the scene and by commands
-	uint8_t *fixed;              // (n): pinned or frozen
-	uint8_t *chosen;             // (n): scratch of selections
-	cau_drag *drag;              // (n)
+	uint8_t *fixed;              // (n): 1 for a vertex that is pinned or frozen
+	uint8_t *chosen;             // (n): scratch for selections
+	cau_drag *drag;              // (n): drag of energized tools on vertices
 	cau_inversion inversion;
 	int32_t frozen_count;
 	cau_watch watch;
@@ -159,33 +160,33 @@ struct cau_session {
 	cau_spin spin;
 	cau_substep substep;
 	double size_m;           // diagonal of the tissue's box at rest
-	int32_t driven_count;    // pinned vertices that the next step moves
-	int32_t *driven;         // (n)
+	int32_t driven_count;    // number of pinned vertices that the next step moves
+	int32_t *driven;         // (n): these vertices
 	double *driven_position; // m, (n x 3), in the order of `driven`
 
 	int32_t tool_count;
-	cau_tool *tool;            // (CAU_MAX_TOOLS)
-	cau_tool_state *tool_view; // (CAU_MAX_TOOLS), for the frame
+	cau_tool *tool;            // (CAU_MAX_TOOLS), of which tool_count are in use
+	cau_tool_state *tool_view; // (CAU_MAX_TOOLS): states for the frame
 
 	int32_t command_count, command_capacity;
-	cau_command *command; // queued, in order of submission
+	cau_command *command; // queued commands, in order of submission
 	int32_t refusal_count;
 	cau_error refusal[CAU_MAX_REFUSALS];
 
-	int32_t *face_layer; // (face_count)
-	float *face_texture; // (face_count x 3 x 2)
+	int32_t *face_layer; // (face_count): layer of each face
+	float *face_texture; // (face_count x 3 x 2): texture coordinates
 	int32_t fat_first_face[CAU_MAX_LAYERS], fat_face_count[CAU_MAX_LAYERS];
 
 	double (*now_s)(void);
 	double stage_s[CAU_STAGE_COUNT];
 	double stage_start;
-	uint32_t watched;                 // CAU_CHANNEL_* bits
+	uint32_t watched;                 // watched channels: CAU_CHANNEL_* bits
 	cau_contact_watch *contact_watch; // tool_contact.c; NULL: the contact was never watched
 };
 
-// command.c: applies the queued commands that are due.
+// command.c: applies the queued commands whose tick has come.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
-// command.c: whether the values of a command of a known kind are in their ranges.
+// command.c: checks the ranges of a command's values. The kind of the command must be valid.
 cau_status cau_command_check(const cau_session *session, const cau_command *command,
                              cau_error *error);
 // level.c: whether the command repeats the present level, or will be refused. has_definition
@@ -211,7 +212,7 @@ cau_status cau_session_check_sound(const cau_session *session, cau_error *error)
 // layer_material.c: puts the material of a SET_MATERIAL into the layer. Returns false if the
 // material is for another kind of layer.
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
-// Whether the command would change nothing of the layer.
+// Whether the command would change nothing in the layer.
 bool cau_layer_has_material(const cau_layer_def *def, const cau_command *command);
 // substep.c. A tick's motion is: begin_substeps; for each substep the prediction, contact and the
 // solve, with next_substep before the second; end_substeps. end_substeps is also called after a
@@ -265,10 +266,11 @@ bool cau_session_find_thrown(cau_session *session);
 // tool passes where tissue cannot be held.
 void cau_session_let_through(cau_session *session);
 
-// touch.c, thin.c: a vertex at a tool, with its signed distance, m; of many the deepest are listed.
+// touch.c, thin.c: a vertex near a tool, with its signed distance, m. If there are too many, the
+// deepest are listed.
 enum { CAU_MAX_TOUCHING = 2048 };
 typedef struct cau_touching {
-	int32_t vertex, place; // place: along the broad phase's curve
+	int32_t vertex, place; // place: position along the broad phase's Morton curve
 	double gap;
 } cau_touching;
 // thin.c: the distance, m, from a tool within which tissue may touch it in a tick.
@@ -375,7 +377,7 @@ void cau_session_read_contact(cau_session *session);
 const cau_tool_contact *cau_session_show_contact(const cau_session *session);
 // view.c: finds layer and texture coordinates of the faces.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
-// drive.c: moves pinned vertices to the positions of cau_session_drive in this tick.
+// drive.c: moves pinned vertices to the positions given by cau_session_drive, in this tick.
 void cau_session_lead_driven(cau_session *session);
 // stray.c. stop_strays stops vertices that have moved too far. size returns the diagonal of all
 // tissue's box at rest, m.
@@ -388,7 +390,7 @@ double cau_session_farthest_from_rest(const cau_session *session);
 // `position` in m, (n x 3).
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error);
 void cau_session_follow_inversion(cau_session *session);
-void cau_session_forget_inversion(cau_session *session); // after a restore
+void cau_session_forget_inversion(cau_session *session); // called after a restore
 bool cau_session_is_inverted(const double *position, const int32_t vertex[4]);
 // possible.c. make_watch allocates its arrays. check_motion refuses impossible motions of vertices
 // and lengths of edges; check_inverted refuses too many inverted elements. The error is
@@ -430,10 +432,10 @@ void cau_session_settle(cau_session *session);
 // share.c: lists the pages of the session's large arrays, in the same order for equal scenes.
 // Returns their count.
 int32_t cau_session_pages(const cau_session *session, cau_pages pages[CAU_IMAGE_PARTS]);
-// stage timing
+// Measure the time of the stages of a step.
 void cau_session_stage_begin(cau_session *session);
 void cau_session_stage_end(cau_session *session, int stage);
-// check.c
+// check.c: checks the values of a tool's definition.
 cau_status cau_tool_check(const cau_tool_def *tool, const char *path, double step_s,
                           cau_error *error);
 // Returns one of a layer's materials, of the layer's kind.

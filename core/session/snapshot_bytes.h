@@ -12,7 +12,7 @@ typedef enum snapshot_mode { SNAPSHOT_COUNT, SNAPSHOT_WRITE, SNAPSHOT_READ } sna
 
 typedef struct snapshot_archive {
 	snapshot_mode mode;
-	unsigned char *bytes; // READ does not change them; NULL for COUNT
+	unsigned char *bytes; // not changed by READ; NULL for COUNT
 	size_t at, capacity;
 	const char *wrong; // READ: name of the first refused number, where reading ends; NULL: none
 } snapshot_archive;

@@ -25,7 +25,7 @@ typedef struct snapshot_head {
 	bool single;
 	char instruction_set[CAU_SNAPSHOT_ISA_BYTES];
 	uint64_t build;           // hash of the compiler's version and the build date
-	uint64_t definition_hash; // create.c
+	uint64_t definition_hash; // hash of the session's definition: create.c
 	uint64_t tick, swap_tick, longest_wait, factor_version;
 	int32_t vertex_count, edge_count;
 	int32_t tool_count, command_count, active_count, column_count, memory_count, over_count;
@@ -41,34 +41,42 @@ typedef struct snapshot_head {
 // The arrays. For writing they are the session's own; for reading, copies of the same sizes.
 typedef struct snapshot_state {
 	snapshot_head head;
-	uint8_t *pinned, *fixed;                // (vertex_count)
+	// (vertex_count): 1 for a pinned vertex; 1 for a pinned or frozen vertex.
+	uint8_t *pinned, *fixed;
 	double *position, *velocity, *external; // (vertex_count x 3)
-	double *diagonal;                       // N/m, (vertex_count)
-	double *exposure;                       // (edge_count)
-	uint16_t *parted;                       // (edge_count)
-	double *dose;                           // (dose_count)
-	uint8_t *gone;                          // (dose_count)
-	uint8_t *shrunk[2];                     // by triangle, by tetrahedron
-	cau_shrinking *active;                  // (active_count)
-	cau_command *command;                   // (command_count)
-	cau_layer_def *layer;                   // (layer_count): the layers' materials
-	cau_elements elements;                  // targets, rotations, plastic strain, marks
-	cau_waiting *waiting;                   // (waiting_count)
-	cau_operation *operation;               // (operation_count)
-	cau_tool *tool;                         // (tool_count)
-	cau_contact_memory *memory;             // (memory_count)
-	cau_over *over;                         // (over_count)
-	int32_t *column_vertex;                 // (column_count)
-	uint64_t *column_version;               // (column_count)
-	cau_reals **column;                     // (column_count, CAU_WHOLE_COLUMNS at most)
-	double *inverse;                        // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS)
-	double *quiet_from;                     // m, (vertex_count x 3)
-	uint8_t *exempt_before;                 // (vertex_count), with a contact thickness
-	cau_tissue_cells *cells;                // with energy `tissue`
-	double *fusion;                         // (station_count), with vessels
-	double *blood_m3;                       // (vertex_count), with vessels
-	double shed_m3[CAU_MAX_VESSELS];        // with vessels
-	cau_arena copies;                       // for reading: the memory of all copies
+	double *diagonal;                       // N/m, (vertex_count): matrix A of the diagonal solver
+	double *exposure;                       // (edge_count): exposure of each edge
+	// (edge_count): a bit for each layer in which the edge has parted.
+	uint16_t *parted;
+	// (dose_count): exposure of each element, if elements part one by one.
+	double *dose;
+	uint8_t *gone;         // (dose_count): 1 for a parted element
+	uint8_t *shrunk[2];    // by triangle, by tetrahedron: 1 for a shrunk element
+	cau_shrinking *active; // (active_count): elements that are shrinking
+	cau_command *command;  // (command_count): queued commands
+	cau_layer_def *layer;  // (layer_count): the layers' materials
+	// The elements' targets, rotations, plastic strain and marks.
+	cau_elements elements;
+	// (waiting_count): removed elements that are still in the factor.
+	cau_waiting *waiting;
+	cau_operation *operation;   // (operation_count): elements removed from the factor
+	cau_tool *tool;             // (tool_count): the tools
+	cau_contact_memory *memory; // (memory_count): faces that tools pushed
+	cau_over *over;             // (over_count): elements loaded above their tear limit
+	int32_t *column_vertex;     // (column_count): vertex of each contact column
+	uint64_t *column_version;   // (column_count): factor version of each contact column
+	cau_reals **column;         // the columns themselves, at most CAU_WHOLE_COLUMNS
+	// Compliance matrix S of the columns, (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS).
+	double *inverse;
+	// m, (vertex_count x 3): positions when the quiet ticks began.
+	double *quiet_from;
+	// (vertex_count): excluded from contact; with a contact thickness.
+	uint8_t *exempt_before;
+	cau_tissue_cells *cells;         // the cells, with energy `tissue`
+	double *fusion;                  // (station_count): seal of each station, with vessels
+	double *blood_m3;                // (vertex_count): blood on the tissue, with vessels
+	double shed_m3[CAU_MAX_VESSELS]; // blood shed by each vessel, with vessels
+	cau_arena copies;                // for reading: the memory of all copies
 } snapshot_state;
 
 // Returns the session's present state in *state. The arrays are borrowed, and writing does not

@@ -26,7 +26,7 @@ static const double least_turn = 1e-3; // rad in a tick
 // Least determinant of the inertia, relative to the cube of its trace.
 static const double thinnest = 1e-9;
 
-typedef double matrix[3][3]; // [row][column]
+typedef double matrix[3][3]; // m[row][column]
 
 cau_status cau_session_make_spin(cau_session *session, cau_error *error)
 {
@@ -229,7 +229,7 @@ static bool turn_until(matrix a, cau_vec3 wanted, matrix rotation)
 typedef struct motion {
 	double mass;
 	cau_vec3 centre, velocity; // of the centre of mass
-	matrix spread;             // C = sum m r r^T, kg m^2
+	matrix spread;             // velocity of the centre of mass
 	matrix flow;               // sum m u r^T, kg m^2/s
 	double kinetic_j;          // sum m u^2 / 2
 } motion;
@@ -264,7 +264,7 @@ static void measure_motion(const cau_session *session, int32_t first, int32_t la
 	}
 }
 
-// Less of the rotation, so that the energy of its chords is at most what there is.
+// Reduces the rotation r, so that the energy of its chords is at most the present kinetic energy.
 static void keep_energy(motion *m, double dt, matrix r)
 {
 	matrix turned;
@@ -273,13 +273,14 @@ static void keep_energy(motion *m, double dt, matrix r)
 	CAU_ASSERT(m->kinetic_j >= 0, "an energy of %g J", m->kinetic_j);
 	if (!(chords_j > m->kinetic_j))
 		return;
-	cau_vec3 axis = axial(r); // twice its sine
+	cau_vec3 axis = axial(r); // its length is twice the sine of the angle
 	double sine = cau_length(axis) / 2, angle = atan2(sine, (trace(r) - 1) / 2);
 	if (sine > 0)
 		rotation_of(cau_scale(angle * sqrt(m->kinetic_j / chords_j) / (2 * sine), axis), r);
 }
 
-// R, P and Q as above; false where the piece is left alone.
+// Finds the rotations R, P and Q of the comment above. Returns false if the piece is not to be
+// corrected.
 static bool find_turn(motion *m, double dt, matrix r, matrix p, matrix q)
 {
 	matrix inertia, ahead, seen;
@@ -301,7 +302,8 @@ static bool find_turn(motion *m, double dt, matrix r, matrix p, matrix q)
 	times(ahead, back, seen);
 	if (!turn_until(seen, (cau_vec3){0, 0, 0}, q))
 		return false;
-	return cau_length(axial(q)) / 2 < cau_length(turn); // else it does not turn as a whole
+	// Otherwise the piece does not turn as a whole.
+	return cau_length(axial(q)) / 2 < cau_length(turn);
 }
 
 static void turn_piece(cau_session *session, int32_t first, int32_t last)
@@ -329,10 +331,10 @@ static void turn_piece(cau_session *session, int32_t first, int32_t last)
 
 // ---- ticks with two substeps
 
-// The end of the second substep, about the piece's centre of mass.
+// The state at the end of the second substep, about the piece's centre of mass.
 typedef struct ending {
 	cau_vec3 centre;
-	cau_vec3 momentum; // kg m^2/s, by v2
+	cau_vec3 momentum; // kg m^2/s, computed with v2
 	matrix spread;     // sum m r2 r2^T, kg m^2
 } ending;
 
@@ -361,9 +363,10 @@ static void measure_ending(const cau_session *session, int32_t first, int32_t la
 	}
 }
 
-// Both stages have forces without a torque about the places where they act, and a1 of a piece that
-// turns is half of what holds it on its circle, since v is along the circle and v1 along a chord.
-// So sum m x2 x v2 is not the L that the tick began with. v2 gets the rotation that makes it so.
+// In both substeps the forces have no torque about the positions where they act. For a turning
+// piece, a1 is half of the acceleration that holds the piece on its circle, because v is along the
+// circle and v1 along a chord. So sum m x2 x v2 differs from the angular momentum L at the tick's
+// start. This function adds to v2 the rotation that restores L.
 static void keep_momentum(cau_session *session, int32_t first, int32_t last)
 {
 	motion m;
@@ -391,7 +394,8 @@ static void turn_pieces(cau_session *session,
                         void (*turn)(cau_session *session, int32_t first, int32_t last))
 {
 	cau_spin *spin = &session->spin;
-	if (session->scene->solver == CAU_SOLVER_DIAGONAL) // as printed
+	// The paper's diagonal solver has no such correction.
+	if (session->scene->solver == CAU_SOLVER_DIAGONAL)
 		return;
 	if (spin->stale || spin->removed != session->dissection.elements_removed)
 		find_pieces(session);

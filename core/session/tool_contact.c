@@ -131,7 +131,7 @@ static cau_vec3 normal_of(const cau_contact_plane *plane)
 	return cau_vec3_of(plane->normal);
 }
 
-// Speed of the tissue at a constraint, along a direction.
+// Returns the speed of the tissue at a constraint, along a direction.
 static double speed_of(const cau_session *session, const cau_contact_row *row, cau_vec3 along)
 {
 	cau_vec3 velocity = cau_contact_point(row, session->velocity);

@@ -32,8 +32,8 @@ extern "C" {
 // ---- the report: what was read, skipped and mended, and what the mesh contains. The command line,
 // the wire protocol, the log and the viewer show the same report.
 enum {
-	CAU_MESH_KIND_MAX = 24,     // kinds of elements that a report lists
-	CAU_MESH_REGION_MAX = 64,   // regions that a report lists
+	CAU_MESH_KIND_MAX = 24,     // largest number of kinds of elements in a report
+	CAU_MESH_REGION_MAX = 64,   // largest number of regions in a report
 	CAU_MESH_QUALITY_BINS = 10, // bins of the histogram of qualities
 	CAU_MESH_NAME_BYTES = 48,   // bytes of a region's name, with its final zero
 	CAU_MESH_TEXT_BYTES = 4096, // bytes of a report as text
@@ -48,7 +48,7 @@ typedef struct cau_mesh_kind {
 
 // Elements of one region. Surfaces and volumes are numbered separately.
 typedef struct cau_mesh_region {
-	int32_t dimension;              // 2: triangles, 3: tetrahedra
+	int32_t dimension;              // 2: region of triangles; 3: region of tetrahedra
 	int32_t region;                 // the region's number in the file
 	int32_t element_count;          // number of elements after mending
 	char name[CAU_MESH_NAME_BYTES]; // name in the file, or ""
@@ -75,7 +75,7 @@ typedef struct cau_mesh_report {
 	char format[32];                       // for example "Gmsh 4.1"; "" for a generated mesh
 	int64_t vertices_read;                 // vertices in the file
 	int32_t kind_count;                    // number of listed kinds of elements
-	cau_mesh_kind kind[CAU_MESH_KIND_MAX]; // (kind_count)
+	cau_mesh_kind kind[CAU_MESH_KIND_MAX]; // (kind_count): counts for each kind
 #define X(field, strict, words) int32_t field;
 	CAU_MESH_MEND_TABLE(X)
 #undef X
@@ -86,7 +86,7 @@ typedef struct cau_mesh_report {
 	double opening;          // area of the holes inside these edges, over the surface's area
 	int32_t region_count;    // number of all regions, listed or not
 	cau_mesh_region region[CAU_MESH_REGION_MAX]; // the first regions
-	double least_m[3], most_m[3];                // bounding box
+	double least_m[3], most_m[3];                // corners of the bounding box
 	double unit_m;                               // metres in one unit of the file, as used
 	// 1: the unit was guessed, because neither the scene nor the file states it.
 	int32_t unit_guessed;

@@ -57,7 +57,7 @@ typedef struct cau_session cau_session; // one simulated tissue with its tools; 
 	X(ORDER, "ordering")   /* the system's pattern, its order and the factor's size */             \
 	X(FACTOR, "factoring") /* the factor's numbers */                                              \
 	X(REST, "settling")    /* built-in tension brought to its equilibrium */
-// The stage of a creation.
+// Number of a stage of the creation.
 typedef enum cau_build_stage {
 #define X(code, name) CAU_BUILD_##code,
 	CAU_BUILD_STAGE_TABLE(X)
@@ -76,7 +76,7 @@ typedef struct cau_build_border {
 
 // Input of cau_session_create.
 typedef struct cau_session_def {
-	const cau_scene_def *scene; // borrowed during create
+	const cau_scene_def *scene; // borrowed until cau_session_create returns
 	int32_t thread_count;       // threads used by a step, 1 to 16, including the caller's
 	// Largest number of queued commands; further commands are refused with CAU_LIMIT.
 	int32_t command_capacity;
@@ -85,7 +85,8 @@ typedef struct cau_session_def {
 	bool unsettled;
 	// Called before each stage, on the creating thread. Any result but CAU_OK ends the creation
 	// with that status and *error.
-	cau_status (*border)(void *user, const cau_build_border *border, cau_error *error); // or NULL
+	// May be NULL.
+	cau_status (*border)(void *user, const cau_build_border *border, cau_error *error);
 	void *user; // passed to `border`
 	const char
 		*instruction_set; // highest tier to use: "baseline", "avx2", "avx512"; NULL: the best
@@ -104,7 +105,7 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error);
 // unchanged. Errors: CAU_BAD_VALUE, CAU_NOT_FOUND, CAU_BAD_MESH, CAU_IO, CAU_LIMIT, CAU_NO_MEMORY,
 // CAU_NUMERICAL, and the status that `border` returned.
 cau_status cau_session_create(const cau_session_def *def, cau_session **session, cau_error *error);
-void cau_session_destroy(cau_session *session); // takes NULL
+void cau_session_destroy(cau_session *session); // session may be NULL
 
 // Whether the session's scene has built-in tension. Creation brings the tissue to rest, unless the
 // session was created `unsettled`.
@@ -124,7 +125,8 @@ size_t cau_session_share(cau_session *session);
 // priority of the thread that steps the session. First waits for their present work. Errors:
 // CAU_NO_MEMORY.
 cau_status cau_session_adopt(cau_session *session, cau_error *error);
-// Sets the number of threads, 1 to 16, that steps use from now on. Results do not depend on it.
+// Sets the number of threads, 1 to 16, that steps use from now on. Results do not depend on the
+// number.
 void cau_session_set_threads(cau_session *session, int32_t thread_count);
 
 // Queues a copy of the command. Errors: CAU_BAD_VALUE, CAU_NOT_FOUND (no such tool or layer),
@@ -146,7 +148,7 @@ cau_status cau_session_may_submit(const cau_session *session, const cau_command 
 void cau_session_energy_off(cau_session *session, const char *tool, uint64_t sequence);
 // Makes the tool's actual pose its commanded pose. Removes all queued commands about the tool.
 void cau_session_hold_still(cau_session *session, const char *tool, uint64_t sequence);
-// Number of queued commands about the tool.
+// Returns the number of queued commands about the tool.
 int32_t cau_session_waiting(const cau_session *session, const char *tool);
 // Returns the name of the first tool that a step may heat and that is not among the `count` allowed
 // names. A step may heat a tool if its energy is on, or if a queued command would turn it on. NULL:
@@ -169,7 +171,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error);
 // One layer of a session.
 typedef struct cau_session_layer {
 	char name[CAU_NAME_BYTES]; // the layer's name in the scene
-	int32_t kind;              // CAU_LAYER_*
+	int32_t kind;              // a CAU_LAYER_* kind
 	// Range of its faces in the face list. FAT: each face of its tetrahedra once. LINKS: none.
 	int32_t first_face, face_count;
 	int32_t element_count; // number of triangles, tetrahedra or links
@@ -184,8 +186,8 @@ typedef struct cau_session_info {
 	int32_t face_count;               // all faces, drawn and hidden
 	// Numbers at creation.
 	int32_t triangle_count, tetrahedron_count, link_count, hinge_count, edge_count;
-	int32_t layer_count;                      // at most CAU_MAX_LAYERS
-	cau_session_layer layers[CAU_MAX_LAYERS]; // (layer_count)
+	int32_t layer_count;                      // number of layers, at most CAU_MAX_LAYERS
+	cau_session_layer layers[CAU_MAX_LAYERS]; // (layer_count): the layers, in the scene's order
 	// Vertices of each face, (face_count x 3); borrowed for the session's life.
 	const int32_t *face;
 	const int32_t *face_layer;   // layer of each face, (face_count)
@@ -197,7 +199,7 @@ typedef struct cau_session_info {
 	const cau_mesh_report *mesh_report; // a report for each of the scene's meshes
 } cau_session_info;
 
-// Fills *info.
+// Fills *info with the session's constant parts.
 void cau_session_describe(const cau_session *session, cau_session_info *info);
 
 // Updates `scene`, a copy of the session's definition, with the changes by commands: gravity,
@@ -222,11 +224,11 @@ typedef struct cau_tool_state {
 	// Force of the tissue on the tool and torque about its tip, filtered with force_filter_s. The
 	// force is force_max_n at most, the torque force_max_n * tip_length_m.
 	double force_n[3];
-	double torque_nm[3]; // about the tip
+	double torque_nm[3]; // torque about the tip, N m
 	// The same force and torque without filter and bound. Both pairs belong to the step that ended
 	// at this tick.
 	double raw_force_n[3];
-	double raw_torque_nm[3];  // about the tip
+	double raw_torque_nm[3];  // torque about the tip, N m
 	double tip_temperature_c; // temperature of the hot part
 	// Estimate of the heat that tissue took up; with energy `tissue`, the sum of delivered_w over
 	// time.
@@ -249,7 +251,7 @@ typedef struct cau_tool_state {
 typedef struct cau_statistics {
 	// Time of each stage of the last step, s, see CAU_STAGE_TABLE; filled if timing is on.
 	double seconds[8];
-	int32_t iterations; // of the last step
+	int32_t iterations; // iterations of the last step
 	double residual;    // relative residual after the last iteration
 	int32_t backtracks; // increments that were refused because they raised the objective
 	int32_t inverted;   // tetrahedra with negative volume after the step
@@ -257,14 +259,14 @@ typedef struct cau_statistics {
 	// tetrahedron seldom recovers. The usual cause is the material's law (StVK) or its strain
 	// limit.
 	int32_t long_inverted[CAU_MAX_LAYERS];
-	int32_t edges_parted;      // since creation
-	int32_t elements_removed;  // since creation
+	int32_t edges_parted;      // edges parted since creation
+	int32_t elements_removed;  // elements removed since creation
 	int32_t elements_torn;     // those of the removed elements that were torn by stretch
 	int32_t pending_downdates; // removed elements that are still in the factor
 	// Longest time that a removed element has stayed in the factor, in simulated seconds.
 	double deferred_max_s;
-	int32_t refactorisations;  // since creation
-	int32_t factor_operations; // since the last canonical factorisation
+	int32_t refactorisations;  // factorisations computed again since creation
+	int32_t factor_operations; // changes of the factor since its last canonical factorisation
 	// Contact constraints of the last step: vertices that are held or near tools, and faces.
 	int32_t contacts;
 	// Vertices and faces at a tool beyond the capacity for contact constraints. If it is not 0, the
@@ -305,7 +307,7 @@ typedef struct cau_statistics {
 	X(HEAT, "heat")                                                                                \
 	X(DISSECT, "dissect")                                                                          \
 	X(FRAME, "frame")
-// A stage of a step.
+// Number of a stage of a step.
 typedef enum cau_stage {
 #define X(code, name) CAU_STAGE_##code,
 	CAU_STAGE_TABLE(X)
@@ -328,17 +330,17 @@ typedef struct cau_frame {
 	const uint8_t *vertex_visible;   // (vertex_count): 1 if on a drawn face
 	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the channel's unit; NULL for a
 	                                 // costly channel that is not watched
-	int32_t tool_count;              // at most CAU_MAX_TOOLS
-	const cau_tool_state *tools;     // (tool_count)
-	int32_t vessel_count;            // at most CAU_MAX_VESSELS
+	int32_t tool_count;              // number of tools, at most CAU_MAX_TOOLS
+	const cau_tool_state *tools;     // (tool_count): the tools' states
+	int32_t vessel_count;            // number of vessels, at most CAU_MAX_VESSELS
 	const cau_vessel_state *vessels[CAU_MAX_VESSELS]; // (vessel_count), in the scene's order
 	const cau_tool_contact *contacts;                 // (tool_count), by tool; NULL: not watched
 	int32_t refusal_count;                            // commands refused at their tick in this step
-	const cau_error *refusals;                        // (refusal_count)
-	cau_statistics statistics;                        // of this step
+	const cau_error *refusals;                        // (refusal_count): reason of each refusal
+	cau_statistics statistics;                        // statistics of this step
 } cau_frame;
 
-// Fills *frame.
+// Fills *frame with the state after the last step.
 void cau_session_frame(const cau_session *session, cau_frame *frame);
 
 // Turns stage timing on with the caller's clock `now_s` (s), or off with NULL, the default.
@@ -395,10 +397,10 @@ typedef struct cau_energy_ledger {
 	double stored_j;    // heat content of the tissue above ambient temperature
 	double boiled_j;    // carried away by water that boiled off
 	double perfused_j;  // carried away by blood
-	double ambient_j;   // lost at surfaces
+	double ambient_j;   // lost to the surroundings at surfaces
 	double shed_j;      // heat content of tissue that was removed
 } cau_energy_ledger;
-// Writes the session's ledger.
+// Writes the session's energy ledger to *ledger.
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger);
 // Returns the volume, m^3 at rest, of tissue that exists and was killed by heat (damage of 1 or
 // more). 0 with energy `paper`. Divided by the area of a cut, this is the mean width of the

@@ -120,7 +120,7 @@ static void test_exposure_of_vertices(void **state)
 	}
 	assert_true(charred > 50);
 	cau_frame_rebuild(&f.frame, &f.r.dissection);
-	// Expose_by_hand may have lowered an edge's exposure.
+	// The helper expose_by_hand may have lowered an edge's exposure.
 	for (int32_t v = 0; v < t->vertex_count; v++)
 		assert_true(f.frame.exposure[v] <= expected[v]);
 	rig_finish(&f.r);

@@ -183,7 +183,8 @@ static void fat_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 36 : 100, CAU_TEST_SANITIZED ? 12 : 3);
 		expect_right("fat", &of);
-		assert_true(of.iterations <= 17 * of.count); // 14 for vertices alone
+		// 14 for vertices alone: contact points of faces move with the tool.
+		assert_true(of.iterations <= 17 * of.count);
 	}
 }
 

@@ -25,7 +25,7 @@ typedef struct cut_run {
 	cau_session *session;
 	cau_session_info info;
 	double edge_m;
-	// M, (vertex_count x 3): positions at rest, with tension, before the cut.
+	// m, (vertex_count x 3): positions at rest, with tension, before the cut.
 	double *uncut;
 	int contact_tick, parting_tick; // tick of the first exposure; tick of the first parted edge
 } cut_run;

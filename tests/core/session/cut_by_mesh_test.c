@@ -115,8 +115,7 @@ static void steps_and_iterations_take_as_much(void **state)
 	static const double fineness = 0.5, alike = 0.1; // a cell is a fiftieth of the cut
 	static const struct {
 		double step_s;
-		int32_t iterations; // 0: as the scene has it
-		// 0: the scene's number.
+		int32_t iterations; // 0: the scene's number
 	} other[] = {{1.0 / 60, 0}, {1.0 / 120, 0}, {1.0 / 30, 5}, {1.0 / 30, 20}};
 	enum { OTHERS = CAU_TEST_SANITIZED ? 1 : sizeof other / sizeof *other, OF_WAYS = 2 };
 	double usual = 0, taken[OTHERS] = {0};

@@ -19,7 +19,7 @@ enum { SETTLING_TICKS = 60 };
 
 double indent_dip_m(double radius_m)
 {
-	return fmin(8e-5, 0.03 * radius_m); // core/DECISIONS.md
+	return fmin(8e-5, 0.03 * radius_m); // core's limits, see core/DECISIONS.md
 }
 
 double indent_cells(const indent *of)

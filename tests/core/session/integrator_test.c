@@ -24,7 +24,7 @@ static cau_scene_def *beam(int integrator, double rate_hz)
 	layer->fat[0].poisson_ratio = 0.3;
 	scene->integrator = integrator;
 	scene->step_s = 1 / rate_hz;
-	scene->tolerance = 1e-7; // converged
+	scene->tolerance = 1e-7; // steps are converged
 	scene->iterations = 400;
 	stage_pin_box(scene, (double[3]){-1, -1, -1}, (double[3]){-0.0299, 1, 1});
 	return scene;
@@ -156,7 +156,8 @@ static const double damping_ratio = 0.05; // at 5 Hz; 0.73 of the amplitude is l
 
 static double kept_by_kelvin_and_voigt(double hz, double viscosity_s)
 {
-	double pi = acos(-1.0), ratio = pi * hz * viscosity_s; // t w / 2
+	// Half of viscosity times angular frequency.
+	double pi = acos(-1.0), ratio = pi * hz * viscosity_s;
 	return exp(-2 * pi * ratio / sqrt(1 - ratio * ratio));
 }
 

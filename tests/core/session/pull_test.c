@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-static const double bounded_m = 0.3; // a pull of 0.1 m on a scene of 0.12 m
+static const double bounded_m = 0.3; // m; a pull of 0.1 m on a scene of 0.12 m stays below this
 // Under sanitizers a step takes thirty times as long. There each scene is pulled in one direction
 // only; the other directions use the same code.
 static const size_t ways_under_sanitizers = 1;

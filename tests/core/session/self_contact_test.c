@@ -251,17 +251,17 @@ static void expect_the_same_after_a_restore(cau_session *session)
 }
 
 // Jaws that never slip pull `layers` at 5 m/s. Tissue cannot be kept apart at that speed, and
-// tetrahedra turn inside out. Frames report it. After the release nothing is inside out any more,
-// and no vertex is excluded from contact. A vertex is excluded while it crosses other tissue. This
-// depends on rounding: with kernels below AVX-512, or without the compiler's optimisation, some
-// vertices stay excluded to the end (.github/KNOWN_BUGS.md). On every
-// processor no other vertex crosses anything.
+// tetrahedra become inverted. Frames report it. After the release no tetrahedron stays inverted,
+// and no vertex stays excluded from contact. (A vertex is excluded while it crosses other tissue.)
+// The exclusion depends on rounding: with kernels below AVX-512, or without the compiler's
+// optimisation, some vertices stay excluded to the end (.github/KNOWN_BUGS.md). On every processor
+// no other vertex crosses anything.
 static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;
 	enum { DRAWN = 20, TICKS = 100 };
-	// With fewer inverted tetrahedra the pull would be no test: one of 300, which are 100 of the
-	// 30,000 that `layers` has in full.
+	// The pull tests something only if more than one in 300 tetrahedra is inverted: 100 of the
+	// 30,000 in the full `layers`.
 	enum { LEAST_INVERTED = 300 };
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;

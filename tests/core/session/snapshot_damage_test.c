@@ -55,7 +55,7 @@ static void damage_is_refused(void **state)
 	free(scene);
 }
 
-// The same mesh in another scene is another tissue.
+// The same mesh in another scene counts as another tissue.
 static void another_definition_is_refused(void **state)
 {
 	(void)state;

@@ -92,4 +92,4 @@ typedef struct stage_bytes {
 	unsigned char *bytes;
 	size_t count;
 } stage_bytes;
-stage_bytes stage_snapshot(const cau_session *session); // free(bytes)
+stage_bytes stage_snapshot(const cau_session *session); // the caller frees bytes

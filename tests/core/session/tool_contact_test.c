@@ -15,7 +15,7 @@ static cau_scene_def *ball_on_slab(void)
 	stage_add_slab(scene, "fat", size, cells)->fat[0].young_modulus_pa = 20e3;
 	stage_pin_box(scene, least, most);
 	stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0.006);
-	scene->damping_per_s = 20; // at rest within a second
+	scene->damping_per_s = 20; // the tissue is at rest within a second
 	return scene;
 }
 
