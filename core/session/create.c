@@ -215,11 +215,11 @@ static uint64_t hash_definition(const cau_session *session)
 	uint64_t hash = cau_hash_bytes(CAU_HASH_START, numbers, sizeof numbers);
 	hash = cau_hash_bytes(hash, choices, sizeof choices);
 	hash = cau_hash_word(hash, scene->seed);
-	if (scene->integrator != CAU_INTEGRATOR_EULER) // left out of older snapshots
+	if (scene->integrator != CAU_INTEGRATOR_EULER) // Euler is left out, as in older snapshots
 		hash = cau_hash_word(cau_hash_word(hash, UINT64_MAX), (uint64_t)scene->integrator);
-	if (scene->parting != CAU_PARTING_EDGES) // left out of older snapshots
+	if (scene->parting != CAU_PARTING_EDGES) // left out, as in older snapshots
 		hash = cau_hash_word(hash, (uint64_t)scene->parting);
-	if (scene->contact_thickness_m > 0) { // older snapshots do not have it
+	if (scene->contact_thickness_m > 0) { // a value of 0 is left out, as in older snapshots
 		const double contact[] = {scene->contact_thickness_m, scene->contact_friction};
 		hash = cau_hash_bytes(hash, contact, sizeof contact);
 	}

@@ -24,7 +24,8 @@ static const double touch_m = 1e-5; // a face nearer than this touches the tool
 // smaller of a length and a share of the tip's radius.
 static const double dip_m = 6e-5, dip_share = 0.3;
 static const double stand_m = 8e-5, stand_share = 0.03;
-// Closer to a constraint than the tip's surface curves away by this, no other is needed.
+// A face needs no second constraint nearer than the distance at which a round tip has curved away
+// by this.
 static const double beside_m = 2e-5;
 static const double same_m = 1e-5; // points closer together than this count as one
 // A pushed face that is farther away than this is released.
@@ -203,7 +204,7 @@ static double apart2(const reach *r, const cau_contact_row *a, const cau_contact
 }
 
 // Whether a constraint already acts at that point, as for another face at the same edge. On the
-// same face a constraint nearby suffices if the round tip is hardly deeper between the points.
+// same face a constraint at a small distance suffices, because a round tip is hardly deeper there.
 static bool has_row(const reach *r, const cau_contact_row *row)
 {
 	const double near2 = 2 * r->def->hot_radius_m * beside_m;
@@ -338,8 +339,8 @@ static void search_block(reach *r, int32_t block)
 			offer(r, near->face[i]);
 }
 
-// Sums in four independent variables, so that no addition waits for the one before. The sums show a
-// motion that is not a number.
+// Uses four independent maxima and sums, so that no operation waits for the one before. The sums
+// detect a motion that is not a number.
 double cau_session_farthest(const cau_session *session)
 {
 	const double *position = session->position, *start = session->position_start;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rest. Tissue that no longer moves is kept in place, and its steps cost nothing, until something
 // wakes it. Tissue does not stop completely by itself: rounding, rotations that are found again,
-// and the unsolved rest of each step keep changing the last digits.
+// and the error that iterations leave in each step keep changing the last digits.
 //
 // Rest is a change of state that every run makes at the same tick, not an optional shortcut.
 // Velocities become zero and positions stay exactly the same. So rest is part of snapshots.
@@ -108,8 +108,8 @@ static double most_m(const cau_session *session)
 	return fmin(still_m, still_share * session->size_m);
 }
 
-// Whether the tick moved a vertex farther than tissue may move in all at rest. possible.c has found
-// these motions.
+// Whether the tick moved a vertex farther than the limit for tissue at rest. possible.c has
+// computed these motions.
 static bool has_moved(const cau_session *session)
 {
 	double most = most_m(session);

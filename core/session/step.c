@@ -99,7 +99,7 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 // contacts too: one more round. If tissue is still not held, the tick is solved again with a
 // shorter motion of the tool. On the last attempt the tool does not move. More rounds are useful
 // there, because a solution exists: the tissue was outside the tool. Tissue that is then still deep
-// in the tool is handled in the next tick. Tissue beyond the tool is let through.
+// in the tool is handled in the next tick. Tissue beyond the tool loses its constraints and passes.
 enum { MOST_ROUNDS = 2, LAST_ROUNDS = 8 };
 
 static cau_status descend(cau_session *session, cau_error *error)

@@ -316,9 +316,9 @@ static bool bears_too_much(const cau_contact_row *row)
 	return cau_length(cau_vec3_of(row->reaction)) > nearly * cau_most_at_a_point_n;
 }
 
-// Lets an attachment slip that is at its slip force: its anchor follows the vertex until the force
-// stays. It is lost beyond the length of the jaws. It is also lost at once, however firm the jaws
-// are, if it carries more than tissue bears at one point.
+// Lets an attachment slip that is at its slip force: its anchor follows the vertex so far that the
+// force stays the same. The attachment is lost beyond the length of the jaws. It is also lost at
+// once, however firm the jaws are, if it carries more than tissue bears at one point.
 static void slip(cau_tool *tool, const cau_contact_row *row, const double *position)
 {
 	const cau_tool_def *def = &tool->state.definition;

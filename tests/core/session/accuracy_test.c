@@ -169,9 +169,8 @@ static void a_taut_sheet_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 40 : 120, CAU_TEST_SANITIZED ? 8 : 2);
 		expect_right("taut", &of);
-		assert_true(of.iterations <=
-		            // 3 for vertices alone: contact points of faces move with the tool.
-		            10 * of.count);
+		// 3 for vertices alone: contact points of faces move with the tool
+		assert_true(of.iterations <= 10 * of.count);
 	}
 }
 

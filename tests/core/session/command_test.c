@@ -204,8 +204,7 @@ static void huge_forces_and_gravity(void **state)
 		cau_scene_def *scene = stage_layered();
 		cau_session *session = stage_open(scene, 1);
 		const double least[3] = {-1, -1, -0.009}, most[3] = {1, 1, 1};
-		if (what < 2)
-			// The largest gravity that is accepted.
+		if (what < 2) // the largest gravity that is accepted
 			stage_gravity(session, 0, what ? 100 : 0, what ? 0 : -100);
 		else // 1,000 N on each vertex of a few grams of tissue
 			stage_force(session, stage_box(least, most), 0, 0, what == 2 ? 1000 : -1000);

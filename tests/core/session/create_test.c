@@ -210,9 +210,8 @@ static void what_begins_with_a_snapshot_need_not_settle(void **state)
 		stage_bytes first = stage_snapshot(settled);
 		cau_error error = {0};
 		assert_int_equal(cau_session_step(begun, &error), CAU_FAULTED);
-		assert_true(cau_session_hash(begun) !=
-		            // The session without a restore lacks its built-in tension.
-		            cau_session_hash(settled));
+		// the session without a restore lacks its built-in tension
+		assert_true(cau_session_hash(begun) != cau_session_hash(settled));
 		expect_restored(begun, first);
 		assert_int_equal(cau_session_hash(begun), cau_session_hash(settled));
 		uint64_t reached = hash_of_burning(settled, 100);

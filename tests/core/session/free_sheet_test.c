@@ -191,7 +191,8 @@ static void bits_depend_on_nothing_else(void **state)
 
 // ---- changes of the system during the fall
 
-// Pinning and unpinning builds the system again. A hook that sinks into the sheet is handled by A.
+// Pinning and unpinning builds the system again. A hook that sinks into the sheet is handled
+// with the matrix A.
 static void pins_and_tools_are_heeded(void **state)
 {
 	(void)state;

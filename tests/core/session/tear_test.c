@@ -315,8 +315,8 @@ static void what_is_taut_does_not_tear(void **state)
 	(void)state;
 	enum { AWAKE = CAU_TEST_SANITIZED ? 30 : 120, ALL = 10000 };
 	cau_scene_def *scene = stage_scene_light("layers");
+	// even a hundredth of the scene's tear energy prevents tears here
 	for (int32_t i = 0; i < scene->layer_count; i++)
-		// A hundredth of the scene's tear energy would suffice.
 		scene->layers[i].sheet[0].heat.tear_energy_j_m2 *= 0.01;
 	cau_session *session = stage_open(scene, 2);
 	for (int tick = 0; tick < AWAKE; tick++) {
