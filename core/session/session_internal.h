@@ -103,7 +103,7 @@ typedef struct cau_substep {
 	double *push;
 	bool disturbed;                 // a substep did not end at its solution
 	double touching_j;              // energy of tissue on tissue at the tick's start
-	int32_t iterations, backtracks; // statistics of the first substep, as those below
+	int32_t iterations, backtracks; // statistics of the first substep, also on the next line
 	double local_s, contact_s, residual, error;
 } cau_substep;
 

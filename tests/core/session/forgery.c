@@ -35,7 +35,7 @@ static cau_scene_def *tiny_scene(int kind)
 	cau_default_gravity(scene->gravity_m_s2);
 	scene->parting = kind == FORGERY_BY_POWER ? CAU_PARTING_ELEMENTS : kind;
 	scene->energy = kind == FORGERY_BY_POWER ? CAU_ENERGY_TISSUE : CAU_ENERGY_PAPER;
-	scene->cell_m = 2e-3; // large cells, so few: each forged snapshot creates them
+	scene->cell_m = 2e-3; // large cells: each forged snapshot creates all of them
 	scene->contact_thickness_m = 2e-4;
 	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.02, 0.012, 5, 3);
 	stage_mesh_of(scene, fascia)->translate_m[2] = 0.002;

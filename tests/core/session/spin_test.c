@@ -154,7 +154,7 @@ static void a_free_block_turns_as_a_rigid_one(void **state)
 	}
 }
 
-// At the everyday accuracy, most of the error is that of the iteration. The rest, and the gain,
+// At the default accuracy, most of the error is that of the iteration. The rest, and the gain,
 // come from the stretch by rotation in the first ticks: the block is not rigid.
 static void a_converged_one_does_so_closely(void **state)
 {

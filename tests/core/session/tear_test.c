@@ -15,7 +15,7 @@ static const double long_m = 0.08, wide_m = 0.02, stiffness_pa = 1e6, tear_j_m2 
 // triangles and of tetrahedra.
 static const double energy_share = 0.1;
 static const double run_m = 0.01; // length by which a tear must grow
-// Additional strain (6 % of energy) at which a tear that has begun must go on growing.
+// Additional strain (6 % of energy) at which a tear that has begun must continue to grow.
 static const double beyond_share = 0.03;
 
 typedef struct strip {
