@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of three, and symmetric matrices xx, yy, zz, xy, xz, yz.
+// Vectors of three numbers. Symmetric matrices are stored as xx, yy, zz, xy, xz, yz.
 #pragma once
 
 #include <math.h>
