@@ -25,7 +25,7 @@ double robot_histogram_quantile(const robot_histogram *h, double share)
 	return 0;
 }
 
-// One row for each factor of two, from the first that has samples to the last.
+// Prints one line for each factor of two, from the first with samples to the last.
 void robot_histogram_print(const robot_histogram *h, const char *name, FILE *out)
 {
 	enum { PER_ROW = 7, WIDTH = 50 }; // 1.1^7 is 1.95

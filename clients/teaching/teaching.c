@@ -21,31 +21,32 @@
 #include "cautery/client.h"
 #include "cautery/defaults.h"
 
-// The cut: where the hook goes down and where it is drawn to, on the sheet at z = 0. SI units.
+// The cut on the sheet at z = 0: where the hook is lowered, and the end of its motion. SI units.
 static const double cut_from_m[3] = {-0.01, 0.0, 0.0};
 static const double cut_to_m[3] = {0.01, 0.0, 0.0};
 static const double cut_speed_m_s = 0.004;
 static const double dwell_s = 3.0; // an edge inside this hook parts after 2.35 s
-static const double wait_s = 0.1;  // at most, for a frame
+static const double wait_s = 0.1;  // longest wait for a frame
 static const double report_every_s = 0.5;
 
-static const char tool_name[] = "hook"; // that the scene has
+static const char tool_name[] = "hook"; // name of the tool in the scene
 
-// What the program holds on to.
+// The state of the program.
 typedef struct lesson {
 	cau_loop *loop;
 	cau_client *client;
 	cau_client_stream *stream;
 	char session[CAU_NAME_BYTES];
 	int64_t faces_at_first;
-	uint64_t sequence; // our own count of commands: frames show the last one applied
+	uint64_t sequence; // counts the commands; frames show the last applied one
 	double report_due_s;
 } lesson;
 
 // ---- watching ----------------------------------------------------------------------------------
 
-// The library decodes every frame into one state, the newest. A position is kept in whole steps of
-// description.step_m, exactly as the server holds it: deltas never drift.
+// Returns the lowest height of a vertex. The library decodes every frame into one state, the
+// newest. A position is a whole number of description.step_m, exactly as the server holds it, so
+// deltas never drift.
 static double deepest_m(const cau_client_stream *stream)
 {
 	const cau_stream_def *def = &stream->def;
@@ -113,9 +114,10 @@ static cau_status energize(lesson *l, int32_t on, cau_error *error)
 	return status;
 }
 
-// Goes from one point to another in `seconds` of the tissue's time, a pose for every frame that
-// comes. On a busy server the tissue's time runs behind ours, and a cut by our clock would be too
-// fast to burn. Everything else (frames in, heartbeats out) happens inside cau_loop_wait.
+// Moves from one point to another in `seconds` of simulated time, with one pose for each received
+// frame. On a busy server simulated time is slower than real time. A cut by the real clock would
+// then be too fast to part the tissue. Everything else (frames in, heartbeats out) happens inside
+// cau_loop_wait.
 static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], double seconds,
                        cau_error *error)
 {
@@ -161,8 +163,8 @@ static cau_status cut(lesson *l, cau_error *error)
 	cau_status status = take_tool(l, error);
 	if (status)
 		return status;
-	// The server turns energy off when it hears nothing of a driver for 250 ms. This sends a
-	// heartbeat every 100 ms, for as long as this program does reach cau_loop_wait.
+	// The server turns energy off after 250 ms without a message from the driver. This call sends a
+	// heartbeat every 100 ms, as long as the program keeps calling cau_loop_wait.
 	cau_client_keep_alive(l->client, true);
 	status = draw(l, above_m, cut_from_m, 1.0, error);
 	if (!status)
@@ -186,7 +188,8 @@ static cau_status create_session(lesson *l, cau_error *error)
 	cau_wire_session_create params = {.has_client_sequence = true, .has_scene = true};
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
 	cau_wire_driver drivers[CAU_MAX_TOOLS];
-	// Lists in an answer go into arrays of the caller; the scene is skipped where there is no room.
+	// Lists in an answer are stored in the caller's arrays. The scene is skipped, because
+	// `definition` is NULL.
 	cau_wire_session_description made = {.layers = {layers, 0, CAU_MAX_LAYERS},
 	                                     .drivers = {drivers, 0, CAU_MAX_TOOLS}};
 	params.client_sequence = cau_client_next_sequence(l->client);
@@ -262,7 +265,7 @@ int main(int argument_count, char **arguments)
 		status = cut(&l, &error);
 	if (!status)
 		status = remove_session(&l, &error);
-	if (status) // errors carry what went wrong, where, and why
+	if (status) // an error says what is wrong, where, and why
 		fprintf(stderr, "cautery-teaching: %s %s\n", error.path, error.reason);
 	if (l.client)
 		cau_client_close(l.client);

@@ -48,32 +48,33 @@
 extern "C" {
 #endif
 
-enum { CAU_COMMAND_JSON_MAX_BYTES = 16384 }; // of one command as text
+enum { CAU_COMMAND_JSON_MAX_BYTES = 16384 }; // largest text of one command
 
-// Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the member's path.
+// Reads a command. Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the
+// member's path.
 cau_status cau_command_from_json(const char *text, size_t bytes, cau_command *command,
                                  cau_error *error);
 
-// One line without its end. Writes every member that the kind has; see cau_scene_to_json for
-// `bytes`.
+// Writes a command as one line without a line end, with every member that its kind has. See
+// cau_scene_to_json for `bytes`.
 cau_status cau_command_to_json(const cau_command *command, char *buffer, size_t capacity,
                                size_t *bytes, cau_error *error);
 
-// A script: one command as JSON on each line, ticks never falling; empty lines are skipped.
+// A script has one command as JSON on each line. Ticks never decrease. Empty lines are skipped.
 typedef struct cau_script {
 	const char *name; // for error->file; may be NULL
 	const char *text; // borrowed
 	size_t bytes;     // of `text`
-	size_t offset;    // of the next line
-	int32_t line;     // last read, from 1
-	uint64_t tick;    // last read
+	size_t offset;    // offset of the next line
+	int32_t line;     // number of the last read line, from 1
+	uint64_t tick;    // tick of the last read command
 } cau_script;
 
-// Begins at the first line of `text`, which is borrowed, as `name` is.
+// Begins at the first line of `text`. Both `text` and `name` are borrowed.
 void cau_script_begin(cau_script *script, const char *name, const char *text, size_t bytes);
 
-// Reads the next command. *end is true (and *command untouched) after the last one. The reason of
-// an error starts with the script's line; reading may go on after it.
+// Reads the next command. After the last one, *end is true and *command is unchanged. The reason of
+// an error starts with the script's line. Reading may continue after an error.
 cau_status cau_script_next(cau_script *script, cau_command *command, bool *end, cau_error *error);
 
 #ifdef __cplusplus
