@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers of frames and heads of sections.
+// Headers of frames, and heads of sections.
 #pragma once
 
 #include "cautery/frame_codec.h"
 
-// Writes CAU_FRAME_HEADER_BYTES. version is taken from the protocol, not from *header.
+// Writes CAU_FRAME_HEADER_BYTES. The version is always CAU_FRAME_VERSION, not that of *header.
 void cau_frame_header_write(uint8_t *out, const cau_frame_header *header);
 
 // Writes a section's head; `payload_bytes` is a multiple of 4.
 void cau_section_head_write(uint8_t *out, cau_section type, size_t payload_bytes);
 
-// Steps through the sections of a frame whose header was read.
+// Iterates over the sections of a frame whose header was read.
 typedef struct section_cursor {
 	const uint8_t *at;
 	const uint8_t *end;
-	int left;               // sections not yet read
+	int left;               // number of sections not yet read
 	int type;               // of the present section
 	const uint8_t *payload; // of the present section
 	size_t payload_bytes;
