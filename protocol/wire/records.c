@@ -299,9 +299,8 @@ const char *cau_tool_force_read(const uint8_t *payload, size_t bytes, cau_stream
 static int is_float_word(size_t word)
 {
 	CAU_ASSERT_INDEX(word, STATISTICS_WORDS);
-	size_t beyond =
-		// index of the first word after the counts: energy_gain_j, resting, error and three counts
-		STATISTICS_FLOATS + STATISTICS_COUNTS;
+	// index of the first word after the counts: energy_gain_j, resting, error and three counts
+	size_t beyond = STATISTICS_FLOATS + STATISTICS_COUNTS;
 	return word < STATISTICS_FLOATS || word == beyond || word == beyond + 2;
 }
 
