@@ -13,7 +13,7 @@
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// ---- heat: a strip of vertices through the ball's middle, all held, looked at from both ends
+// ---- heat: a strip of vertices through the ball's middle, all held
 static const double ball_m = 3e-3, strip_m = 0.02, lattice_m = 2.5e-4;
 
 static void print_temperatures(const cau_session *session, const cau_session_info *info)
@@ -32,8 +32,8 @@ static void heat(double grid_step_m, int32_t grid_cells)
 	int32_t along = (int32_t)(2 * strip_m / lattice_m + 0.5);
 	cau_sheet_material *strip =
 		stage_add_sheet(scene, "strip", 2 * strip_m, 4 * lattice_m, along, 4)->sheet;
-	strip->heat.absorption_per_s = 0; // it takes nothing, so it stays whole
-	// All but one end, which has nowhere to go either.
+	strip->heat.absorption_per_s = 0; // the strip absorbs no energy, so it stays whole
+	// Pins all vertices but one end, which cannot move either.
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){strip_m - lattice_m / 2, 1, 1});
 	cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0);
 	ball->hot_radius_m = ball_m;
@@ -101,7 +101,7 @@ static double lost(cau_vec3 now, cau_vec3 before)
 	return cau_length(cau_sub(now, before)) / cau_length(before);
 }
 
-// `accuracy` of a step; 0: a hundred iterations each.
+// Runs `flight`. If `accuracy` is 0, each step has a hundred iterations.
 static void flight(double accuracy)
 {
 	enum { TICKS = 600 };
@@ -128,7 +128,7 @@ static void flight(double accuracy)
 	free(scene);
 }
 
-// ---- swing: let go level, held at one end; kinetic, elastic and potential energy
+// ---- swing: released in a level position, held at one end; kinetic, elastic and potential energy
 
 static double raised_j(const cau_session *session, double gravity_m_s2)
 {
@@ -145,7 +145,8 @@ static void swing(int steps_per_s)
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
 	cau_layer_def *block =
 		stage_add_slab(scene, "block", (double[]){0.08, 0.02, 0.02}, (int32_t[]){16, 4, 4});
-	block->fat->young_modulus_pa = 2e4; // it sinks by a third of its length
+	// with this modulus the block sinks by a third of its length
+	block->fat->young_modulus_pa = 2e4;
 	block->fat->poisson_ratio = 0.3;
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){-0.0399, 1, 1});
 	cau_default_gravity(scene->gravity_m_s2);
