@@ -200,7 +200,7 @@ static cli_exit find_daemon(cli *c, cli_daemon *daemon)
 	return CLI_DONE;
 }
 
-// The session that the command line names, or NULL.
+// Returns the session that the command line names, or NULL.
 static const char *named_session(const cli *c)
 {
 	const cli_command *command = c->command;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the commands of `cautery` share: their arguments, the connection, and how they end.
+// Declarations for all commands of `cautery`: arguments, connection, results and exit codes.
 #pragma once
 
 #include <stdio.h>
@@ -8,14 +8,14 @@
 #include "cautery/contexts.h"
 #include "cautery/json_writer.h"
 
-// Exit codes, as --help and clients/README.md state them.
+// Exit codes, as documented by --help and clients/README.md.
 typedef enum cli_exit {
 	CLI_DONE = 0,
 	CLI_REFUSED = 1,    // the server answered with an error, or the session is faulted or gone
 	CLI_USAGE = 2,      // wrong arguments
-	CLI_CONNECTION = 3, // no server, no answer in time, connection lost
+	CLI_CONNECTION = 3, // no server, no answer in time, or connection lost
 	CLI_FILE = 4,       // a local file cannot be read or written, or has the wrong content
-	CLI_INCOMPLETE = 5, // a script was refused in part, lost its energy, or was interrupted
+	CLI_INCOMPLETE = 5, // a script was partly refused, lost its energy, or was interrupted
 } cli_exit;
 
 enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 12 };
@@ -32,7 +32,7 @@ typedef struct cli_command {
 	const char *name;      // one word, or two: "snapshot ls"
 	const char *also;      // alias, or NULL
 	const char *arguments; // as --help shows them
-	const char *summary;   // one line
+	const char *summary;   // summary in one line
 	const char *help;      // more lines for --help, or NULL
 	int least, most;       // number of arguments, without an optional session
 	bool session_optional; // an optional session precedes the arguments; the default is the

@@ -14,7 +14,7 @@ typedef struct cli_mcap_chunk cli_mcap_chunk;
 
 typedef struct cli_mcap {
 	FILE *file;
-	uint64_t bytes; // written so far
+	uint64_t bytes; // bytes written so far
 	uint32_t messages;
 	cli_mcap_chunk *chunks; // (messages) chunks, for the summary
 	uint32_t capacity;

@@ -17,7 +17,7 @@ enum { LATE_PERIODS = 2 }; // one period until a render sees an arrived record, 
 
 struct cau_haptics {
 	cau_haptics_def def;
-	double zero_s; // age of a record at which the wanted force is 0
+	double zero_s; // age of the newest record at which the wanted force is 0
 	mailbox mail;
 	local_contact contact;
 	energy_guard guard;

@@ -29,7 +29,7 @@ typedef struct local_force {
 	double pressed_n;    // sum of the planes' forces; friction is proportional to it
 	double normal_n_m;   // stiffness along the normal
 	double grasp_n_m;    // stiffness of the grasp, the same in all directions
-	double damping_ns_m; // of the tissue along the normal
+	double damping_ns_m; // damping of the tissue along the normal
 	double tissue_m_s;   // speed of the tissue along the normal
 } local_force;
 

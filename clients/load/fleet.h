@@ -56,7 +56,7 @@ struct load_fleet {
 	cau_client_clock clock;
 	bool measuring;
 	load_samples frame_ms, command_ms;
-	double position_bytes, moved, delta_bytes; // of delta frames
+	double position_bytes, moved, delta_bytes; // sums over delta frames
 	uint64_t frames, bytes, decode_errors, gaps, gaps_unrecovered, commands, refused;
 	cau_error error;
 };

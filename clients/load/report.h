@@ -8,7 +8,7 @@ typedef struct load_result {
 	double window_s, end_s; // length of the measurement; its end on the server's clock
 	double realtime_factor_min;
 	double steal_pct;      // stolen share of this machine's processor time; NAN if unknown
-	double load_cpu_pct;   // of one core, used by this program
+	double load_cpu_pct;   // processor time of this program, percent of one core
 	double rss_per_viewer; // bytes; NAN if unknown or without added viewers
 	double rss_before, rss_after;
 	int64_t lost_acknowledged; // negative if the log could not be read

@@ -50,7 +50,7 @@ static int read_numbers(const char *line, double *number, int most)
 
 static bool read_line(robot_waypoint *waypoint, const char *line)
 {
-	enum { MOST = 8 }; // time, position, rotation
+	enum { MOST = 8 }; // a line has time (1), position (3) and rotation (4)
 	double number[MOST] = {0, 0, 0, 0, 1, 0, 0, 0};
 	double *p = waypoint->pose.position_m, *q = waypoint->pose.rotation;
 	*waypoint = (robot_waypoint){0};

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How to write a client of Cautery, in one file. Read it from main() at the bottom upwards.
 //
-// A client talks to cauteryd over one WebSocket. Text messages are JSON-RPC 2.0 in both directions;
-// beside each call below stands what travels for it. Binary messages from the server are frames:
-// which vertices moved, which faces are gone, where the tools are. protocol/README.md is the law;
-// this file only shows the way through it. The client library (cautery/client.h) does the parts
-// that every client needs: the socket, hello, ids, decoding, asking for a key frame after a gap,
-// coming back after a lost connection.
+// A client talks to cauteryd over one WebSocket. Text messages are JSON-RPC 2.0 in both directions.
+// The comment above each call below shows its messages. Binary messages from the server are frames
+// with moved vertices, removed faces and poses of tools. protocol/README.md defines all messages;
+// this file is an introduction. The client library (cautery/client.h) does what every client needs:
+// the socket, hello, ids, decoding, requesting a key frame after a gap, and reconnecting.
 //
 //     cautery-teaching [ws://127.0.0.1:8740]
 //
-// makes a session of the scene `fascia`, a taut sheet pinned at its rim; lowers the hook on it,
-// turns its energy on, waits until heat parts the first edges, draws a cut, and removes the
-// session.
+// The program creates a session of the scene `fascia`, a taut sheet pinned at its rim. It lowers
+// the hook onto the sheet, turns its energy on, and waits until heat parts the first edges. Then it
+// draws a cut and removes the session.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,8 +78,8 @@ static void report(lesson *l)
 
 // ---- driving -----------------------------------------------------------------------------------
 
-// Poses are sent as notifications: nothing comes back, and if several arrive within a tick the
-// newest counts.
+// Sends a pose as a notification. The server sends no answer. If several poses arrive within a
+// tick, the newest counts.
 //
 //     {"jsonrpc": "2.0", "method": "tool.move", "params": {"session": "d1-lesson", "tool": "hook",
 //      "sequence": 7, "position_m": [0, 0, 0.002], "rotation": [1, 0, 0, 0], "jaw": 0}}
@@ -94,8 +93,9 @@ static cau_status move(lesson *l, const double position_m[3], cau_error *error)
 	return cau_client_move(l->client, l->session, &command, error);
 }
 
-// Energy is a request: it is answered when the command is in the store and will survive a crash.
-// "client_sequence", which the library counts, makes it act once even if it has to be sent twice.
+// Turns energy on or off by a request. The answer comes when the command is in the store and will
+// survive a crash. The library counts "client_sequence". With it, a request that must be sent twice
+// acts only once.
 //
 //     --> {"jsonrpc": "2.0", "id": 4, "method": "tool.energize", "params": {"session": "d1-lesson",
 //          "client_sequence": 3, "tool": "hook", "sequence": 8, "energized": true}}
@@ -143,7 +143,8 @@ static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], 
 	return CAU_OK;
 }
 
-// A tool has one driver. Nobody drives those of a new session: whoever asks first gets it.
+// Becomes the tool's driver. A tool has one driver. The tools of a new session have none, so the
+// first client that asks becomes the driver.
 //
 //     --> {"jsonrpc": "2.0", "id": 3, "method": "tool.take_over",
 //          "params": {"session": "d1-lesson", "client_sequence": 2, "tool": "hook"}}
@@ -180,6 +181,8 @@ static cau_status cut(lesson *l, cau_error *error)
 
 // ---- the session -------------------------------------------------------------------------------
 
+// Creates the session.
+//
 //     --> {"jsonrpc": "2.0", "id": 1, "method": "session.create",
 //          "params": {"client_sequence": 1, "scene": "fascia"}}
 //     <-- {"jsonrpc": "2.0", "id": 1, "result": {"summary": {"session": "d1-fascia-1", ...}, ...}}
@@ -205,6 +208,8 @@ static cau_status create_session(lesson *l, cau_error *error)
 	return CAU_OK;
 }
 
+// Joins the session and waits for the first key frame.
+//
 //     --> {"jsonrpc": "2.0", "id": 2, "method": "session.join",
 //          "params": {"session": "d1-fascia-1"}}
 //     <-- {"jsonrpc": "2.0", "id": 2, "result": {"session_number": 1, "vertex_count": 3111,
@@ -220,6 +225,8 @@ static cau_status join_session(lesson *l, cau_error *error)
 	return status;
 }
 
+// Removes the session.
+//
 //     --> {"jsonrpc": "2.0", "id": 9, "method": "session.destroy", "params": {...}}
 static cau_status remove_session(lesson *l, cau_error *error)
 {
@@ -229,7 +236,7 @@ static cau_status remove_session(lesson *l, cau_error *error)
 	return cau_client_call(l->client, CAU_METHOD_SESSION_DESTROY, &params, NULL, error);
 }
 
-// The first message is hello; cau_client_connect sends it and waits for the answer.
+// Connects. The first message is hello; cau_client_connect sends it and waits for the answer.
 //
 //     --> {"jsonrpc": "2.0", "id": 0, "method": "hello", "params": {"version": 1,
 //          "client": "cautery-teaching"}}

@@ -11,7 +11,7 @@
 
 // ---- building blocks ----------------------------------------------------------------------------
 
-// session_summary -> SessionSummary, tool.add -> ToolAdd
+// Converts a name to PascalCase: session_summary to SessionSummary, tool.add to ToolAdd.
 static void pascal(char *to, size_t bytes, const char *from)
 {
 	bool start = true;

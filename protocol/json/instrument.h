@@ -10,7 +10,7 @@ typedef struct cau_choice_names {
 } cau_choice_names;
 
 typedef struct cau_tool_choice {
-	cau_choice_names names; // as the object has them
+	cau_choice_names names; // names as the object has them
 	bool chosen;
 	cau_instrument_mode mode; // only if chosen
 } cau_tool_choice;

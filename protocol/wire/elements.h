@@ -53,7 +53,7 @@ typedef struct elements_target {
 	uint32_t *values; // (count x components)
 	size_t count;
 	uint32_t components;
-	uint32_t bias, most; // value + bias, modulo 2^32, must not exceed most
+	uint32_t bias, most; // most: upper limit of value + bias, modulo 2^32
 	bool may_refer_to_held;
 	bool all; // every element must be in the payload
 } elements_target;

@@ -22,5 +22,5 @@ typedef struct section_cursor {
 } section_cursor;
 
 section_cursor cau_sections_begin(const void *bytes, const cau_frame_header *header);
-// Moves to the next section; false after the last one or if something is wrong.
+// Moves to the next section. Returns false after the last section or if the frame is invalid.
 bool cau_sections_next(section_cursor *cursor);

@@ -24,7 +24,7 @@ void bench_options_help(FILE *out);
 
 typedef struct bench_timing {
 	double median_ms, p99_ms, steps_per_s;
-	double stage_ms[CAU_STAGE_COUNT]; // medians
+	double stage_ms[CAU_STAGE_COUNT]; // medians of the stages
 } bench_timing;
 
 double bench_now_s(void);
@@ -53,7 +53,7 @@ typedef struct bench_steps_result {
 } bench_steps_result;
 int bench_steps(const bench_options *options, bench_steps_result *result);
 
-// cut.c: an energized tool is drawn across the scene.
+// cut.c: the scene's tool is moved across the tissue with energy on.
 typedef struct bench_cut_result {
 	double plain_median_ms, plain_p99_ms, cut_p99_ms, cut_p99_over_plain, deferred_max_s;
 	int32_t elements_removed, cutting_steps, refactorisations;
@@ -139,7 +139,7 @@ int bench_update(const bench_options *options, bench_update_result *result);
 
 // remesh.c: the scene's cut by a method that changes the topology, and by this program's method.
 typedef struct bench_remesh_result {
-	int32_t vertices, elements; // before the cut
+	int32_t vertices, elements; // sizes before the cut
 	// the method that changes the topology
 	int32_t changes; // ticks in which the mesh and the data that depend on it changed
 	int32_t vertices_added, elements_added, ill_shaped;

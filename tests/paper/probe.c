@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints what the validation page draws and no other program tells, as CSV, a line a tick or a
-// vertex:
+// Prints CSV for drawings of the validation page that no other program provides. There is one line
+// for each tick or vertex:
 //
-//     paper_probe heat STEP_MM NODES  temperature about a hot ball of 3 mm, by time and distance
-//     paper_probe flight ACCURACY     a free block thrown and set spinning: what it keeps
-//     paper_probe swing STEPS_PER_S   a block that swings from its end: where its energy goes
+//     paper_probe heat STEP_MM NODES  temperature around a hot ball of 3 mm, by time and distance
+//     paper_probe flight ACCURACY     conserved quantities of a free block that flies and spins
+//     paper_probe swing STEPS_PER_S   energies of a block that swings from its end
 //
-// The scenes are made here, in code, so that they stay what they are whatever the shipped ones
-// become.
+// The scenes are made in this program, so that changes to the shipped scenes do not affect them.
 #include <stdio.h>
 
 #include "core/session/stage.h"
@@ -53,7 +52,7 @@ static void heat(double grid_step_m, int32_t grid_cells)
 	free(scene);
 }
 
-// ---- flight: nothing holds the block, no weight; momentum, angular momentum, energy
+// ---- flight: a free block without weight; prints momentum, angular momentum and energy
 static const cau_vec3 thrown_m_s = {0.1, 0.05, -0.02}, spin_rad_s = {8, 4.8, 3.6};
 
 typedef struct motion {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulated clients: connections, requests, heartbeats.
+// The simulated clients: their connections, requests and heartbeats.
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>

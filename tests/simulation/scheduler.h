@@ -19,7 +19,7 @@ typedef struct sim_random {
 	uint64_t state;
 } sim_random;
 
-sim_random sim_random_of(uint64_t seed, uint64_t purpose); // one stream for each purpose
+sim_random sim_random_of(uint64_t seed, uint64_t purpose); // each purpose has its own sequence
 uint64_t sim_draw(sim_random *random);
 int64_t sim_between(sim_random *random, int64_t least, int64_t most); // both limits included
 bool sim_chance(sim_random *random, int64_t one_in);                  // false if one_in is 0
@@ -79,4 +79,4 @@ __attribute__((format(printf, 2, 3), noreturn)) void sim_fail(const char *promis
                                                               const char *format, ...);
 __attribute__((format(printf, 1, 2))) void sim_say(const char *format, ...); // only with --verbose
 extern bool sim_verbose;
-extern void (*sim_failed)(const char *promise, const char *text); // does not return
+extern void (*sim_failed)(const char *promise, const char *text); // must not return

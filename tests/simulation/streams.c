@@ -22,7 +22,7 @@ enum {
 };
 
 typedef struct stream {
-	uint32_t number; // of the session, on its daemon
+	uint32_t number; // the session's number on its daemon
 	int place;
 	cau_stream_def def;
 	cau_frame_decoder *decoder;
@@ -42,7 +42,7 @@ typedef struct stream {
 typedef struct seen_state {
 	bool used;
 	uint64_t tick;
-	double height_m; // of the first vertex
+	double height_m; // height of the first vertex
 	unsigned lit;    // energy on, one bit a tool
 } seen_state;
 

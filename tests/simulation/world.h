@@ -14,7 +14,7 @@ enum {
 	CLIENTS = 4,
 	COURIERS = 2, // connections of the courier, which are the clients after the others
 	SESSIONS = 3,
-	TOOLS = 2, // of the scene
+	TOOLS = 2, // tools of the scene
 	REQUESTS_MOST = 1 << 14,
 	GRAVITIES_MOST = 4096,
 	NAME_MOST = 49,
@@ -65,7 +65,7 @@ typedef enum ask {
 typedef struct sim_request {
 	ask what;
 	int client, session, tool; // -1 if there is none
-	int life;                  // of the session's name
+	int life;                  // number of the session with this name
 	int64_t sequence;          // client_sequence, or 0
 	int gravity;               // GRAVITY: number of the gravity
 	int ticks;                 // ADVANCE: number of ticks

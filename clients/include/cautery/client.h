@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connection to cauteryd: hello, requests, streams decoded to the newest state, files, and
-// reconnecting after a lost connection. protocol/README.md describes the messages.
+// A client of cauteryd. It connects, sends requests, decodes streams to the newest state, transfers
+// files, and reconnects after a lost connection. protocol/README.md describes the messages.
 //
 //     #include "cautery/client.h"
 //
@@ -31,9 +31,9 @@
 //         return status;
 //     }
 //
-// A loop and its clients belong to one thread. Callbacks are called inside cau_loop_wait and inside
-// the calls that wait (connect, call, command, join, upload, download, close); they may send, but
-// must not wait and must not destroy.
+// A loop and its clients belong to one thread. Callbacks run inside cau_loop_wait and inside the
+// functions that wait (connect, call, command, join, leave, upload, download, close). A callback
+// may send, but must not call a function that waits, and must not destroy a client or loop.
 #pragma once
 
 #include <stdbool.h>
@@ -72,7 +72,7 @@ double cau_client_now(void); // seconds of CLOCK_MONOTONIC
 typedef enum cau_client_condition {
 	CAU_CLIENT_IDLE,       // not connected yet
 	CAU_CLIENT_CONNECTING, // connecting, or waiting for the answer to hello
-	CAU_CLIENT_READY,      // hello is answered: requests are sent
+	CAU_CLIENT_READY,      // hello is answered, so requests can be sent
 	CAU_CLIENT_LOST,       // waits before it reconnects
 	CAU_CLIENT_CLOSED,     // does not reconnect; cau_client_trouble has the reason
 } cau_client_condition;

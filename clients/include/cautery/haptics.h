@@ -4,7 +4,7 @@
 //
 //     #include "cautery/haptics.h"
 //
-//     // One period of a device: the newest record, or NULL, and what the motors are to give.
+//     // One period of a device. `record` is new, or NULL. The motors get force_n.
 //     static void serve(cau_haptics *haptics, const cau_tool_contact *record, double now_s,
 //                       const cau_haptics_device *device, double force_n[3])
 //     {
@@ -18,8 +18,8 @@
 // records:
 //
 //   - Over any time the device gets at most the energy that it gave plus reserve_j. This holds if
-//     the device has at least mass_kg, the hand pushes with hand_n at most, and the calls come every
-//     period_s.
+//     the device has at least mass_kg, the hand pushes with hand_n at most, and the calls come
+//     every period_s.
 //   - From call to call the force changes by CAU_HAPTICS_SLEW_N_S times period_s at most.
 //   - The force is 0 CAU_HAPTICS_SILENCE_S after the last record.
 //
@@ -58,7 +58,7 @@ typedef struct cau_haptics_def {
 	double force_max_n; // largest force of the device, at most CAU_HAPTICS_SLEW_N_S * 0.02 s; 5
 } cau_haptics_def;
 
-// A definition with every member at its default.
+// Returns a definition with every member at its default.
 cau_haptics_def cau_default_haptics_def(void);
 
 // Creates a renderer. The caller destroys it. Errors: CAU_BAD_VALUE with the path of the member,
@@ -74,7 +74,7 @@ void cau_haptics_take(cau_haptics *haptics, const cau_tool_contact *record);
 // State of the device at the beginning of a period.
 typedef struct cau_haptics_device {
 	cau_pose pose;          // pose of the tool's tip in the world, which is the commanded pose
-	double velocity_m_s[3]; // of the tip
+	double velocity_m_s[3]; // velocity of the tip
 } cau_haptics_device;
 
 // Computes the force (N, in the world) for the next period. `now_s` is any clock that does not run
@@ -88,8 +88,8 @@ typedef struct cau_haptics_report {
 	double
 		given_j; // energy given to the device since creation, minus the energy that the device gave
 	double tank_j; // energy that may be given now
-	double age_s;  // of the newest record
-	bool touching; // the record's contact pushes
+	double age_s;  // age of the newest record
+	bool touching; // the newest record's contact pushes
 	bool limited;  // the energy limit changed the force
 	bool fading;   // the newest record is too old or not valid, or the device's state is not finite
 } cau_haptics_report;

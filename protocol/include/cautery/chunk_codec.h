@@ -5,7 +5,7 @@
 //
 //     #include "cautery/chunk_codec.h"
 //
-//     // Puts a chunk where it belongs in a file that is coming in.
+//     // Copies a chunk to its position in a file that is being received.
 //     static cau_status take_chunk(const void *message, size_t bytes, uint8_t *file,
 //                                  size_t file_bytes, cau_error *error)
 //     {

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands as JSON, the same on the wire, in logs and in scripts:
+// Commands as JSON. Messages, logs and scripts use the same form:
 //
 //     {"tick": 60, "command": "tool.move", "tool": "hook",
 //      "position_m": [0, 0, 0.002], "rotation": [1, 0, 0, 0], "jaw": 0}
 //
-// Members beside "command", "tick" (0: at once) and "sequence" (0), by command:
-//     tool.add         name, shape, and what else a scene's tool may have
+// All commands have "command", "tick" (default 0: at once) and "sequence" (default 0). The other
+// members depend on the command; a default is in parentheses:
+//     tool.add         name, shape, and the optional members of a scene's tool
 //     tool.remove      tool
-//     tool.configure   tool, shape, sizes as in a scene's tool: replaces all, defaults where absent
-//                      (or those of `instrument` in `mode`)
+//     tool.configure   tool, shape, and sizes as in a scene's tool. All sizes are replaced; absent
+//                      ones by the defaults, or by those of `instrument` in `mode`
 //     tool.move        tool, position_m, rotation, jaw (0)
-//     tool.energize    tool, energized (true or false), ticks (of an enable: off after so many)
+//     tool.energize    tool, energized (true or false), ticks (of an enable: its duration)
 //     tool.grasp       tool
 //     tool.release     tool
 //     tool.hold        tool
 //     pin, unpin       selection
-//     material.set     layer, kind (the layer's), region (0), and the members of such a material
+//     material.set     layer, kind (of the layer), region (0), and the members of such a material
 //     gravity.set      gravity_m_s2
 //     force.set        selection, force_n
 // Rotations are quaternions w, x, y, z, within 1e-3 of unit length; they are normalised.
 //
 //     #include "cautery/command_json.h"
 //
-//     // How many commands a script has; -1: *error says which line is none.
+//     // Returns the number of commands in a script, or -1 with the bad line in *error.
 //     static int64_t count_commands(const char *text, size_t bytes, cau_error *error)
 //     {
 //         cau_script script;

@@ -5,7 +5,7 @@
 //
 //     #include "cautery/frame_codec.h"
 //
-//     // At each due tick: the delta goes to all, a key frame to those who have just come.
+//     // Encodes a tick: a delta for all clients, and a key frame if a client has just joined.
 //     static cau_status publish(cau_frame_encoder *encoder, const cau_stream_sample *sample,
 //                               bool came, void *frame, void *key, size_t capacity,
 //                               size_t bytes[2], cau_error *error)
@@ -16,7 +16,7 @@
 //         return status;
 //     }
 //
-//     // On the other side: false where a key frame is to be asked for.
+//     // Decodes a frame. Returns false if the client must request a key frame.
 //     static bool follow(cau_frame_decoder *decoder, const void *frame, size_t bytes)
 //     {
 //         return !cau_frame_decode(decoder, frame, bytes, NULL) &&
@@ -71,7 +71,7 @@ typedef enum cau_section { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_OTHER_SECTION_TABLE(
 #undef ROW
 #undef X
 
-// The fixed start of every frame.
+// The header at the start of every frame.
 typedef struct cau_frame_header {
 	uint8_t version;     // CAU_FRAME_VERSION
 	uint8_t kind;        // CAU_FRAME_*
@@ -79,10 +79,10 @@ typedef struct cau_frame_header {
 	uint32_t byte_count; // of the whole frame
 	uint32_t session;    // the session's number on its daemon
 	uint64_t epoch;      // a new number after rewind, reset, restore and restart
-	uint64_t sequence;   // counts from 1 in each epoch
+	uint64_t sequence;   // number of the frame in its epoch, from 1
 	// sequence of the state that the frame builds on; in a key frame its own sequence
 	uint64_t base_sequence;
-	uint64_t tick;          // of the state
+	uint64_t tick;          // tick of the state
 	double time_s;          // simulated time of the state
 	uint64_t published_us;  // on the server's monotonic clock
 	uint16_t profile;       // profile number in the session
@@ -162,10 +162,10 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
                                   cau_frame_decoder **decoder, cau_error *error);
 
 // Takes one key or delta frame. Errors:
-//   CAU_BAD_STATE    another session, profile or epoch, a base that is not held, or older than what
-//                    is held (path names the field). The state is kept as it was.
-//   CAU_UNSUPPORTED  another version. The state is kept.
-//   CAU_CORRUPT      truncated, indices out of range, damaged sections. If the header was sound,
+//   CAU_BAD_STATE    another session, profile or epoch, another base than the present state, or an
+//                    older frame (path names the field). The state is unchanged.
+//   CAU_UNSUPPORTED  another version. The state is unchanged.
+//   CAU_CORRUPT      truncated, indices out of range, damaged sections. If the header was valid,
 //                    the state is lost (synced is false) until the next key frame.
 cau_status cau_frame_decode(cau_frame_decoder *decoder, const void *bytes, size_t byte_count,
                             cau_error *error);

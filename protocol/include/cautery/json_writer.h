@@ -33,7 +33,7 @@ typedef struct cau_json_writer {
 	size_t capacity; // bytes of the buffer, including the closing zero
 	size_t bytes;    // bytes needed so far without the closing zero; may exceed the capacity
 	int32_t indent;  // spaces a level; 0 for one line
-	int32_t depth;   // open levels
+	int32_t depth;   // number of open levels
 	char closing[CAU_JSON_MAX_DEPTH];  // '}' or ']' of each open level
 	bool occupied[CAU_JSON_MAX_DEPTH]; // the level has a value
 	bool flat[CAU_JSON_MAX_DEPTH];     // the level stays on one line despite `indent`

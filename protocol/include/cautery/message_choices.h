@@ -12,7 +12,7 @@
 //         return words[role];
 //     }
 //
-//     // Each may do what those before it may.
+//     // Each role includes the roles before it.
 //     static bool may_operate(cau_role role)
 //     {
 //         return role >= CAU_ROLE_OPERATE;
@@ -24,7 +24,7 @@
 #include "cautery/status.h"
 #include "cautery/stream.h"
 
-#define CAU_ROLE_TABLE(X) /* each may do what those before it may */                               \
+#define CAU_ROLE_TABLE(X) /* each role includes the roles before it */                             \
 	X(VIEW, "view")                                                                                \
 	X(OPERATE, "operate")                                                                          \
 	X(ADMIN, "admin")

@@ -4,7 +4,7 @@
 //
 //     #include "cautery/messages.h"
 //
-//     // The least role that may call a method; an admin's for what there is not.
+//     // Returns the lowest role that may call a method, or CAU_ROLE_ADMIN for an unknown method.
 //     static cau_role needed_role(const char *method)
 //     {
 //         int32_t found = cau_method_find(method);
@@ -29,7 +29,7 @@ extern "C" {
 // before filling it, except the `items` and `capacity` of the item's own lists.
 typedef struct cau_wire_list {
 	void *items;      // of the type cau_wire_* that messages.def names
-	int32_t count;    // of the items
+	int32_t count;    // number of items
 	int32_t capacity; // of `items`; only for readers
 } cau_wire_list;
 

@@ -4,7 +4,7 @@
 //
 //     #include "cautery/rpc.h"
 //
-//     // Answers session.step, whatever else comes.
+//     // Answers session.step; a message of another method gets an error.
 //     static cau_status answer(const char *text, size_t bytes, cau_rpc_buffer *out,
 //                              cau_error *error)
 //     {
@@ -66,8 +66,8 @@ typedef struct cau_rpc_message {
 		CAU_RPC_RESULT,       // a successful answer; read it with cau_rpc_result
 		CAU_RPC_ERROR,        // an answer with an error, in `fault`
 	} kind;                   // kind of the message
-	cau_rpc_id id;            // of requests and answers
-	cau_method method;        // of requests and notifications
+	cau_rpc_id id;            // only of requests and answers
+	cau_method method;        // only of requests and notifications
 	cau_rpc_fault fault;      // only of CAU_RPC_ERROR
 	void *document;           // private; cau_rpc_finish frees it
 } cau_rpc_message;
@@ -113,7 +113,7 @@ cau_status cau_rpc_result(const cau_rpc_message *message, cau_method method, voi
 
 // Fills *fault from an error: the code for its status, its path and its reason.
 void cau_rpc_fault_of_error(cau_rpc_fault *fault, const cau_error *error);
-// Fills *fault from a code, without a path.
+// Fills *fault from a code and a reason, without a path.
 void cau_rpc_fault_of_code(cau_rpc_fault *fault, cau_rpc_error_code code, const char *reason);
 
 // ---- writing ------------------------------------------------------------------------------------

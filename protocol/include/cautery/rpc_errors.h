@@ -3,7 +3,7 @@
 //
 //     #include "cautery/rpc_errors.h"
 //
-//     // As an answer's members code, message and data.status have it.
+//     // Prints an error like an answer's members code, message and data.status.
 //     static void tell(FILE *out, cau_status status)
 //     {
 //         int code = cau_rpc_error_of_status(status);

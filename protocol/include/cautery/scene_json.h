@@ -7,7 +7,7 @@
 //
 //     #include "cautery/scene_json.h"
 //
-//     // Every member of a scene, those that its text leaves out too.
+//     // Writes every member of a scene, including those that its text leaves out.
 //     static cau_status complete(const char *text, size_t bytes, cau_scene_def *scene,
 //                                char *buffer, size_t capacity, cau_error *error)
 //     {

@@ -4,7 +4,7 @@
 //
 //     #include "cautery/stream.h"
 //
-//     // A stream of positions alone, to a hundredth of a millimetre.
+//     // Defines a stream with only positions, to a hundredth of a millimetre.
 //     static cau_status define(int32_t vertices, int32_t faces, cau_stream_def *def,
 //                              cau_error *error)
 //     {
@@ -120,18 +120,18 @@ typedef struct cau_stream_statistics {
 	float realtime_factor;            // simulated time over wall time in the last second
 	float step_cost_s;                // wall time of the last step
 	float stage_s[CAU_STREAM_STAGES]; // wall time of each stage of the last step
-	float residual;                   // relative
+	float residual;                   // relative residual
 	float deferred_max_s;             // longest wait for a downdate, in simulated time
 	uint32_t iterations;              // of the last step
 	uint32_t backtracks;              // refused increments
 	uint32_t inverted;                // tetrahedra with negative volume
-	uint32_t edges_parted;            // since creation
-	uint32_t elements_removed;        // since creation
+	uint32_t edges_parted;            // total since creation
+	uint32_t elements_removed;        // total since creation
 	uint32_t pending_downdates;       // removed elements that are still in the factor
-	uint32_t refactorisations;        // since creation
+	uint32_t refactorisations;        // total since creation
 	uint32_t contacts;                // contact constraints of the last step
 	uint32_t frozen_vertices;         // vertices that do not move any more
-	uint32_t refused_commands;        // since creation
+	uint32_t refused_commands;        // total since creation
 	float energy_gain_j;              // 0 if the sender does not send it
 	uint32_t resting; // 1 if the tissue is at rest; 0 if the sender does not send it
 	// estimated error of the last step; 0 if the sender does not send it

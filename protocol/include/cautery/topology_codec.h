@@ -5,7 +5,7 @@
 //
 //     #include "cautery/topology_codec.h"
 //
-//     // To whoever joined, before the first key frame.
+//     // Makes the frame for a client that has joined, to be sent before the first key frame.
 //     static cau_status send_topology(const cau_stream_def *def, const cau_topology *topology,
 //                                     void *scratch, void *frame, size_t capacity, size_t *bytes,
 //                                     cau_error *error)

@@ -76,7 +76,7 @@ static void hold(double young_modulus_pa, double delay_s)
 	is_safe(&log);
 	if (!CAU_TEST_SANITIZED) {
 		assert_true(most - least < most_trembling_n);
-		assert_true(most > 0.08); // it does press
+		assert_true(most > 0.08); // the hand does press
 	}
 	loop_finish(&log);
 }

@@ -131,7 +131,7 @@ static void a_gap_is_closed_by_a_key_frame(void **state)
 	assert_true(s.key_frames_asked >= 1); // the client repeats the request after a second
 }
 
-// Sends a delta whose sections are overwritten.
+// Sends a delta with overwritten sections.
 static bool damage_a_frame(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
 	if (message->method != CAU_METHOD_SESSION_JOIN)

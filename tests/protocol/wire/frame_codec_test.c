@@ -184,7 +184,7 @@ static void test_a_new_epoch_starts_with_a_key_frame(void **unused)
 	tissue_move(&of.tissue, 30, 0.05);
 	chain_pass(&of);
 	tissue_move(&of.tissue, 31, 0.05);
-	chain_encode(&of); // on its way when the session is rewound
+	chain_encode(&of); // this frame is still on its way when the session is rewound
 	uint8_t *late = malloc(of.byte_count);
 	size_t late_bytes = of.byte_count;
 	memcpy(late, of.bytes, late_bytes);

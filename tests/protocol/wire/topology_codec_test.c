@@ -182,7 +182,7 @@ static void test_a_known_frame_is_used(void **unused)
 	memcpy(whole, other->bytes, whole_bytes);
 	other->topology.known = of->bytes;
 	other->topology.known_bytes = of->byte_count;
-	other->face[0] = VERTICES; // is not read
+	other->face[0] = VERTICES; // must not be read
 	assert_int_equal(encode(other, NULL), CAU_OK);
 	assert_int_equal(other->byte_count, whole_bytes);
 	assert_memory_equal(other->bytes, whole, whole_bytes);
