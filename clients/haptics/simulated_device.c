@@ -103,7 +103,8 @@ static cau_status run(program *p, cau_error *error)
 	cau_client_keep_alive(p->client, true);
 	while (done < periods) {
 		int due = (int)((cau_client_now() - start_s) / period_s);
-		if (due > done + LATE_PERIODS) { // Too late: skip these periods, the device loses the time.
+		// After a long delay the due periods are postponed, so that they do not all follow at once.
+		if (due > done + LATE_PERIODS) {
 			start_s += (due - done) * period_s;
 			continue;
 		}

@@ -126,8 +126,8 @@ bool cau_follow(cau_client *client, const char *from, const char *to, const char
 	return true;
 }
 
-// Closes the connection when no request waits for an answer from this daemon. The daemon answers
-// the other requests with `moved` at once. A request without an answer is resent if it may be.
+// Closes the connection once every pending request can be sent again to the new daemon. The old
+// daemon answers all other requests at once, with `moved`.
 void cau_follow_when_answered(cau_client *client)
 {
 	for (const cau_client_pending *p = client->first_pending; p; p = p->next)

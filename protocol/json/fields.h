@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tables of scenes and commands: which members each JSON object may have. If members depend on
-// a kind, the record's first field is that kind.
+// a kind, the record's first field is that kind. The comment at each table names the C type, or the
+// member, that the table reads and writes.
 #pragma once
 
 #include "cautery/command.h"

@@ -9,7 +9,7 @@
 
 enum {
 	LONGEST = 63,
-	// a word of three letters may have one slip more, a word of six letters two
+	// a word of three letters may have one slip, a word of six letters two
 	LETTERS_PER_SLIP = 3,
 };
 

@@ -11,6 +11,7 @@
 #include "cautery/scene.h"
 #include "json/value.h"
 
+// The types of fields. Each comment is the C type of the struct member.
 typedef enum cau_field_type {
 	CAU_FIELD_NUMBER,   // double
 	CAU_FIELD_INTEGER,  // int32_t

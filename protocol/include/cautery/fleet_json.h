@@ -33,7 +33,7 @@ enum {
 // The labels behind an address.
 typedef struct cau_fleet {
 	int32_t count;                                     // 0 means no fleet: a single daemon
-	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES]; // (count)
+	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES]; // `count` labels
 } cau_fleet;
 
 // Reads the answer. Each label is a name without "-", and no label occurs twice. The answer of a

@@ -41,7 +41,7 @@ typedef struct cau_instrument {
 	char name[CAU_NAME_BYTES];                // of the instrument
 	char description[CAU_TEXT_BYTES];         // description for people
 	int32_t mode_count;                       // at least 1
-	cau_instrument_mode modes[CAU_MAX_MODES]; // (mode_count); mode 0 is the default
+	cau_instrument_mode modes[CAU_MAX_MODES]; // `mode_count` modes; mode 0 is the default
 } cau_instrument;
 
 // Returns the number of instruments.

@@ -69,7 +69,7 @@ typedef struct cau_command_line {
 	int word_count;         // number of these words
 	const char *summary;    // what the program does, in whole lines
 	const char *closing;    // lines after the options in --help, such as exit codes, or NULL
-	const cau_option *rows; // (row_count)
+	const cau_option *rows; // `row_count` options
 	int row_count;          // number of options
 } cau_command_line;
 
