@@ -56,14 +56,14 @@ typedef enum cau_frame_kind {
 // table has the others. X(code, number, wire name)
 #define CAU_OTHER_SECTION_TABLE(X)                                                                 \
 	X(TOOL_NAMES, 6, "tool_names") /* of the channel tools */                                      \
-	X(FACES, 16, "faces")          /* the rest: of topology frames */                              \
+	X(FACES, 16, "faces")          /* from here to REST: of topology frames */                     \
 	X(FACE_LAYERS, 17, "face_layers")                                                              \
 	X(TEXTURE, 18, "texture")                                                                      \
 	X(REST, 19, "rest")                                                                            \
 	X(TOOLS_ASKED, 32, "tools_asked") /* of the channel tools */                                   \
-	X(TOOL_JAWS, 33, "tool_jaws")     /* of tools, too */                                          \
-	X(TOOL_POWER, 34, "tool_power")   /* of tools, too */                                          \
-	X(TOOL_FORCE, 35, "tool_force")   /* of tools, too */
+	X(TOOL_JAWS, 33, "tool_jaws")     /* of the channel tools */                                   \
+	X(TOOL_POWER, 34, "tool_power")   /* of the channel tools */                                   \
+	X(TOOL_FORCE, 35, "tool_force")   /* of the channel tools */
 #define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
 // The number of a section.

@@ -35,7 +35,7 @@
 	X(PAUSED, "paused")                                                                            \
 	X(FAULTED, "faulted")
 
-#define CAU_CHANGE_TABLE(X) /* why session.changed was sent */                                     \
+#define CAU_CHANGE_TABLE(X) /* the reason for session.changed */                                   \
 	X(CREATED, "created")                                                                          \
 	X(DESTROYED, "destroyed")                                                                      \
 	X(PAUSED, "paused")                                                                            \
@@ -54,11 +54,11 @@
 	X(CREATED, "created")                                                                          \
 	X(CUT, "cut")                                                                                  \
 	X(TEAR, "tear")                                                                                \
-	X(INVERTED, "inverted")       /* tetrahedra of a layer that stay inside out */                 \
+	X(INVERTED, "inverted")       /* tetrahedra of a layer stay inverted */                        \
 	X(ENERGY_GAIN, "energy_gain") /* steps added energy without a source */                        \
 	X(BLEEDING, "bleeding")       /* blood begins to leave a vessel */                             \
 	X(BLEEDING_STOPPED, "bleeding_stopped")                                                        \
-	X(SEALED, "sealed") /* a seal of a vessel withstands its pressure */                           \
+	X(SEALED, "sealed") /* a seal withstands the vessel's pressure */                              \
 	X(ENERGY_ON, "energy_on")                                                                      \
 	X(ENERGY_OFF, "energy_off")                                                                    \
 	X(WATCHDOG, "watchdog")                                                                        \
@@ -73,7 +73,7 @@
 	X(RESTORE, "restore")
 
 #define CAU_EXPORT_TABLE(X)                                                                        \
-	X(VTU, "vtu") /* tetrahedra and triangles that are left, with fields, for ParaView */          \
+	X(VTU, "vtu") /* remaining tetrahedra and triangles with fields, for ParaView */               \
 	X(OBJ, "obj") /* drawn faces */
 
 #define CAU_LOOK_STAGE_TABLE(X)                                                                    \
