@@ -24,14 +24,14 @@ typedef struct cli cli;
 
 typedef struct cli_option {
 	const char *name;     // without the dashes; NULL marks the end of a table
-	const char *argument; // as --help shows it; NULL for a flag
+	const char *argument; // its name in --help; NULL for a flag
 	const char *meaning;
 } cli_option;
 
 typedef struct cli_command {
 	const char *name;      // one word, or two: "snapshot ls"
 	const char *also;      // alias, or NULL
-	const char *arguments; // as --help shows them
+	const char *arguments; // the arguments' names in --help
 	const char *summary;   // summary in one line
 	const char *help;      // more lines for --help, or NULL
 	int least, most;       // number of arguments, without an optional session

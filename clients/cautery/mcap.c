@@ -34,8 +34,8 @@ static const unsigned char magic[] = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'}
 
 struct cli_mcap_chunk {
 	uint64_t time_ns;
-	uint64_t offset; // of the chunk record in the file
-	uint64_t bytes;  // of the chunk record, with its head
+	uint64_t offset; // offset of the chunk record in the file
+	uint64_t bytes;  // size of the chunk record, with its head
 };
 
 // ---- records -----------------------------------------------------------------------------------

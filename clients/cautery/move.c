@@ -20,7 +20,7 @@ typedef struct courier {
 	bool exact;
 	double bytes;
 	bool arrives;     // the target daemon has at least one piece
-	char receipt[65]; // of the last delivered piece
+	char receipt[65]; // receipt of the last delivered piece
 	double stood_s;   // time at which the session was suspended
 	char token[CAU_CLIENT_TOKEN_BYTES];
 } courier;

@@ -24,7 +24,7 @@ typedef struct recorder {
 	double start_s;
 	uint64_t due;  // number of the next message, in intervals of scene_s since the start
 	uint64_t told; // stream->frames when the last message was written
-	char *text;    // of one message
+	char *text;    // text of one message
 	size_t text_bytes;
 	FILE *text_stream; // writes to `text`
 } recorder;

@@ -15,7 +15,7 @@
 
 #include "haptics/vector.h"
 
-enum { SWEEPS = 32 }; // of Gauss-Seidel over at most 8 planes, starting from the last forces
+enum { SWEEPS = 32 }; // Gauss-Seidel sweeps over at most 8 planes, starting from the last forces
 static const double hertz = 1.5;    // exponent of the depth
 static const double most_share = 2; // multiple of the record's force up to which stiffness grows
 static const double settled = 1e-9; // N; iteration ends when no force changes by more

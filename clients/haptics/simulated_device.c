@@ -34,7 +34,7 @@ typedef struct program {
 	cau_client_stream *stream;
 	cau_haptics *haptics;
 	char session[CAU_NAME_BYTES];
-	uint64_t sequence, tick; // of the program's commands; of the last record
+	uint64_t sequence, tick; // sequence of the last command; tick of the last record
 	int record_count;
 	cau_haptics_device device;
 	double least_n, most_n; // along z in the last second

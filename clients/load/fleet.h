@@ -29,7 +29,7 @@ typedef struct load_mark {
 } load_mark;
 
 typedef struct load_driver {
-	int64_t sequence; // of the last sent command
+	int64_t sequence; // sequence of the last sent command
 	double sent_s[LOAD_OPEN_COMMANDS];
 	int64_t shown; // last sequence that a frame has shown
 	double due_s, request_due_s;

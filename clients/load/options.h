@@ -18,9 +18,10 @@ typedef enum load_exit {
 typedef struct load_options {
 	const char *url, *scene;
 	const char *token_file; // file of the token, or NULL
-	const char *token;      // from the environment, or from token_file after it is read; or NULL
+	// the token, from the environment or from token_file after that is read; or NULL
+	const char *token;
 	int32_t sessions;
-	int32_t viewers; // of each session; viewer 0 drives
+	int32_t viewers; // viewers of each session; viewer 0 drives
 	double seconds;  // length of the measurement after the warm-up
 	double warm_up_s;
 	double slow_pct; // percentage of the viewers that do not drive

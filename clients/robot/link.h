@@ -22,7 +22,8 @@ typedef struct robot_link {
 	bool has_force;            // a measured_cf has come
 	char name[65];             // the server's name for this writer
 	double sent_s[ROBOT_SENT]; // time of each command, at index sequence % ROBOT_SENT
-	robot_histogram latency;   // from writing a command to the arrival of the state that shows it
+	// time from writing a command to the arrival of the state that shows it
+	robot_histogram latency;
 } robot_link;
 
 // Opens the connection. Returns false after printing the reason on `errors`. Call robot_link_close

@@ -11,8 +11,8 @@ typedef struct robot_options {
 	const char *trajectory; // file, or NULL for the line from `from_m` to `to_m`
 	double from_m[3], to_m[3];
 	double speed_m_s;     // along the line, and on the approach to its start
-	double dwell_s;       // at the start of the line
-	double rate_hz;       // of the commands
+	double dwell_s;       // wait at the start of the line
+	double rate_hz;       // commands a second
 	double deadline_s;    // deadline that the writer declares
 	double force_limit_n; // force above which the tool retreats; 0 for no limit
 	double seconds;       // time limit; 0 means until the trajectory's end

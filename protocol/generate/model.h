@@ -17,7 +17,7 @@ typedef enum property_kind {
 	PROPERTY_HEX64,
 	PROPERTY_CHOICE,
 	PROPERTY_CHOICES, // a set of words
-	PROPERTY_OBJECT,  // of type `type`
+	PROPERTY_OBJECT,  // an object of type `type`
 	PROPERTY_OBJECTS, // array of at most `count`
 } property_kind;
 

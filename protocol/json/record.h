@@ -31,8 +31,8 @@ typedef struct cau_choices {
 typedef struct cau_field {
 	const char *name;
 	cau_field_type type;
-	size_t offset; // of the member in the struct
-	int32_t count; // of a NUMBER or INTEGER: 0 for a scalar, else the length of the array
+	size_t offset; // offset of the member in the struct
+	int32_t count; // for a NUMBER or INTEGER: 0 for a scalar, else the length of the array
 	// smallest accepted length of the array; values that are not given stay. 0: only `count`
 	int32_t least_count;
 	double least, most;         // range of each NUMBER or INTEGER

@@ -27,8 +27,8 @@ typedef struct cau_wire_field {
 	const char *unit, *meaning;
 	double least, most;         // INTEGER, NUMBER, VECTOR, NUMBERS, INTEGERS
 	const cau_choices *choices; // CHOICE, CHOICES
-	size_t offset;              // in the C type
-	size_t has_offset;          // of the bool has_<name>, if the member is optional
+	size_t offset;              // offset of the member in the C type
+	size_t has_offset;          // offset of the bool has_<name>, if the member is optional
 	cau_wire_type type;
 	cau_wire_object object; // PART, LIST
 	int32_t count;          // VECTOR: length; TEXT: most bytes; LIST, NUMBERS, INTEGERS: most items

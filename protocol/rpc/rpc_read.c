@@ -12,8 +12,8 @@
 // removed from the params and "command" is added.
 typedef struct rpc_document {
 	cJSON *root;
-	cJSON *params;          // of root, or NULL
-	cJSON *result;          // of root, or NULL
+	cJSON *params;          // member of `root`, or NULL
+	cJSON *result;          // member of `root`, or NULL
 	cJSON *session;         // removed from a command's params, or NULL
 	cJSON *client_sequence; // removed from a command's params, or NULL
 } rpc_document;

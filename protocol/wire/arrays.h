@@ -21,7 +21,7 @@ typedef struct array_shape {
 	// number of elements; 0 if the stream does not have this channel, or if it is no array
 	size_t count;
 	uint32_t components;
-	uint32_t bias, most; // of the values, see elements_target
+	uint32_t bias, most; // limits of the values, see elements_target
 } array_shape;
 
 array_shape cau_array_shape_of(const cau_stream_def *def, int channel);

@@ -14,7 +14,7 @@ typedef struct cau_tool_set {
 
 struct cau_frame_encoder {
 	cau_stream_def def;
-	cau_frame_header header;           // of the last frame
+	cau_frame_header header;           // header of the last frame
 	uint32_t *held[CAU_CHANNEL_COUNT]; // state of decoders that have all frames
 	uint32_t *next[CAU_CHANNEL_COUNT]; // state of these decoders after the frame that is being made
 	cau_tool_set tools;

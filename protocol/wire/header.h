@@ -15,8 +15,8 @@ typedef struct section_cursor {
 	const uint8_t *at;
 	const uint8_t *end;
 	int left;               // number of sections not yet read
-	int type;               // of the present section
-	const uint8_t *payload; // of the present section
+	int type;               // type of the present section
+	const uint8_t *payload; // payload of the present section
 	size_t payload_bytes;
 	const char *wrong; // what is wrong with the frame, or NULL
 } section_cursor;

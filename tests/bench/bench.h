@@ -13,7 +13,7 @@ typedef struct bench_options {
 	int solver, precision; // -1 for the scene's own
 	double accuracy;       // 0: accuracy is not measured
 	bool cut, error, scaling, rest, update, remesh, classroom, json, help;
-	int32_t sessions, driven, workers; // only for a classroom
+	int32_t sessions, driven, workers; // numbers for a classroom
 	const char *instruction_set;
 } bench_options;
 
@@ -66,7 +66,8 @@ typedef struct bench_along_result {
 	double reported_p50, reported_p95;    // over all steps
 	double true_p50, true_p95, true_most; // over sampled steps
 	double optimistic; // share of sampled steps with a true error above 3 x the reported error
-	double iterations_mean, ms_median, ms_p99; // for each step; processor time of all threads
+	// means and quantiles over all steps; processor time of all threads
+	double iterations_mean, ms_median, ms_p99;
 	int32_t elements_removed;
 } bench_along_result;
 int bench_along(const bench_options *options, bench_along_result *result);
@@ -85,9 +86,10 @@ int bench_error(const bench_options *options, bench_error_result *result);
 
 // accuracy.c: steps that end at an accuracy, alternating with steps of K iterations.
 typedef struct bench_accuracy_result {
-	double speedup_over_k;  // time of K iterations over the time with the accuracy
-	double error_p95;       // of sampled steps, the larger error of the whole and of each chunk
-	double iterations_mean; // for each step
+	double speedup_over_k; // time of K iterations over the time with the accuracy
+	// error of sampled steps: the larger of the errors of the whole and of each chunk
+	double error_p95;
+	double iterations_mean; // mean number of iterations of a step
 	double rest_core_share; // share of one core that a resting session takes
 } bench_accuracy_result;
 int bench_accuracy(const bench_options *options, bench_accuracy_result *result);
@@ -101,7 +103,7 @@ typedef struct bench_classroom_result {
 	double realtime_factor_min;   // simulated over wall time, of the slowest session
 	double bytes_session_further; // memory for each session after the first
 	double cores;                 // number of busy cores
-	int32_t elements_removed;     // by all tools
+	int32_t elements_removed;     // elements that all tools removed
 } bench_classroom_result;
 int bench_classroom(const bench_options *options, bench_classroom_result *result);
 // steps.c: the tools of plain steps. One is above the tissue with energy on, the other pressed into
@@ -152,7 +154,7 @@ typedef struct bench_remesh_result {
 	int32_t our_changes; // ticks in which faces became hidden or the factor changed
 	int32_t edges_parted, elements_removed, refactorisations;
 	double our_mask_bytes; // size of the changed words of the mask
-	double our_s; // for edge shares, mask, downdates and waiting for the factor, in all ticks
+	double our_s; // time for edge shares, mask, downdates and waiting for the factor, in all ticks
 } bench_remesh_result;
 int bench_remesh(const bench_options *options, bench_remesh_result *result);
 // cut.c: the cut by this program's method, in a session without cuts.

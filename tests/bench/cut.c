@@ -70,7 +70,7 @@ static int32_t ticks_across(const cut_run *run)
 // Time of each step, the smallest of the runs so far.
 typedef struct cut_times {
 	double plain[PLAIN_STEPS], *drawn;
-	uint8_t *cuts; // for each drawn step, whether it is a cutting step
+	uint8_t *cuts; // true for a drawn step that is a cutting step
 	int32_t drawn_count;
 } cut_times;
 

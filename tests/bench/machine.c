@@ -118,7 +118,8 @@ static void read_processor(const char *root, bench_machine *m)
 		m->stepping = 16 * arm.variant + arm.revision;
 	if (!*m->name && read_first_line(root, "/proc/device-tree/model", line, sizeof line))
 		take_text(m->name, sizeof m->name, line);
-	const char most[] = "/sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq"; // in kHz
+	// the file's number is in kHz
+	const char most[] = "/sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq";
 	if (read_first_line(root, most, line, sizeof line))
 		m->mhz_most = strtod(line, NULL) / 1e3;
 }
@@ -175,7 +176,7 @@ void bench_cpu_time_read(const char *root, bench_cpu_time *time)
 	if (read_first_line(root, "/proc/stat", line, sizeof line))
 		got = sscanf(line, "cpu %lf %lf %lf %lf %lf %lf %lf %lf", &f[0], &f[1], &f[2], &f[3], &f[4],
 		             &f[5], &f[6], &f[7]);
-	if (got < 4) // at least the busy and idle numbers
+	if (got < 4) // the busy and idle numbers are needed at least
 		return;
 	time->busy = f[0] + f[1] + f[2] + f[5] + f[6];
 	time->steal = got == 8 ? f[7] : -1;

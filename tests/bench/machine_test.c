@@ -158,7 +158,7 @@ static void others_and_steal_are_shares_of_all_cores(void **state)
 	bench_cpu_time_read(root, &before);
 	put("/proc/stat", "cpu  160 10 120 880 10 5 5 20 0 0\ncpu0 1 2 3\n");
 	bench_cpu_time_read(root, &after);
-	after.own_s = before.own_s + 0.5; // of 100 busy ticks, at 100 a second
+	after.own_s = before.own_s + 0.5; // 0.5 s are half of the 100 busy ticks, at 100 ticks a second
 	bench_disturbance d = bench_disturbance_between(&before, &after, 100);
 	assert_true(d.load_before == 0.75);
 	assert_float_equal(d.others, 50. / 200, 1e-12); // the limit is for rounding

@@ -11,7 +11,7 @@ typedef struct crtk {
 	char state[16];
 	bool homed, busy;
 	int states, poses;   // numbers of received samples
-	double z_n, raw_z_n; // from measured_cf and raw/measured_cf
+	double z_n, raw_z_n; // forces from measured_cf and raw/measured_cf
 	double jaw_rad, asked_jaw_rad, jaw_nm, position_m[3],
 		asked_m[3]; // position_m from measured_cp, asked_m from setpoint_cp
 } crtk;

@@ -15,9 +15,9 @@ typedef struct cau_reference_case {
 	double poisson_ratio;
 	double density_kg_m3;
 	double gravity_m_s2[3];
-	double sphere_center_m[3]; // in its last position
+	double sphere_center_m[3]; // middle of the sphere in its last position
 	double sphere_radius_m;    // 0 for no sphere
-	double residual;           // of the reference solution, relative
+	double residual;           // relative residual of the reference solution
 	double measure;            // N or m: block pull, tip deflection or indentation force
 	double measure_converged;  // value of `measure` on a converged mesh
 	double reaction_n[3];      // sum of the forces of the fixed vertices on the body

@@ -27,7 +27,7 @@ typedef struct cau_indenting_ball {
 } cau_indenting_ball;
 
 typedef struct cau_indented {
-	double force_n[3]; // on the ball
+	double force_n[3]; // force on the ball
 	double residual;   // largest unbalanced force on a vertex, relative to the ball's force
 	double deepest_m;  // largest depth of a point that must stay outside
 	int points;        // number of pushing points

@@ -12,8 +12,8 @@ typedef struct cau_touching_point { // nearest point on a vertex, an edge or a f
 	double weight[3];
 	double slope[3][3]; // 1/m: gradients of the weights on the edge or face
 	double normal[3];   // unit vector, from the ball's middle
-	double distance_m;  // from the ball's middle
-	double gap_m;       // of the part that must stay outside
+	double distance_m;  // distance from the ball's middle
+	double gap_m;       // gap of the part that must stay outside
 	double reaction_n;
 } cau_touching_point;
 

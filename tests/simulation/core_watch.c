@@ -26,7 +26,7 @@ typedef struct core_book {
 	const cau_session *core; // NULL if the entry is free
 	char id[CAU_NAME_BYTES];
 	int place, life, machine; // place: index of the session, -1 if none
-	const cau_logic *logic;   // of the session, once it is served
+	const cau_logic *logic;   // logic of the session, once it is served
 	bool running;             // it ran by the clock at the worker's last decision
 	int64_t began_ns;         // time of its newest tick, or when it began to run
 	bool served;              // the worker decides; false while the past is computed again

@@ -11,7 +11,7 @@
 #include "simulation/promises.h"
 #include "simulation/world.h"
 
-#define PATIENCE_NS (10 * SIM_SECOND) // for one answer, or while a daemon is down
+#define PATIENCE_NS (10 * SIM_SECOND) // longest wait for one answer, or for a daemon that is down
 #define LOOK_NS SIM_MS
 
 enum {

@@ -14,7 +14,7 @@ typedef struct machine {
 	int boots;
 	bool end_wanted;
 	cau_config config;
-	cau_error error; // of a failed start
+	cau_error error; // error of a failed start
 } machine;
 
 static machine machines[DISK_MACHINES];

@@ -58,7 +58,7 @@ int disk_sync(disk_inode *inode);
 // Kills the machine: its open files are gone. With `power`, some of the data that was not synced is
 // lost too.
 void disk_kill(int machine, bool power);
-size_t disk_bytes(int machine); // of all files of the machine
+size_t disk_bytes(int machine); // size of all files of the machine
 
 void sim_calls_kill(int machine); // closes the machine's descriptors
 void disk_vfs_register(void);     // registers SQLite's default VFS; call it before SQLite is used

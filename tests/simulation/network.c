@@ -11,7 +11,7 @@
 #include "simulation/faults.h"
 #include "simulation/scheduler.h"
 
-#define TICK_NS (100 * SIM_MS)  // as the real network
+#define TICK_NS (100 * SIM_MS)  // the same as in the real network
 #define WAITED_NS (20 * SIM_MS) // WAITED_S of the real network
 
 struct sim_link {

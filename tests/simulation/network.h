@@ -14,7 +14,7 @@ typedef struct sim_link sim_link;
 typedef struct sim_message {
 	struct sim_message *next;
 	int64_t sent_ns, due_ns;
-	uint64_t tag; // for the client
+	uint64_t tag; // a number that the client chooses
 	bool binary;
 	size_t bytes;
 	char text[];

@@ -17,7 +17,7 @@ typedef struct run_result {
 	int requests;
 } run_result;
 
-enum { RUNS_MOST = 256 }; // at the same time
+enum { RUNS_MOST = 256 }; // largest number of runs at the same time
 
 typedef struct run_child {
 	uint64_t seed;

@@ -32,7 +32,7 @@ typedef struct fiber {
 	fiber_state state;
 	int machine;
 	char name[NAME_BYTES];
-	ucontext_t context; // of its start
+	ucontext_t context; // context of the fiber's start
 	jmp_buf place;      // where it continues
 	bool begun;
 	void *stack;
@@ -43,7 +43,7 @@ typedef struct fiber {
 	void *(*run)(void *);
 	void *argument, *result;
 	int64_t processor_ns;
-	void *fake_stack; // of the address sanitizer
+	void *fake_stack; // stack of the address sanitizer
 } fiber;
 
 static struct {
@@ -96,7 +96,7 @@ bool sim_chance(sim_random *random, int64_t one_in)
 static struct {
 	const void *bottom;
 	size_t bytes;
-} world_stack; // of the program itself
+} world_stack; // stack of the program itself
 #endif
 
 static void begin_switch(fiber *from, const fiber *to)
@@ -316,7 +316,7 @@ void sim_begin(uint64_t seed, const sim_roughness *roughness)
 	memset(&sim, 0, sizeof sim);
 	sim.random = sim_random_of(seed, 1);
 	sim.roughness = *roughness;
-	sim.now_ns = 1000 * SIM_SECOND; // as on a machine that has been on for a while
+	sim.now_ns = 1000 * SIM_SECOND; // as on a machine that has been running for a while
 	sim.trace = seed;
 	sim.used = 1;
 	sim.present = &sim.fibers[0];

@@ -77,6 +77,7 @@ uint64_t sim_switches(void);
 // `promise` is a word of promises.h. The rest describes what was seen.
 __attribute__((format(printf, 2, 3), noreturn)) void sim_fail(const char *promise,
                                                               const char *format, ...);
-__attribute__((format(printf, 1, 2))) void sim_say(const char *format, ...); // only with --verbose
+// prints only with --verbose
+__attribute__((format(printf, 1, 2))) void sim_say(const char *format, ...);
 extern bool sim_verbose;
 extern void (*sim_failed)(const char *promise, const char *text); // must not return

@@ -29,7 +29,7 @@ typedef struct stream {
 	void *storage;
 	uint64_t tick, epoch;
 	bool lost;         // it waits for a requested key frame
-	bool acknowledged; // at least once
+	bool acknowledged; // acknowledged at least once
 	size_t in_flight;
 	struct {
 		uint64_t sequence;

@@ -182,7 +182,7 @@ int __wrap_nanosleep(const struct timespec *wanted, struct timespec *left);
 time_t __wrap_time(time_t *now);
 int __wrap_sigtimedwait(const sigset_t *signals, siginfo_t *info, const struct timespec *patience);
 
-#define WALL_OFFSET_S 1700000000 // from 1970 to the start of the simulation
+#define WALL_OFFSET_S 1700000000 // seconds from 1970 to the start of the simulation
 
 WRAPPED int __wrap_clock_gettime(clockid_t clock, struct timespec *now)
 {

@@ -11,7 +11,8 @@
 #include "simulation/courier.h"
 #include "simulation/promises.h"
 
-enum { EPHEMERAL = 5 }; // of six creations
+// the value of c, 0 to 5, that makes STEP_CREATE create an ephemeral session
+enum { EPHEMERAL = 5 };
 #define TENTH_NS (SIM_SECOND / 10)
 
 static int gravities; // number of gravities used so far

@@ -75,7 +75,7 @@ typedef struct sim_request {
 	bool later; // it waits for a tick, so its answer may wait while its session is paused
 	bool met;   // its session existed when it arrived
 	bool arrived, answered, ok, unstored;
-	char *method, *params; // for resending
+	char *method, *params; // copies for resending
 	char *result;          // text of the result
 } sim_request;
 
@@ -139,7 +139,7 @@ typedef struct sim_session {
 extern sim_session sim_sessions[SESSIONS];
 void sim_session_name(int session, char name[NAME_MOST]);
 void sim_session_id(int session, int machine, char id[NAME_MOST]);
-int sim_session_of(const char *id); // of the present sessions; -1 if there is none
+int sim_session_of(const char *id); // index of a present session, or -1 if there is none
 
 // ---- daemons
 void daemons_begin(const sim_profile *profile);

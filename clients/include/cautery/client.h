@@ -81,7 +81,7 @@ typedef enum cau_client_condition {
 typedef struct cau_client_frame {
 	cau_frame_header header; // header as decoded
 	const void *bytes;       // borrowed for the duration of the call
-	size_t byte_count;       // of `bytes`
+	size_t byte_count;       // size of `bytes`
 	cau_status status; // result of decoding: CAU_BAD_STATE means skipped, CAU_CORRUPT means damaged
 	double received_s; // cau_client_now() when the last byte arrived
 	double decoded_s;  // cau_client_now() after decoding
@@ -217,11 +217,11 @@ cau_status cau_client_command(cau_client *client, const char *session, const cau
 const cau_rpc_fault *cau_client_fault(const cau_client *client);
 
 // ---- streams -----------------------------------------------------------------------------------
-enum { CAU_CLIENT_STREAMS_MAX = 16 }; // of one client
+enum { CAU_CLIENT_STREAMS_MAX = 16 }; // streams of one client
 
 // A joined stream. It belongs to the client and is valid until the client is destroyed. Read only.
 struct cau_client_stream {
-	cau_wire_stream_description description; // of the last join
+	cau_wire_stream_description description; // description from the last join
 	cau_stream_def def;                      // definition of the decoder
 	const cau_stream_state *state;           // newest state; it is valid if state->synced
 	cau_topology_arrays topology;            // faces and rest shape
@@ -252,7 +252,7 @@ cau_status cau_client_leave(cau_client *client, cau_client_stream *stream, cau_e
 int64_t cau_client_faces_drawn(const cau_client_stream *stream);
 
 // ---- files -------------------------------------------------------------------------------------
-typedef void cau_client_progress(void *user, uint64_t done, uint64_t total); // in bytes
+typedef void cau_client_progress(void *user, uint64_t done, uint64_t total); // counts in bytes
 
 // Uploads a mesh file. A scene's mesh of source `bytes` refers to it by result->file. It replaces
 // an earlier upload of this name. `progress` may be NULL. Errors: those of cau_client_call.

@@ -39,7 +39,7 @@ typedef struct cau_chunk {
 	uint32_t transfer; // id of the transfer from upload.begin, session.export or session.log
 	uint64_t offset;   // position of the first byte in the file
 	const void *data;  // borrowed from the message
-	size_t byte_count; // of `data`
+	size_t byte_count; // size of `data`
 } cau_chunk;
 
 // Reads a chunk. Errors: CAU_CORRUPT (no chunk), CAU_LIMIT (empty or more than

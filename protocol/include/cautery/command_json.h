@@ -63,9 +63,9 @@ cau_status cau_command_to_json(const cau_command *command, char *buffer, size_t 
 
 // A script has one command as JSON on each line. Ticks never decrease. Empty lines are skipped.
 typedef struct cau_script {
-	const char *name; // for error->file; may be NULL
+	const char *name; // copied to error->file; may be NULL
 	const char *text; // borrowed
-	size_t bytes;     // of `text`
+	size_t bytes;     // size of `text`
 	size_t offset;    // offset of the next line
 	int32_t line;     // number of the last read line, from 1
 	uint64_t tick;    // tick of the last read command

@@ -76,7 +76,7 @@ typedef struct cau_frame_header {
 	uint8_t version;     // CAU_FRAME_VERSION
 	uint8_t kind;        // CAU_FRAME_*
 	uint16_t flags;      // CAU_FRAME_PAUSED, CAU_FRAME_FAULTED
-	uint32_t byte_count; // of the whole frame
+	uint32_t byte_count; // size of the whole frame
 	uint32_t session;    // the session's number on its daemon
 	uint64_t epoch;      // a new number after rewind, reset, restore and restart
 	uint64_t sequence;   // number of the frame in its epoch, from 1
@@ -84,7 +84,7 @@ typedef struct cau_frame_header {
 	uint64_t base_sequence;
 	uint64_t tick;          // tick of the state
 	double time_s;          // simulated time of the state
-	uint64_t published_us;  // on the server's monotonic clock
+	uint64_t published_us;  // time on the server's monotonic clock
 	uint16_t profile;       // profile number in the session
 	uint16_t section_count; // number of sections that follow
 } cau_frame_header;

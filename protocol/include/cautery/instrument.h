@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-enum { CAU_MAX_MODES = 8 }; // of an instrument
+enum { CAU_MAX_MODES = 8 }; // modes of one instrument
 
 // A mode of an instrument.
 typedef struct cau_instrument_mode {
@@ -38,9 +38,9 @@ typedef struct cau_instrument_mode {
 
 // An instrument with all its modes.
 typedef struct cau_instrument {
-	char name[CAU_NAME_BYTES];                // of the instrument
+	char name[CAU_NAME_BYTES];                // name of the instrument
 	char description[CAU_TEXT_BYTES];         // description for people
-	int32_t mode_count;                       // at least 1
+	int32_t mode_count;                       // number of modes, at least 1
 	cau_instrument_mode modes[CAU_MAX_MODES]; // `mode_count` modes; mode 0 is the default
 } cau_instrument;
 

@@ -38,7 +38,7 @@ typedef struct cau_json_writer {
 	bool occupied[CAU_JSON_MAX_DEPTH]; // the level has a value
 	bool flat[CAU_JSON_MAX_DEPTH];     // the level stays on one line despite `indent`
 	cau_status status;                 // the first failure
-	const char *reason;                // of the first failure; borrowed
+	const char *reason;                // reason of the first failure; borrowed
 } cau_json_writer;
 
 // Begins a text in `buffer`. `indent` is the number of spaces a level; 0 writes one line.

@@ -28,9 +28,9 @@ extern "C" {
 // and sets `count`. More items than `capacity` are the error CAU_LIMIT. The reader zeroes an item
 // before filling it, except the `items` and `capacity` of the item's own lists.
 typedef struct cau_wire_list {
-	void *items;      // of the type cau_wire_* that messages.def names
+	void *items;      // array of the type cau_wire_* that messages.def names
 	int32_t count;    // number of items
-	int32_t capacity; // of `items`; only for readers
+	int32_t capacity; // capacity of `items`; only for readers
 } cau_wire_list;
 
 #define CAU_NEED_R(field)

@@ -66,9 +66,9 @@ typedef struct cau_rpc_message {
 		CAU_RPC_RESULT,       // a successful answer; read it with cau_rpc_result
 		CAU_RPC_ERROR,        // an answer with an error, in `fault`
 	} kind;                   // kind of the message
-	cau_rpc_id id;            // only of requests and answers
-	cau_method method;        // only of requests and notifications
-	cau_rpc_fault fault;      // only of CAU_RPC_ERROR
+	cau_rpc_id id;            // id of a request or answer
+	cau_method method;        // method of a request or notification
+	cau_rpc_fault fault;      // error of a CAU_RPC_ERROR
 	void *document;           // private; cau_rpc_finish frees it
 } cau_rpc_message;
 
@@ -122,7 +122,7 @@ void cau_rpc_fault_of_code(cau_rpc_fault *fault, cau_rpc_error_code code, const 
 // text that is not UTF-8).
 typedef struct cau_rpc_buffer {
 	char *buffer;    // borrowed
-	size_t capacity; // of `buffer`, including the closing zero
+	size_t capacity; // size of `buffer`, including the closing zero
 	size_t bytes;    // length of the text
 } cau_rpc_buffer;
 

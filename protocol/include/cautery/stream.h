@@ -74,7 +74,7 @@ typedef struct cau_channel_info {
 	// in `unit`: a transmitted n means least + step * n; if step is 0, the stream definition has it
 	double least, step;
 	uint32_t most;              // the largest n
-	const char *unit, *meaning; // for people
+	const char *unit, *meaning; // unit and description for people
 } cau_channel_info;
 
 // Returns the description of a channel; it is static.
@@ -84,7 +84,7 @@ double cau_channel_step(const cau_stream_def *def, cau_channel_index channel);
 
 // One tool as a frame shows it.
 typedef struct cau_stream_tool {
-	char name[CAU_NAME_BYTES]; // of the tool
+	char name[CAU_NAME_BYTES]; // name of the tool
 	int32_t shape;             // CAU_TOOL_*
 	cau_pose pose;             // single precision in frames, as are all numbers below
 	bool behind;               // tissue keeps the tool from its commanded pose
@@ -103,7 +103,7 @@ typedef struct cau_stream_tool {
 	double energy_j;           // estimate of the heat that tissue took up
 	double delivered_w;        // power delivered to tissue in the last step, with energy `tissue`
 	double load_ohm;           // load of the tool's generator, or 0 without current
-	uint64_t sequence;         // of the last applied command
+	uint64_t sequence;         // sequence of the last applied command
 	uint32_t driver;           // the driving client's number, or 0 without a driver
 	bool energized;            // energy is on
 	bool grasping;             // jaws commanded closed on tissue
@@ -122,7 +122,7 @@ typedef struct cau_stream_statistics {
 	float stage_s[CAU_STREAM_STAGES]; // wall time of each stage of the last step
 	float residual;                   // relative residual
 	float deferred_max_s;             // longest wait for a downdate, in simulated time
-	uint32_t iterations;              // of the last step
+	uint32_t iterations;              // iterations of the last step
 	uint32_t backtracks;              // refused increments
 	uint32_t inverted;                // tetrahedra with negative volume
 	uint32_t edges_parted;            // total since creation
@@ -146,19 +146,19 @@ typedef struct cau_stream_statistics {
 typedef struct cau_stream_sample {
 	uint64_t tick;          // tick of the state
 	double time_s;          // simulated time
-	uint64_t published_us;  // the server's monotonic clock
+	uint64_t published_us;  // time on the server's monotonic clock
 	uint16_t flags;         // CAU_FRAME_*
 	const double *position; // m, (vertex_count x 3)
 	// (vertex_count), 1 for a vertex of a drawn face; NULL if all are
 	const uint8_t *vertex_visible;
 	const uint32_t *face_mask;               // ((face_count + 31) / 32), a set bit means not drawn
 	CAU_SCALAR_MEMBERS(const float);         // (vertex_count) each, in the channel's unit
-	int32_t tool_count;                      // at most CAU_MAX_TOOLS
+	int32_t tool_count;                      // number of tools, at most CAU_MAX_TOOLS
 	const cau_stream_tool *tools;            // (tool_count)
-	const cau_stream_statistics *statistics; // of the last step
-	int32_t vessel_count;                    // at most CAU_MAX_VESSELS
+	const cau_stream_statistics *statistics; // statistics of the last step
+	int32_t vessel_count;                    // number of vessels, at most CAU_MAX_VESSELS
 	const cau_vessel_state *const *vessels;  // (vessel_count)
-	int32_t contact_count;                   // at most CAU_MAX_TOOLS
+	int32_t contact_count;                   // number of contacts, at most CAU_MAX_TOOLS
 	const cau_tool_contact *contacts;        // (contact_count)
 } cau_stream_sample;
 
@@ -168,11 +168,11 @@ typedef struct cau_stream_sample {
 // first frame. In a stream without the mask they are of `tick` at every vertex.
 typedef struct cau_stream_state {
 	bool synced;               // if false, there is no valid state, and a key frame is needed
-	uint64_t epoch;            // of the last frame
-	uint64_t sequence;         // of the last frame
-	uint64_t tick;             // of the last frame
+	uint64_t epoch;            // epoch of the last frame
+	uint64_t sequence;         // sequence of the last frame
+	uint64_t tick;             // tick of the last frame
 	double time_s;             // simulated time
-	uint64_t published_us;     // the server's monotonic clock
+	uint64_t published_us;     // time on the server's monotonic clock
 	uint16_t flags;            // CAU_FRAME_*
 	const int32_t *quantised;  // steps from the origin, (vertex_count x 3)
 	const uint32_t *face_mask; // ((face_count + 31) / 32)
@@ -180,12 +180,12 @@ typedef struct cau_stream_state {
 	CAU_SCALAR_MEMBERS(const uint32_t);
 	int32_t moved_count;              // number of vertices in the last frame
 	int32_t mask_changed_count;       // number of mask words in the last frame
-	int32_t tool_count;               // at most CAU_MAX_TOOLS
+	int32_t tool_count;               // number of tools, at most CAU_MAX_TOOLS
 	const cau_stream_tool *tools;     // (tool_count)
-	cau_stream_statistics statistics; // from the last frame that has statistics
-	int32_t vessel_count;             // at most CAU_MAX_VESSELS
+	cau_stream_statistics statistics; // statistics from the last frame that has them
+	int32_t vessel_count;             // number of vessels, at most CAU_MAX_VESSELS
 	const cau_vessel_state *vessels;  // (vessel_count), from the last frame that has vessels
-	int32_t contact_count;            // at most CAU_MAX_TOOLS
+	int32_t contact_count;            // number of contacts, at most CAU_MAX_TOOLS
 	const cau_tool_contact *contacts; // (contact_count), from the last frame that has contacts
 } cau_stream_state;
 

@@ -32,7 +32,7 @@ typedef struct cau_topology {
 	// and texture are copied, and the arrays above are not read. Encoding them takes 8 of 9 ms for
 	// 40,401 vertices.
 	const void *known;
-	size_t known_bytes; // of `known`
+	size_t known_bytes; // size of `known`
 } cau_topology;
 
 // Returns a capacity that holds any topology frame of such a stream.

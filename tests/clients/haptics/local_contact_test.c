@@ -92,7 +92,7 @@ static void planes_share_a_force(void **state)
 	local_force at = local_contact_force(&contact, record.asked_pose.position_m);
 	is_near(at.force_n, 0, 0, 1);
 	at = local_contact_force(&contact, (double[]){0.0005, 0, -0.001});
-	double more = sqrt(sqrt(1.25)); // by Hertz's law: the root of the force's share of 1 N
+	double more = sqrt(sqrt(1.25)); // Hertz's law: the root of the force's share of 1 N
 	is_near(at.force_n, -0.5 * more, 0, more);
 	at = local_contact_force(&contact, (double[]){0.0015, 0, -0.001}); // leaves the first plane
 	more = sqrt(1.2 * sqrt(2));

@@ -8,8 +8,8 @@
 
 // The parameters of a run.
 typedef struct loop_def {
-	double young_modulus_pa; // of the fat
-	double delay_s;          // of the link, in each direction
+	double young_modulus_pa; // stiffness of the fat
+	double delay_s;          // delay of the link, in each direction
 	double seconds;
 	// motion of the hand
 	void (*lead)(const struct loop_def *def, double time_s, double wanted_m[3]);
@@ -20,9 +20,9 @@ typedef struct loop_def {
 // The results of a run, for each millisecond.
 typedef struct loop_log {
 	int count;
-	double (*place_m)[3];  // of the device
+	double (*place_m)[3];  // position of the device
 	double (*force_n)[3];  // rendered
-	double (*wanted_m)[3]; // of the hand
+	double (*wanted_m)[3]; // wanted position of the hand
 	double tick_s;         // mean processor time of a tick, with its record
 	double most_given_j;   // largest net energy that the hand has got
 	double most_jump_n;    // largest change of the force in a millisecond

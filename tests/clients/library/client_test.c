@@ -4,7 +4,7 @@
 
 // ---- hello -------------------------------------------------------------------------------------
 typedef struct greeting {
-	cau_wire_hello hello[4]; // by connection
+	cau_wire_hello hello[4]; // hello of each connection
 } greeting;
 
 static bool note_hello(scripted_peer *peer, const cau_rpc_message *message, const char *text)

@@ -11,7 +11,7 @@ typedef struct filing {
 	unsigned char *received;
 	uint64_t received_bytes;
 	bool in_order;
-	char sha256[65];   // from upload.end
+	char sha256[65];   // hash from upload.end
 	bool lie, shuffle; // test cases: a wrong hash, chunks out of order
 } filing;
 

@@ -15,7 +15,7 @@ typedef struct thinned {
 	cau_frame_thinner *thinner;
 	cau_frame_decoder *slow;
 	uint8_t *bytes;
-	size_t byte_count; // of the last delta over two frames, or 0 if there was none
+	size_t byte_count; // size of the last delta over two frames, or 0 if there was none
 } thinned;
 
 static void thinned_init(thinned *made)
