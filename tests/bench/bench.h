@@ -139,7 +139,7 @@ typedef struct bench_update_result {
 } bench_update_result;
 int bench_update(const bench_options *options, bench_update_result *result);
 
-// remesh.c: the scene's cut by a method that changes the topology, and by this program's method.
+// remesh.c: the scene's cut by a method that changes the topology, and by Cautery's method.
 typedef struct bench_remesh_result {
 	int32_t vertices, elements; // sizes before the cut
 	// the method that changes the topology
@@ -150,14 +150,14 @@ typedef struct bench_remesh_result {
 	double remesh_s, assemble_s, factor_s;
 	double buffer_bytes; // size of the vertex and index buffers that are written at all changes
 	double system_bytes; // size of A and its factor that are computed at all changes
-	// this program's method
+	// Cautery's method
 	int32_t our_changes; // ticks in which faces became hidden or the factor changed
 	int32_t edges_parted, elements_removed, refactorisations;
 	double our_mask_bytes; // size of the changed words of the mask
 	double our_s; // time for edge shares, mask, downdates and waiting for the factor, in all ticks
 } bench_remesh_result;
 int bench_remesh(const bench_options *options, bench_remesh_result *result);
-// cut.c: the cut by this program's method, in a session without cuts.
+// cut.c: the cut by Cautery's method, in a session without cuts.
 int bench_cut_ours(cau_session *session, const cau_scene_def *scene, bench_remesh_result *result);
 
 // allocation.c: number of calls of malloc, calloc, realloc and aligned_alloc so far.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Section 7.1: the same cut by a method that changes the topology, and by this program's method.
+// Section 7.1: the same cut by a method that changes the topology, and by Cautery's method.
 //
 // The other method follows the tip along the scene's line of cut, with the vertical plane through
 // the line. Behind the tip it refines elements that the plane crosses. It bisects their crossed

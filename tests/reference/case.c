@@ -34,7 +34,7 @@ static cau_status read_doubles(const reader *in, const char *section, double *ou
 	return CAU_OK;
 }
 
-// Reads `name` and `count` numbers.
+// Reads the word `name` and then `count` numbers.
 static cau_status read_field(const reader *in, const char *name, double *out, int count)
 {
 	cau_status status = read_name(in, name);

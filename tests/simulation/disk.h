@@ -49,7 +49,7 @@ bool disk_unlink(const char *path);
 void disk_sync_names(int machine); // makes created and removed names durable
 disk_inode *disk_make_nameless(int machine);
 
-// Each returns 0 or an errno.
+// Each function returns 0 or an errno.
 int disk_write(disk_inode *inode, const void *bytes, size_t count, size_t at);
 int disk_read(const disk_inode *inode, void *bytes, size_t count, size_t at, size_t *got);
 int disk_truncate(disk_inode *inode, size_t size);
