@@ -32,8 +32,9 @@
 //     }
 //
 // A loop and its clients belong to one thread. Callbacks run inside cau_loop_wait and inside the
-// functions that wait (connect, call, command, join, leave, upload, download, close). A callback
-// may send, but must not call a function that waits, and must not destroy a client or loop.
+// functions that wait: connect, close, call, command, join, leave, upload, discard_upload,
+// download, find_fleet and measure_clock. A callback may send, but must not call a function that
+// waits, and must not destroy a client or loop.
 #pragma once
 
 #include <stdbool.h>

@@ -4,7 +4,7 @@
 //
 //     #include "cautery/rpc.h"
 //
-//     // Answers session.step; a message of another method gets an error.
+//     // Answers a session.step request. A request that cannot be read gets an error.
 //     static cau_status answer(const char *text, size_t bytes, cau_rpc_buffer *out,
 //                              cau_error *error)
 //     {
