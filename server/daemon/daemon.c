@@ -57,9 +57,10 @@ struct cau_daemon {
 	cau_restart restart;
 	atomic_bool draining, stands_aside;
 	unsigned long ticks_seen;
-	bool network_moved, store_moved,
-		watchdog_moved;  // these threads have run since the last notice to systemd
-	double scenes_due_s; // time of the next check of the folder of scenes
+	// these threads have run since the last notice to systemd
+	bool network_moved, store_moved, watchdog_moved;
+	// time of the next check of the folder of scenes
+	double scenes_due_s;
 };
 
 static void on_armed(void *user)
@@ -240,8 +241,8 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status = cau_builder_create(&daemon->builder, "cautery-build", count_builders(workers),
 		                            CAU_NICE_BUILDER, error);
-	if (!status) // a client that waits for a moving session must not wait for processor time that
-	             // workers leave
+	// a client that waits for a moving session must not wait for processor time that workers leave
+	if (!status)
 		status = cau_builder_create(&daemon->mover, "cautery-move", 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,

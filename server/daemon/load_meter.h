@@ -10,8 +10,8 @@ typedef struct cau_load_meter {
 	const cau_config *config; // borrowed
 	cau_hub *hub;
 	int32_t worker_count;
-	double window_s,
-		window_cpu_s;  // start of the present window: monotonic time, and processor time by then
+	// start of the present window: monotonic time, and processor time by then
+	double window_s, window_cpu_s;
 	double busy_share; // share of the cores used in the last window
 } cau_load_meter;
 

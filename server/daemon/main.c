@@ -53,8 +53,8 @@ static int fail(const char *event, const cau_error *error)
 
 static void print_ready(const cau_config *config)
 {
-	bool bracketed =
-		strchr(config->listen, ':') != NULL; // RFC 3986: an IPv6 address is in brackets
+	// RFC 3986: an IPv6 address is in brackets
+	bool bracketed = strchr(config->listen, ':') != NULL;
 	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"%s://%s%s%s:%lld/\", \"pid\": %d}\n",
 	       config->listen, (long long)config->port, *config->tls_certificate ? "https" : "http",
 	       bracketed ? "[" : "", config->listen, bracketed ? "]" : "", (long long)config->port,

@@ -54,8 +54,8 @@ static bool is_the_newest(const cau_claim *claim)
 {
 	if (claim->is_copy)
 		return false;
-	if (claim->known.number ==
-	    0) // etcd does not know the label yet, and the store has no generation yet
+	// etcd does not know the label yet, and the store has no generation yet
+	if (claim->known.number == 0)
 		return claim->held.number == 0;
 	return cau_generation_same(claim->known, claim->held) ||
 	       cau_generation_same(claim->known, claim->next);

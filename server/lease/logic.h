@@ -39,10 +39,10 @@ typedef struct cau_claim {
 	cau_generation held, next; // generations in the store
 	cau_generation known;      // generation in etcd
 	bool is_held;              // etcd has a holder whose lease has not ended
-	bool is_held_here; // the holder was a process with this store file. It has ended, because we
-	                   // have its lock.
-	bool is_copy;      // the store's file is another than the one that was opened last
-	bool take_label;   // the operator says that this store is the right one
+	// the holder was a process with this store file. It has ended, because we have its lock.
+	bool is_held_here;
+	bool is_copy;    // the store's file is another than the one that was opened last
+	bool take_label; // the operator says that this store is the right one
 } cau_claim;
 
 typedef enum cau_verdict { CAU_VERDICT_CLAIM, CAU_VERDICT_WAIT, CAU_VERDICT_REFUSE } cau_verdict;
@@ -60,12 +60,12 @@ void cau_lease_choose(cau_claim *claim, bool *has_next, uint64_t mark);
 
 // ---- the end of the lease ----
 typedef struct cau_lease_rules {
-	double ttl_s;    // time to live that etcd is asked for
-	double margin_s; // the lease ends this much earlier here, for clock errors and requests on
-	                 // their way
-	double renew_s;  // time from one renewal to the next
-	double limit_s;  // time limit for one answer
-	double retry_s;  // time to the next attempt after a failed renewal
+	double ttl_s; // time to live that etcd is asked for
+	// the lease ends this much earlier here, for clock errors and requests on their way
+	double margin_s;
+	double renew_s; // time from one renewal to the next
+	double limit_s; // time limit for one answer
+	double retry_s; // time to the next attempt after a failed renewal
 } cau_lease_rules;
 
 // Returns the times for this time to live. They leave time for three addresses that do not answer.

@@ -10,8 +10,8 @@
 
 enum { WIRE_VERSION = 1 };
 
-#define REFUSALS_TOLD_S                                                                            \
-	1. // time between log lines, so that a client that tries tokens does not fill the log
+// time between log lines, so that a client that tries tokens does not fill the log
+#define REFUSALS_TOLD_S 1.
 
 static void answer_refusal(const cau_call *call, int32_t code, const char *reason)
 {
@@ -117,8 +117,8 @@ void cau_call_hello(cau_call *call)
 	}
 	bool resumes = params.has_resume && cau_hub_keeps(service->hub, params.resume);
 	if (!cau_connection_has_place(peer->connection, resumes)) {
-		cau_connection_close(peer->connection, CAU_CLOSE_FULL,
-		                     CAU_NO_PLACE); // the close frame has the reason, so there is no answer
+		// the close frame has the reason, so there is no answer
+		cau_connection_close(peer->connection, CAU_CLOSE_FULL, CAU_NO_PLACE);
 		return;
 	}
 	cau_asker *asker = &peer->client.asker;

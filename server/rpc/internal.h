@@ -92,10 +92,10 @@ struct cau_service {
 	uint64_t requests, errors, tokens_refused; // tokens_refused: in hello
 	double refusal_told_s;                     // time of the last log line about a refused token
 	uint64_t calls[CAU_METHOD_COUNT];
-	_Atomic uint64_t
-		answers[CAU_METHOD_COUNT + 1]
-			   [CAU_ANSWER_COLUMNS]; // the last entry counts answers to messages without a method
-	cau_upload_total uploads;        // used by the network thread only
+	// the last entry counts answers to messages without a method
+	_Atomic uint64_t answers[CAU_METHOD_COUNT + 1][CAU_ANSWER_COLUMNS];
+	// used by the network thread only
+	cau_upload_total uploads;
 	cau_scene_answer *scene_answers; // scene_methods.c
 	int32_t scene_count;
 	uint64_t scene_edition; // edition of the scenes that the answers are from

@@ -76,8 +76,8 @@ void cau_service_page(void *user, cau_page *page)
 		page->content_type = cau_metrics_content_type(format);
 		status = cau_service_metrics(service, format, out);
 	} else if (strcmp(page->path, "/api/fleet") == 0) {
-		fputs("{\"labels\": []}\n",
-		      out); // with several daemons, the proxy in front of them answers this page
+		// with several daemons, the proxy in front of them answers this page
+		fputs("{\"labels\": []}\n", out);
 	} else {
 		status = write_sessions(service, out);
 	}

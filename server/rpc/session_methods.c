@@ -125,9 +125,8 @@ void cau_call_session_create(cau_call *call)
 	bool full = health.state != CAU_STORE_READY && !(creation && creation->ephemeral);
 	if (!status && full)
 		status = cau_fail(&error, CAU_IO, "", "%s", health.reason);
-	bool allowed =
-		status ||
-		cau_call_may_make(call, creation->name); // if not allowed, the call is already answered
+	// if not allowed, the call is already answered
+	bool allowed = status || cau_call_may_make(call, creation->name);
 	if (!status && allowed) {
 		cau_hub_submit_creation(call->peer->service->hub, creation);
 		return;

@@ -7,8 +7,8 @@ void cau_call_store_backup(cau_call *call)
 	cau_error error = {0};
 	cau_wire_store_backup params = {0};
 	cau_reply reply = cau_call_reply(call);
-	if (*call->peer->bounds
-	         .sessions) { // the store contains all sessions, so the token must be for all
+	// the store contains all sessions, so the token must be for all
+	if (*call->peer->bounds.sessions) {
 		cau_call_may_use(call, "");
 		return;
 	}

@@ -156,8 +156,8 @@ static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params,
 		cau_filling_release(asked.filling);
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a mesh");
 	}
-	memcpy(asked.bytes, upload->bytes,
-	       upload->byte_count); // a copy, because the upload may be discarded meanwhile
+	// a copy, because the upload may be discarded meanwhile
+	memcpy(asked.bytes, upload->bytes, upload->byte_count);
 	asked.byte_count = upload->byte_count;
 	cau_upload_refill(upload, cau_filling_share(asked.filling));
 	return cau_mesh_ask(peer->service->builder, &asked, &reply, error);

@@ -12,16 +12,16 @@
 #include "retention.h"
 
 enum {
-	SPARE_BYTES =
-		1000000, // bytes to reserve beyond the failed ones before a full store tries again
+	// bytes to reserve beyond the failed ones before a full store tries again
+	SPARE_BYTES = 1000000,
 	FOLD_PATIENCE = 4,
 	CHORE_PAUSE_MS = 5, // pause between two small steps of retention
 	OVERDRAWN_MS = 10,  // longest wait of a commit for retention, while the budget is exceeded
-	BEYOND_SHARE =
-		10, // if usage exceeds the budget by a tenth, commits wait until it is within the budget
+	// if usage exceeds the budget by a tenth, commits wait until it is within the budget
+	BEYOND_SHARE = 10,
 	MAX_FAILED_BYTES = 1 << 30,
-	UNSEEN_SHARE =
-		100, // share of the budget that may be committed between two checks of the budget
+	// share of the budget that may be committed between two checks of the budget
+	UNSEEN_SHARE = 100,
 };
 
 // ---- one group ------------------------------------------------------------------------
@@ -42,8 +42,8 @@ static cau_status write_batch(struct cau_store_committer *committer, struct cau_
 		status = cau_store_writer_apply(&committer->writer, record, now_ms, error);
 	if (is_own_fault(status)) {
 		batch->error = *error;
-		batch->error.status =
-			status; // set again, because the record's function may have changed the error
+		// set again, because the record's function may have changed the error
+		batch->error.status = status;
 		committer->writer.uncounted = before;
 		status = cau_store_execute(committer->database, "ROLLBACK TO batch", "writing", error);
 	}

@@ -7,10 +7,10 @@
 #include "fault.h"
 
 enum {
-	AGE_SHARE =
-		4, // the gap between a checkpoint's neighbours is at most this part of the later one's age
-	NEWEST_KEPT = 2, // newest checkpoints that are always kept: if the last cannot be restored, the
-	                 // one before can
+	// the gap between a checkpoint's neighbours is at most this part of the later one's age
+	AGE_SHARE = 4,
+	// newest checkpoints that are always kept: if the last cannot be restored, the one before can
+	NEWEST_KEPT = 2,
 };
 
 // ---- reading --------------------------------------------------------------------------

@@ -70,8 +70,7 @@ static cau_status build(const char *draft, cau_error *error)
 		return status;
 	status = cau_store_migrate(database, error);
 	if (!status)
-		status = set_wal(database,
-		                 error); // WAL mode is written into the header; the close folds the log
+		status = set_wal(database, error); // noted in the header; the close folds the log
 	sqlite3_close(database);
 	return status;
 }

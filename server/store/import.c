@@ -93,8 +93,8 @@ struct importing {
 	const char *id;
 	char name[CAU_STORE_ID_BYTES];
 	int64_t key; // 0: not known yet
-	bool first,
-		made; // first: the piece has the head of a move; made: the piece created the session
+	// first: the piece has the head of a move; made: the piece created the session
+	bool first, made;
 	sqlite3_stmt *statement[CAU_ROWS_COUNT];
 };
 
@@ -179,8 +179,8 @@ static cau_status put_rows(sqlite3 *database, const struct record *record, cau_e
 	}
 	for (int i = 0; i < CAU_ROWS_COUNT; i++)
 		sqlite3_finalize(to.statement[i]);
-	if (status == CAU_CORRUPT ||
-	    status == CAU_UNSUPPORTED) // the error is the piece's; the store is sound
+	// the error is the piece's; the store is sound
+	if (status == CAU_CORRUPT || status == CAU_UNSUPPORTED)
 		status = cau_fail(error, CAU_BAD_VALUE, "rows", "a piece that was not checked");
 	if (!all_read)
 		return status;

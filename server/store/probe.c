@@ -15,8 +15,8 @@
 
 enum {
 	HEADER_BYTES = 100,
-	USER_VERSION_AT =
-		60, // offset of a big-endian 32-bit word, https://www.sqlite.org/fileformat.html
+	// offset of a big-endian 32-bit word, https://www.sqlite.org/fileformat.html
+	USER_VERSION_AT = 60,
 	APPLICATION_ID_AT = 68,
 };
 

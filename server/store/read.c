@@ -11,7 +11,8 @@
 enum {
 	PIECE_ROWS = 256,      // commands read in one piece
 	PIECE_BYTES = 1 << 20, // about the largest bytes of the commands in one piece
-	MAX_DEPTH = 100000, // largest number of branches from a branch to its root; more means damage
+	// largest number of branches from a branch to its root; more means damage
+	MAX_DEPTH = 100000,
 };
 
 // ---- small pieces ---------------------------------------------------------------------

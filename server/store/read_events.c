@@ -48,8 +48,8 @@ static cau_status read_some(struct cau_store_reader *reader, wanted *w, cau_erro
 	cau_status status = cau_store_prepare(reader, newest_events, &statement, error);
 	if (!status) {
 		sqlite3_bind_int64(statement, 1, w->key);
-		sqlite3_bind_text(statement, 2, w->kind, -1,
-		                  SQLITE_STATIC); // a NULL pointer binds SQL NULL
+		// a NULL pointer binds SQL NULL
+		sqlite3_bind_text(statement, 2, w->kind, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 3, w->branch);
 		sqlite3_bind_int64(statement, 4, w->from_tick);
 		sqlite3_bind_int64(statement, 5, w->to_tick);

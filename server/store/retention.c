@@ -12,8 +12,8 @@
 #include "trim.h"
 
 enum {
-	FREED_SHARE =
-		20, // part of the budget that is free after retention, once the budget was exceeded
+	// part of the budget that is free after retention, once the budget was exceeded
+	FREED_SHARE = 20,
 	ANSWER_SHARE = 4,          // answers may keep this part of the budget when it is exceeded
 	LEAST_SPACING_TICKS = 600, // smallest spacing of thinning: 10 s at 60 Hz, replayed in 3 s
 };

@@ -48,8 +48,8 @@ typedef enum cau_rows_table {
 } cau_rows_table;
 
 typedef enum cau_rows_flags {
-	CAU_ROWS_PART_ENDS =
-		1, // the last piece of the first reading: all rows from before the move are sent
+	// the last piece of the first reading: all rows from before the move are sent
+	CAU_ROWS_PART_ENDS = 1,
 	CAU_ROWS_ENDS = 2, // the last piece of the move: all rows since then are sent too
 } cau_rows_flags;
 

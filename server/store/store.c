@@ -260,8 +260,8 @@ static void close_database(struct cau_store *store)
 	sqlite3_close(store->reading.database);
 	sqlite3_close(store->answers.database);
 	sqlite3_close(store->folding);
-	sqlite3_close(
-		store->committer.database); // the last connection to close folds the log and removes it
+	// the last connection to close folds the log and removes it
+	sqlite3_close(store->committer.database);
 	cau_store_lock_release(&store->lock);
 }
 

@@ -57,25 +57,26 @@ const char *cau_store_state_name(cau_store_state state);
 // The bytes of all tables, compared with config.store_bytes.
 typedef enum cau_store_budget_state {
 	CAU_STORE_BUDGET_KEPT,
-	CAU_STORE_BUDGET_SHRINKING, // the oldest records are removed, until a twentieth of the budget
-	                            // is free
-	CAU_STORE_BUDGET_BEYOND,    // the budget is exceeded, and nothing may be removed
+	// the oldest records are removed, until a twentieth of the budget is free
+	CAU_STORE_BUDGET_SHRINKING,
+	CAU_STORE_BUDGET_BEYOND, // the budget is exceeded, and nothing may be removed
 } cau_store_budget_state;
 
 // ---- life -----------------------------------------------------------------------------
 typedef struct cau_store_config {
-	const char *path;  // the database file; "-wal", "-shm" and "-lock" files are beside it
-	bool memory;       // true: only in memory, without a path, gone after the close
-	const char *label; // the daemon's label; NULL: the stored one. A label that differs from the
-	                   // stored one is refused. A new store refuses a label with `-`.
+	const char *path; // the database file; "-wal", "-shm" and "-lock" files are beside it
+	bool memory;      // true: only in memory, without a path, gone after the close
+	// the daemon's label; NULL: the stored one. A label that differs from the stored one is
+	// refused. A new store refuses a label with `-`.
+	const char *label;
 	int32_t commit_delay_ms; // how long a batch may wait for others, 0 to 10
 	int32_t queue_batches;   // largest number of batches that are not yet answered
 	size_t queue_bytes;      // largest number of bytes of these batches
 	int32_t full_retry_ms;   // time between attempts while full, at least 1
-	int64_t retention_bytes; // bytes of one session; beyond them the oldest removable records are
-	                         // removed
-	int64_t store_bytes; // bytes of all tables; beyond them the oldest removable records of all are
-	                     // removed; 0: no bound
+	// bytes of one session; beyond them the oldest removable records are removed
+	int64_t retention_bytes;
+	// bytes of all tables; beyond them the oldest removable records of all are removed; 0: no bound
+	int64_t store_bytes;
 	int64_t retention_age_ms;       // age at which left branches are removed
 	int64_t answer_age_ms;          // age at which recorded answers are removed
 	int64_t event_age_ms;           // age at which events are removed
@@ -259,8 +260,8 @@ cau_status cau_store_put_gap(cau_store_batch *batch, const cau_store_gap *gap, c
 typedef struct cau_store_moved {
 	const char *id;   // the session's id here
 	const char *move; // id of the move
-	const char *target, *label,
-		*url;          // the session's id there, that daemon's label, and its address or ""
+	// the session's id there, that daemon's label, and its address or ""
+	const char *target, *label, *url;
 	const char *proof; // allows the other daemon to serve the session
 	int64_t time_ms;   // ignored in a put
 } cau_store_moved;
@@ -417,13 +418,14 @@ typedef struct cau_store_metrics {
 	uint64_t records; // committed records
 	uint64_t bytes;   // committed bytes
 	uint64_t failed_batches;
-	uint64_t refused_batches;      // batches that submit refused
-	uint64_t retired_rows;         // table rows that retention removed
-	uint64_t kept_bytes;           // bytes of the file in use at retention's last check
-	uint64_t budget_dropped;       // checkpoints removed for the budget
-	cau_store_budget_state budget; // present state of the budget
-	uint64_t full_count;           // times the disk was found full
-	uint64_t full_attempts;        // attempts to write again while full
+	uint64_t refused_batches; // batches that submit refused
+	uint64_t retired_rows;    // table rows that retention removed
+	// bytes of the file in use at retention's last check
+	uint64_t kept_bytes;
+	uint64_t budget_dropped;                      // checkpoints removed for the budget
+	cau_store_budget_state budget;                // present state of the budget
+	uint64_t full_count;                          // times the disk was found full
+	uint64_t full_attempts;                       // attempts to write again while full
 	uint64_t group_size[CAU_STORE_SIZE_BUCKETS];  // groups with at most 2^i batches
 	uint64_t commit_time[CAU_STORE_TIME_BUCKETS]; // durations of COMMITs (write, fsync)
 	double commit_s;                              // duration of all COMMITs together

@@ -13,8 +13,8 @@
 
 enum {
 	GROUP_BATCHES = 1024, // largest number of batches in one commit
-	GROUP_BYTES =
-		16 * 1000000, // a commit ends with the batch with which its bytes reach this number
+	// a commit ends with the batch with which its bytes reach this number
+	GROUP_BYTES = 16 * 1000000,
 };
 
 // A connection for reading, guarded by `mutex`.
@@ -48,13 +48,13 @@ struct cau_store_queue {
 	struct cau_store_batch *committing;   // taken by the store thread, not yet answered
 	uint64_t submitted, answered;         // numbers of batches since open
 	int flushing;                         // callers inside cau_store_flush()
-	bool asked_to_move; // cau_store_moves() was called, and the store thread has not looked for
-	                    // work since
+	// cau_store_moves() was called, and the store thread has not looked for work since
+	bool asked_to_move;
 	bool closing;
 	cau_store_state state; // READY, FULL or DAMAGED
 	char reason[320];
-	cau_store_metrics
-		metrics; // only the counters, the histograms, queue_batches and queue_bytes are kept here
+	// only the counters, the histograms, queue_batches and queue_bytes are kept here
+	cau_store_metrics metrics;
 	uint64_t answer_time[CAU_STORE_TIME_BUCKETS];
 };
 
@@ -70,7 +70,7 @@ struct cau_store {
 
 	struct cau_store_committer committer;
 	struct cau_store_reader reading;
-	struct cau_store_reader
-		answers; // a connection of its own: a search for an answer never waits for a long read
+	// a connection of its own: a search for an answer never waits for a long read
+	struct cau_store_reader answers;
 	struct cau_store_queue queue;
 };

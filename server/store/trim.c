@@ -101,8 +101,8 @@ cau_status cau_store_trim_left(sqlite3 *database, int64_t left_before_ms, int64_
 	                                  (const int64_t[]){left_before_ms, session}, &found, error);
 	while (!status && found.rows && !*rows) {
 		status = trim_branch(database, found.value[0], found.value[1], found.value[2], rows, error);
-		if (!status &&
-		    !*rows) // the branch had nothing to remove, which is now recorded: search again
+		// the branch had nothing to remove, which is now recorded: search again
+		if (!status && !*rows)
 			status = cau_store_run(database, LEFT_BRANCH,
 			                       (const int64_t[]){left_before_ms, session}, &found, error);
 	}

@@ -8,8 +8,8 @@
 
 enum {
 	CAU_STORE_STATEMENTS = 20,
-	CAU_STORE_UNCOUNTED_SLOTS =
-		16, // about the number of branches that are written at the same time
+	// about the number of branches that are written at the same time
+	CAU_STORE_UNCOUNTED_SLOTS = 16,
 };
 
 // Bytes of commands that branches.bytes does not count yet. Counting with each command would write
@@ -31,8 +31,8 @@ struct cau_store_writer {
 // Compiles every statement. This also checks that the tables are as this build expects.
 cau_status cau_store_writer_init(struct cau_store_writer *writer, sqlite3 *database,
                                  cau_error *error);
-void cau_store_writer_finish(
-	struct cau_store_writer *writer); // the writer may be zeroed or initialised
+// the writer may be zeroed or initialised
+void cau_store_writer_finish(struct cau_store_writer *writer);
 
 // Writes one record. CAU_ALREADY_EXISTS and CAU_NOT_FOUND are the record's own errors; any other
 // error is the disk's.

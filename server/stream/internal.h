@@ -17,8 +17,8 @@ void cau_ring_put_key(cau_streams *streams, cau_stream *stream, cau_buffer *buff
 void cau_ring_clear(cau_stream *stream); // under the mutex if other threads can see the stream
 
 // ---- half_rate.c
-void cau_half_publish(cau_streams *streams,
-                      cau_stream *stream); // called after each frame of the stream
+// called after each frame of the stream
+void cau_half_publish(cau_streams *streams, cau_stream *stream);
 // Returns the delta that the subscriber needs next, even if it has left the ring. NULL: the
 // subscriber waits for the next delta over two frames.
 const cau_ring_frame *cau_half_choose(const cau_stream *stream, const cau_subscriber *sub,

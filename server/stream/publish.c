@@ -5,9 +5,9 @@
 
 #include "stream/internal.h"
 
-#define DUE_EARLY                                                                                  \
-	0.25 // share of a period by which a frame may be early, so that nearly equal rates of ticks and
-	     // frames do not beat
+// share of a period by which a frame may be early, so that nearly equal rates of ticks and frames
+// do not beat
+#define DUE_EARLY 0.25
 
 static uint64_t random_epoch(void)
 {

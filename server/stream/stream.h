@@ -24,7 +24,8 @@ typedef struct cau_ring_frame {
 typedef struct cau_half_lane {
 	int32_t subscribers;              // mutex
 	cau_ring_frame ring[RING_FRAMES]; // mutex, by half the sequence modulo RING_FRAMES
-	void *storage; // worker, like the member below; NULL until a subscriber needs it
+	// worker, like the member below; NULL until a subscriber needs it
+	void *storage;
 	cau_frame_thinner *thinner;
 } cau_half_lane;
 
@@ -57,14 +58,14 @@ typedef struct cau_streams {
 	const char *id;           // session's id, for the log; borrowed
 	uint32_t session;         // session's number
 	int64_t subscribers_most; // largest number of subscribers of all profiles together
-	size_t in_flight_most; // largest number of bytes that are sent to an acknowledging subscriber
-	                       // and not acknowledged
+	// largest number of bytes that are sent to an acknowledging subscriber and not acknowledged
+	size_t in_flight_most;
 	uint64_t epoch;        // worker
 	pthread_mutex_t mutex; // held for moments; no other lock is taken while it is held
 	cau_stream stream[CAU_STREAM_PROFILES_MAX];
 	cau_shelf *profile_shelf, *opening_shelf; // memory of a profile, and working memory to open one
-	cau_buffer
-		*topology; // worker; the newest topology, from which the next is made; NULL: none yet
+	// worker; the newest topology, from which the next is made; NULL: none yet
+	cau_buffer *topology;
 	cau_stream_counts counts; // mutex; the present numbers are 0 here
 } cau_streams;
 
@@ -74,11 +75,11 @@ typedef struct cau_subscriber {
 	bool topology_sent, has_key, wants_key, acknowledges;
 	uint64_t epoch, sequence; // of the last frame that was sent
 	double key_asked_s;       // when a key frame was last requested, at most once a second
-	double waiting_since_s;   // since when frames are ready and the subscriber takes none; 0: it
-	                          // takes them
-	bool half;                // it keeps falling behind and gets every second frame (half_rate.c)
-	int32_t falls, steady;    // recent falls; frames taken since the last fall
-	size_t in_flight;         // bytes sent and not acknowledged
+	// since when frames are ready and the subscriber takes none; 0: it takes them
+	double waiting_since_s;
+	bool half;             // it keeps falling behind and gets every second frame (half_rate.c)
+	int32_t falls, steady; // recent falls; frames taken since the last fall
+	size_t in_flight;      // bytes sent and not acknowledged
 	struct {
 		uint64_t sequence;
 		size_t bytes;
@@ -126,8 +127,8 @@ uint32_t cau_streams_watched(cau_streams *streams);
 // A moment at which frames may be due.
 typedef struct cau_stream_moment {
 	double now_s;
-	bool all;    // frames are due whatever the streams' rates are, because something has changed
-	             // without a step
+	// frames are due whatever the streams' rates are, because something has changed without a step
+	bool all;
 	bool moving; // simulated time advances
 	// Returns the present state. Called at most once, and only if a frame is due.
 	const cau_stream_sample *(*sample)(void *user);

@@ -94,8 +94,8 @@ static void close_door(cau_dds *dds, cau_door *door)
 		dds_delete(reader);
 		cau_dds_prune(dds, reader, false);
 	}
-	if (door->topic > 0 &&
-	    !door->best_effort) // a topic of a best-effort door belongs to the reliable door
+	// a topic of a best-effort door belongs to the reliable door
+	if (door->topic > 0 && !door->best_effort)
 		dds_delete(door->topic);
 	*door = (cau_door){0};
 }

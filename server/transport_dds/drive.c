@@ -109,8 +109,8 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 		hand = cau_dds_take_hand(dds, writer, door->session, tool, now, &error);
 		if (hand)
 			hand->client->alive_s = writer->sign.alive_s;
-		status = hand ? claim(hand, &state, now_s, &error)
-		              : CAU_LIMIT; // CAU_LIMIT, or no memory: `error` says which
+		// CAU_LIMIT, or no memory: `error` says which
+		status = hand ? claim(hand, &state, now_s, &error) : CAU_LIMIT;
 	}
 	if (!status)
 		status = cau_motion_check_leap(&hand->past, &motion.pose, now_s, &state.state.definition,

@@ -86,14 +86,13 @@ static bool key_is_old(const cau_dds_stream *stream)
 static void want_key(cau_dds_stream *stream)
 {
 	const cau_subscriber *chain = &stream->chain;
-	stream->keys = (cau_subscriber){
-		.stream = chain->stream,
-		.topology_sent = true,
-		.has_key = !stream->key_forced,
-		.wants_key = true,
-		.epoch = chain->epoch,
-		.sequence = chain->sequence - 1, // so that the key frame has this state or a newer one
-		.key_asked_s = -INFINITY};
+	stream->keys = (cau_subscriber){.stream = chain->stream,
+	                                .topology_sent = true,
+	                                .has_key = !stream->key_forced,
+	                                .wants_key = true,
+	                                .epoch = chain->epoch,
+	                                .sequence = chain->sequence - 1, // of this or a newer state
+	                                .key_asked_s = -INFINITY};
 	stream->key_wanted = stream->key_forced = false;
 }
 

@@ -58,8 +58,8 @@ struct cau_dds_session;
 // A reader. `tool` is empty for DOOR_NATIVE, because native samples name their tool.
 typedef struct cau_door {
 	cau_door_kind kind;
-	bool best_effort; // a second reader of the topic beside the reliable one; it ignores reliable
-	                  // writers
+	// a second reader of the topic beside the reliable one; it ignores reliable writers
+	bool best_effort;
 	dds_entity_t topic, reader; // 0 if closed
 	dds_entity_t samples;       // DDS read condition: there are samples to take
 	struct cau_dds_session *session;
@@ -147,17 +147,18 @@ typedef struct cau_dds_session {
 	cau_dds_outlet state, grasp, power, force;
 	cau_hosted_tool states[CAU_MAX_TOOLS]; // each tool's last published state
 	uint64_t states_tick;
-	double states_s;                 // when states without readers were last written
-	bool states_owed[CAU_MAX_TOOLS]; // the tool's state has changed, by more than the tick, since
-	                                 // it was written
-	double look_s; // time of the next check, whether the session had a slice or not
+	double states_s; // when states without readers were last written
+	// the tool's state has changed, by more than the tick, since it was written
+	bool states_owed[CAU_MAX_TOOLS];
+	// time of the next check, whether the session had a slice or not
+	double look_s;
 	cau_dds_stream stream;
 	cau_dds_status status;
 	cau_dds_tool tools[CAU_MAX_TOOLS];
 	// Refusals, logged once a second:
 	int64_t refused;
-	bool drops_untold; // dropped samples are not logged yet, and maybe no other event will cause a
-	                   // log line
+	// dropped samples are not logged yet, and maybe no other event will cause a log line
+	bool drops_untold;
 	double refused_told_s;
 } cau_dds_session;
 
@@ -221,9 +222,10 @@ typedef struct cau_dds_hand {
 	cau_dds_tool *tool;
 	cau_motion_past past;
 	double jaw;
-	double claim_until_s; // until this time its claim may be waiting in the session's queue
-	bool energy_ready,
-		energy_asked; // energy_ready: the level was 0; energy_asked: energy was requested
+	// until this time its claim may be waiting in the session's queue
+	double claim_until_s;
+	// energy_ready: the level was 0; energy_asked: energy was requested
+	bool energy_ready, energy_asked;
 	bool grasp_asked;
 } cau_dds_hand;
 
@@ -270,8 +272,8 @@ typedef struct cau_dds_farewell {
 // Cyclone's entities. They are opened with the transport and never change afterwards. Any thread
 // may use them.
 typedef struct cau_dds_entities {
-	dds_entity_t domain, participant, subscriber,
-		publisher; // subscriber and publisher are of the default partition
+	// subscriber and publisher are of the default partition
+	dds_entity_t domain, participant, subscriber, publisher;
 	dds_entity_t topics[TOPIC_COUNT];
 	dds_entity_t waitset;
 } cau_dds_entities;
@@ -307,8 +309,8 @@ typedef struct cau_dds_control {
 
 // Readers and writers of other programs in the domain; only the DDS thread uses this. peers.c.
 typedef struct cau_dds_peers {
-	dds_entity_t writers,
-		readers; // readers of DDS's built-in topics, which list all writers and readers
+	// readers of DDS's built-in topics, which list all writers and readers
+	dds_entity_t writers, readers;
 	cau_dds_peer *first;
 	bool ends_changed; // we have new readers or writers, so check all peers again
 	double told_s;     // start of the second to which `told`, the number of log lines, belongs
@@ -326,8 +328,9 @@ typedef struct cau_dds_places {
 // Matched writers, by reader and handle; only the DDS thread uses this. writers.c.
 typedef struct cau_dds_writers {
 	cau_dds_writer *buckets[WRITER_BUCKETS];
-	double onlookers_told_s; // start of the second to which onlookers_told belongs: log lines about
-	                         // writers without a role to drive
+	// start of the second to which onlookers_told belongs: log lines about writers without a role
+	// to drive
+	double onlookers_told_s;
 	int onlookers_told;
 } cau_dds_writers;
 
@@ -532,9 +535,8 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 // ---- replies.c: all but the first two answer the request and forget it ----
 cau_dds_request cau_dds_describe_request(const cau_dds_writer *writer,
                                          const cautery_SessionRequest *sample);
-cau_dds_request *
-cau_dds_keep_request(cau_dds_control *control, const cau_dds_writer *writer,
-                     const cautery_SessionRequest *sample); // NULL: too many requests
+cau_dds_request *cau_dds_keep_request(cau_dds_control *control, const cau_dds_writer *writer,
+                                      const cautery_SessionRequest *sample); // NULL: too many
 void cau_dds_reply_fail(const cau_dds_control *control, cau_dds_request *request,
                         const cau_error *error, int32_t code);
 void cau_dds_reply_join(const cau_dds_control *control, cau_dds_request *request,

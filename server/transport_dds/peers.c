@@ -10,11 +10,8 @@
 #include "transport_dds/compatible.h"
 #include "transport_dds/internal.h"
 
-enum {
-	TAKEN_AT_ONCE = 32,
-	TYPE_BYTES = 256,
-	PEERS_TOLD_MOST = 16
-}; // PEERS_TOLD_MOST: log lines a second
+// PEERS_TOLD_MOST: log lines a second
+enum { TAKEN_AT_ONCE = 32, TYPE_BYTES = 256, PEERS_TOLD_MOST = 16 };
 
 // One of our readers or writers with which a peer could be matched.
 typedef struct end {

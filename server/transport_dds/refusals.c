@@ -35,8 +35,8 @@ void cau_dds_count_dropped(cau_dds_session *session)
 		session->refused += (int64_t)dropped;
 		session->drops_untold = true;
 	}
-	if (!session->drops_untold ||
-	    session->refused == 0) { // dropped samples are logged together with other refusals
+	// dropped samples are logged together with other refusals
+	if (!session->drops_untold || session->refused == 0) {
 		session->drops_untold = false;
 		return;
 	}

@@ -90,9 +90,8 @@ static cau_status set_identity(dds_qos_t *qos, const char *folder, cau_error *er
 	snprintf(uri, sizeof uri, "file:%s/%s", folder, revoked);
 	if (access(uri + strlen("file:"), F_OK) != 0)
 		return CAU_OK;
-	dds_qset_prop(
-		qos, revoked_property,
-		uri); // an unreadable revocation list is an error; the daemon does not start without it
+	// an unreadable revocation list is an error; the daemon does not start without it
+	dds_qset_prop(qos, revoked_property, uri);
 	return check_file(folder, revoked, error);
 }
 

@@ -6,8 +6,8 @@
 
 #include "transport_dds/internal.h"
 
-#define LOOK_EVERY_S                                                                               \
-	1 // longest time between checks: samples that readers drop do not wake the thread
+// longest time between checks: samples that readers drop do not wake the thread
+#define LOOK_EVERY_S 1
 #define UNREAD_LOOK_S 0.1 // time between checks of sessions that had a slice and have no readers
 
 static cau_dds_session *find_session(cau_dds *dds, const cau_hosted *hosted)
@@ -144,8 +144,7 @@ void cau_dds_list_sessions(cau_dds *dds)
 static void deliver(cau_dds *dds, cau_dds_post *post)
 {
 	for (cau_dds_session *s = dds->sessions; s; s = s->next)
-		if (s->stream.ticket ==
-		    post->ticket) { // a post with a ticket is for one session; tickets are never 0
+		if (s->stream.ticket == post->ticket) { // tickets are never 0
 			cau_dds_joined(s, post);
 			s->look_s = 0;
 		}
@@ -198,12 +197,12 @@ double cau_dds_serve(cau_dds *dds)
 		deliver(dds, post);
 		cau_dds_post_free(post);
 	}
-	note_read(
-		dds); // before the marks are taken: a slice that does not wake the thread leaves a mark
+	// before the marks are taken: a slice that does not wake the thread leaves a mark
+	note_read(dds);
 	cau_dds_take_bits(&dds->wakeup.marked, &marked);
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
-		if (cau_hosted_ended(
-				s->hosted)) // list the sessions again at once, even if no other notice comes
+		// list the sessions again at once, even if no other notice comes
+		if (cau_hosted_ended(s->hosted))
 			cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
 		if (!s->subscriber)
 			continue;

@@ -81,9 +81,9 @@ typedef struct cau_connection {
 	struct cau_connection *previous, *next;
 	void *peer; // belongs to the handler
 	double opened_s;
-	bool served;   // hello was accepted, so the hello timeout is off
-	bool unplaced; // the number of served connections was at its limit when it opened: it may only
-	               // resume
+	bool served; // hello was accepted, so the hello timeout is off
+	// the number of served connections was at its limit when it opened: it may only resume
+	bool unplaced;
 	int descriptor;
 	char address[CAU_ADDRESS_BYTES]; // the peer's address as text; "" if unknown
 	char owner[CAU_ADDRESS_BYTES];   // owner of this address, from cau_address_owner

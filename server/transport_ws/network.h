@@ -33,7 +33,8 @@ typedef struct cau_network_handler {
 	// Returns the next frame for this connection, or NULL. The caller releases the frame.
 	cau_buffer *(*next_frame)(void *user, cau_connection *connection);
 	void (*woken)(void *user); // called after cau_network_wake
-	void (*tick)(void *user);  // called about every 100 ms while there are connections
+	// called about every 100 ms while there are connections
+	void (*tick)(void *user);
 	void (*page)(void *user, cau_page *page); // makes /healthz, /readyz, /metrics, /api/sessions
 } cau_network_handler;
 

@@ -109,8 +109,8 @@ static void take_held(cau_connection *c, double until_s)
 
 static bool receive(cau_connection *c, double until_s)
 {
-	static unsigned char
-		bytes[READ_BYTES]; // used by the network thread only; holds more than a TLS record
+	// used by the network thread only; holds more than a TLS record
+	static unsigned char bytes[READ_BYTES];
 	ssize_t got = cau_connection_receive(c, bytes, sizeof bytes);
 	if (got <= 0) {
 		if (got == 0 || (errno != EAGAIN && errno != EINTR))

@@ -34,8 +34,8 @@ typedef struct cau_address_share {
 
 typedef struct cau_shares {
 	cau_time_used standings[CAU_STANDING_COUNT];
-	cau_address_share
-		*addresses; // addresses that have connections, or time that is not given back yet
+	// addresses that have connections, or time that is not given back yet
+	cau_address_share *addresses;
 } cau_shares;
 
 // The share of a connection.

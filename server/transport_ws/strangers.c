@@ -18,14 +18,15 @@ enum {
 	STRANGERS_MOST = 256,
 	UNREAD_MOST = 512, // connections whose request has not come, of all addresses together
 	OF_ADDRESS_MOST = 128,
-	GRACE_FACTOR = 8,  // strangers reconnect 4,000 times in a second, which is 512 times in an
-	                   // eighth of a second
+	// strangers reconnect 4,000 times in a second, which is 512 times in an eighth of a second
+	GRACE_FACTOR = 8,
 	NETWORK_BYTES = 8, // an IPv6 address's owner chooses the remaining bytes
 	RESUMES_MOST = 16, // connections beyond max_connections, for clients that return to their tools
 };
 
 #define READ_WITHIN_S 0.02 // the thread reads bytes within this time after their arrival
-#define GRACE_S 1.0 // time for the request and for hello, from far away or from a busy machine
+// time for the request and for hello, from far away or from a busy machine
+#define GRACE_S 1.0
 
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
 {

@@ -44,8 +44,7 @@ int lws_service_fd_tsi(struct lws_context *context, struct lws_pollfd *pollfd, i
 	typedef int service(struct lws_context * context, struct lws_pollfd * pollfd, int tsi);
 	static _Thread_local service *library;
 	if (!library)
-		*(void **)&library = dlsym(
-			RTLD_NEXT, "lws_service_fd_tsi"); // assigned in the way that POSIX recommends for dlsym
+		*(void **)&library = dlsym(RTLD_NEXT, "lws_service_fd_tsi"); // as POSIX advises
 	served = pollfd ? pollfd->fd : -1;
 	int result = library(context, pollfd, tsi);
 	served = -1;
