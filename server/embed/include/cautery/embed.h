@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Creates sessions from scenes in JSON, for programs that contain the core. All other functions of a
-// session are in cautery/session.h.
+// Creates sessions from scenes in JSON, for programs that contain the core. All other functions of
+// a session are in cautery/session.h.
 //
 //     #include "cautery/embed.h"
 //
