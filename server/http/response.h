@@ -41,9 +41,9 @@ int cau_http_answer_continue(struct lws *wsi, cau_http_body *body);
 // Why a request is not served, in the program's own words.
 typedef struct cau_http_refusal {
 	unsigned status;    // HTTP status; 0: the request is served
-	const char *name;   // a word for programs: "bad_origin"
+	const char *name;   // one word for programs: "bad_origin"
 	const char *where;  // the wrong header or request line
-	const char *reason; // a sentence
+	const char *reason; // the reason: a sentence
 	const char *remedy; // what to do: a sentence
 } cau_http_refusal;
 

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-// code, name, syslog priority
+// Columns: code, name, syslog priority.
 #define CAU_LOG_TABLE(X)                                                                           \
 	X(DEBUG, "debug", 7)                                                                           \
 	X(INFO, "info", 6)                                                                             \

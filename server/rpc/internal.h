@@ -21,7 +21,7 @@ enum {
 #define X(...) +1
 	CAU_ANSWER_COLUMNS = 1 CAU_RPC_ERROR_TABLE(X), // one for the result, and one for each error
 #undef X
-	MALFORMED_MOST = 16, // messages that are no JSON-RPC, after which the connection is closed
+	MALFORMED_MOST = 16, // malformed messages after which the connection is closed
 };
 
 // A stream that this connection has joined.
@@ -96,7 +96,8 @@ struct cau_service {
 	_Atomic uint64_t answers[CAU_METHOD_COUNT + 1][CAU_ANSWER_COLUMNS];
 	// used by the network thread only
 	cau_upload_total uploads;
-	cau_scene_answer *scene_answers; // scene_methods.c
+	// the answers to scene.get; scene_methods.c
+	cau_scene_answer *scene_answers;
 	int32_t scene_count;
 	uint64_t scene_edition; // edition of the scenes that the answers are from
 	void (*write_more_metrics)(void *user, FILE *out, cau_metrics_format format); // may be NULL

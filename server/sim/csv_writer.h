@@ -16,9 +16,9 @@ typedef struct sim_csv_row {
 	const cau_frame *frame;
 	cau_balance balance;
 	cau_energy_ledger ledger;
-	double coagulated_m3; // cau_session_coagulated
-	double vaporised_m3;  // cau_session_vaporised
-	double vapour_kg_s;   // cau_session_vapour
+	double coagulated_m3; // from cau_session_coagulated
+	double vaporised_m3;  // from cau_session_vaporised
+	double vapour_kg_s;   // from cau_session_vapour
 } sim_csv_row;
 
 // Writes the line of one tick. Times of stages depend on the machine, and are 0 if the session has

@@ -110,7 +110,7 @@ static void move(pen *p, const cau_pose *from, const cau_pose *to, double durati
 // Returns `pose` drawn back along its shaft (the tool's z axis).
 static cau_pose above(const cau_pose *pose)
 {
-	const double *q = pose->rotation; // w, x, y, z
+	const double *q = pose->rotation; // a quaternion: w, x, y, z
 	cau_pose raised = *pose;
 	raised.position_m[0] += hover_m * 2.0 * (q[1] * q[3] + q[0] * q[2]);
 	raised.position_m[1] += hover_m * 2.0 * (q[2] * q[3] - q[0] * q[1]);

@@ -16,9 +16,9 @@ typedef struct cells {
 	int64_t count, corner_count;
 	int64_t *corner; // vertices of all cells, one cell after the other
 	int64_t *end;    // (count): end of each cell's vertices in `corner`
-	uint8_t *type;   // (count)
-	uint8_t *kind;   // (count): cell_kind
-	int32_t *layer;  // (count)
+	uint8_t *type;   // (count): VTK's type of each cell
+	uint8_t *kind;   // (count): cell_kind of each cell
+	int32_t *layer;  // (count): layer of each triangle, else -1
 } cells;
 
 static cau_status fail_file(const char *path, cau_error *error)
@@ -179,11 +179,11 @@ static cau_status write_grid(const char *path, const cau_session_info *info, con
 
 // The tools' part of a file. Each tool has two points: its tip and the end of its shaft.
 typedef struct tool_arrays {
-	double *position;            // m, (2 count x 3)
-	int64_t *corner, *end;       // (2 count), (count)
-	uint8_t *type, *energized;   // (count)
-	int32_t *number;             // (count)
-	double *force_n, *torque_nm; // (count x 3)
+	double *position;            // (2 count x 3): tips and ends, m
+	int64_t *corner, *end;       // corner: (2 count), end: (count), as in `cells`
+	uint8_t *type, *energized;   // (count) each
+	int32_t *number;             // (count): the tool's number in the tick
+	double *force_n, *torque_nm; // (count x 3) each
 	double *temperature_c, *energy_j;
 } tool_arrays;
 

@@ -8,8 +8,8 @@
 typedef struct sim_vtu {
 	const char *folder; // borrowed
 	int32_t file_count;
-	uint64_t *tick; // (file_count)
-	double *time_s; // (file_count)
+	uint64_t *tick; // (file_count): tick of each file
+	double *time_s; // (file_count): time of each file
 } sim_vtu;
 
 // Begins a series. Makes the folder if it is missing. The caller finishes *vtu.

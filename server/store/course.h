@@ -34,8 +34,8 @@ struct cau_store_hole {
 };
 
 struct cau_store_course {
-	struct cau_store_point *point; // by tick; an ancestor's before its descendant's
-	struct cau_store_hole *hole;   // by from_tick
+	struct cau_store_point *point; // ordered by tick; an ancestor's before its descendant's
+	struct cau_store_hole *hole;   // ordered by from_tick
 	int point_count, hole_count;
 };
 

@@ -82,7 +82,7 @@ typedef struct cau_store_config {
 	int64_t event_age_ms;           // age at which events are removed
 	int32_t retention_interval_ms;  // time between retention steps, at least 1
 	size_t wal_bytes;               // the write-ahead log is folded into the file when it is larger
-	int64_t (*wall_clock_ms)(void); // Unix time; NULL: the system's
+	int64_t (*wall_clock_ms)(void); // returns Unix time; NULL: the system's clock
 	// Called on the store thread when the state changes; may be NULL. After FULL -> READY, the logs
 	// of running sessions lack the failed batches: checkpoint every session before its next
 	// command.
@@ -211,7 +211,7 @@ typedef struct cau_store_event {
 	uint64_t tick;
 	int32_t level;    // in the daemon's scale
 	const char *kind; // "watchdog_cut", ...
-	const char *text; // text or JSON
+	const char *text; // plain text or JSON
 	int64_t time_ms;  // Unix time; 0 in a put means now
 } cau_store_event;
 cau_status cau_store_put_event(cau_store_batch *batch, const cau_store_event *event,
@@ -280,7 +280,7 @@ typedef enum cau_store_arrival_state {
 typedef struct cau_store_arrival {
 	const char *id;             // the session's id here
 	const char *move;           // id of the move
-	const char *lock;           // SHA-256 of the proof, 64 hex digits
+	const char *lock;           // SHA-256 of the proof, as 64 hex digits
 	const char *unlock;         // SHA-256 of the release; "" if the source has an older version
 	const char *seal;           // seal of the received pieces; "" if none
 	const char *source, *label; // the session's id at the source, and the source's label
@@ -409,8 +409,8 @@ typedef struct cau_store_health {
 } cau_store_health;
 void cau_store_get_health(cau_store *store, cau_store_health *health);
 
-#define CAU_STORE_SIZE_BUCKETS 13 // batches per commit: 1, 2, 4, ... 4096
-#define CAU_STORE_TIME_BUCKETS 96 // quarter octaves from 10 microseconds
+#define CAU_STORE_SIZE_BUCKETS 13 // for 1, 2, 4, ... 4096 batches in a commit
+#define CAU_STORE_TIME_BUCKETS 96 // quarter octaves from 10 microseconds on
 
 typedef struct cau_store_metrics {
 	uint64_t commits; // committed groups

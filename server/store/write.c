@@ -5,7 +5,7 @@
 #include "fault.h"
 #include "import.h"
 
-// name, SQL
+// Columns: name, SQL.
 #define STATEMENT_TABLE(X)                                                                         \
 	X(FIND_SESSION, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0")                      \
 	X(ADD_SESSION, "INSERT INTO sessions(id, name, state, branch, created_ms, definition, mesh)"   \

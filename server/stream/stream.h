@@ -22,29 +22,31 @@ typedef struct cau_ring_frame {
 
 // The frames for subscribers that keep falling behind: every second frame of the same chain.
 typedef struct cau_half_lane {
-	int32_t subscribers;              // mutex
-	cau_ring_frame ring[RING_FRAMES]; // mutex, by half the sequence modulo RING_FRAMES
-	// worker, like the member below; NULL until a subscriber needs it
+	int32_t subscribers; // guarded by the mutex
+	// by half the sequence modulo RING_FRAMES; guarded by the mutex
+	cau_ring_frame ring[RING_FRAMES];
+	// NULL until a subscriber needs it; used by the worker only, like the member below
 	void *storage;
 	cau_frame_thinner *thinner;
 } cau_half_lane;
 
 typedef struct cau_stream {
-	bool used;                        // the slot is taken; changed by the worker under the mutex
-	int32_t subscribers;              // mutex
-	bool key_wanted;                  // mutex
-	uint64_t epoch;                   // mutex: epoch of the frames in the ring
-	uint64_t newest;                  // mutex: sequence of the newest frame
-	double newest_s;                  // mutex: when the newest frame was made
-	cau_ring_frame ring[RING_FRAMES]; // mutex, by sequence modulo RING_FRAMES
-	cau_ring_frame key;               // mutex
+	// the slot is taken; only the worker changes this, under the mutex
+	bool used;
+	int32_t subscribers;              // guarded by the mutex
+	bool key_wanted;                  // a subscriber waits for a key frame; guarded by the mutex
+	uint64_t epoch;                   // epoch of the frames in the ring; guarded by the mutex
+	uint64_t newest;                  // sequence of the newest frame; guarded by the mutex
+	double newest_s;                  // when the newest frame was made; guarded by the mutex
+	cau_ring_frame ring[RING_FRAMES]; // by sequence modulo RING_FRAMES; guarded by the mutex
+	cau_ring_frame key;               // newest key frame; guarded by the mutex
 	cau_half_lane half;
-	cau_buffer *topology;    // mutex
-	cau_stream_def def;      // worker
-	double rate_hz, next_s;  // worker
-	void *storage, *scratch; // worker; one piece of profile_shelf
+	cau_buffer *topology;    // guarded by the mutex
+	cau_stream_def def;      // used by the worker only
+	double rate_hz, next_s;  // used by the worker only
+	void *storage, *scratch; // one piece of profile_shelf; used by the worker only
 	size_t scratch_bytes;
-	cau_frame_encoder *encoder; // worker
+	cau_frame_encoder *encoder; // used by the worker only
 } cau_stream;
 
 typedef struct cau_stream_counts {
@@ -52,21 +54,20 @@ typedef struct cau_stream_counts {
 	int32_t subscribers, half_rate; // present numbers
 } cau_stream_counts;
 
-// The streams of one session. `worker`: used by the session's worker only. `mutex`: guarded by the
-// mutex.
+// The streams of one session.
 typedef struct cau_streams {
 	const char *id;           // session's id, for the log; borrowed
 	uint32_t session;         // session's number
 	int64_t subscribers_most; // largest number of subscribers of all profiles together
 	// largest number of bytes that are sent to an acknowledging subscriber and not acknowledged
 	size_t in_flight_most;
-	uint64_t epoch;        // worker
+	uint64_t epoch;        // used by the worker only
 	pthread_mutex_t mutex; // held for moments; no other lock is taken while it is held
 	cau_stream stream[CAU_STREAM_PROFILES_MAX];
 	cau_shelf *profile_shelf, *opening_shelf; // memory of a profile, and working memory to open one
-	// worker; the newest topology, from which the next is made; NULL: none yet
+	// the newest topology, from which the next is made; NULL: none yet; used by the worker only
 	cau_buffer *topology;
-	cau_stream_counts counts; // mutex; the present numbers are 0 here
+	cau_stream_counts counts; // guarded by the mutex; `subscribers` and `half_rate` are 0 here
 } cau_streams;
 
 // One connection's subscription to a stream. At the start all members but `stream` are zero.

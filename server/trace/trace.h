@@ -18,11 +18,11 @@
 #include "session/logic.h"
 
 typedef enum cau_trace_what {
-	CAU_TRACE_INIT,    // capacity, step_s: a new machine is initialised
-	CAU_TRACE_TAKE,    // the event and its members
-	CAU_TRACE_NEXT,    // time_s
-	CAU_TRACE_DONE,    // time_s, outcome
-	CAU_TRACE_STEPPED, // time_s, faulted, cause
+	CAU_TRACE_INIT,    // arguments: capacity, step_s of a new machine
+	CAU_TRACE_TAKE,    // arguments: the event and its members
+	CAU_TRACE_NEXT,    // argument: time_s
+	CAU_TRACE_DONE,    // arguments: time_s, outcome
+	CAU_TRACE_STEPPED, // arguments: time_s, faulted, cause
 	CAU_TRACE_WHAT_COUNT
 } cau_trace_what;
 

@@ -12,7 +12,7 @@
 // The last accepted sample of a driver for one tool.
 typedef struct cau_motion_past {
 	uint64_t sequence;      // 0: none yet
-	int64_t source_time_ns; // since 1970
+	int64_t source_time_ns; // nanoseconds since 1970
 	bool has_pose;
 	cau_pose pose;
 	double pose_s; // monotonic time when `pose` was accepted

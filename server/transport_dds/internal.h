@@ -43,14 +43,14 @@ typedef enum cau_topic {
 } cau_topic;
 
 typedef enum cau_door_kind {
-	DOOR_NATIVE,   // cautery/tool_command
-	DOOR_SERVO_CP, // rt/SESSION/TOOL/...
+	DOOR_NATIVE,   // for cautery/tool_command
+	DOOR_SERVO_CP, // for rt/SESSION/TOOL/..., like the next three
 	DOOR_SERVO_JP,
 	DOOR_ENERGIZE,
 	DOOR_STATE_COMMAND,
-	DOOR_SETTING,    // cautery/tool_setting
-	DOOR_INSTRUMENT, // cautery/tool_instrument
-	DOOR_REQUEST,    // cautery/session_request; belongs to no session
+	DOOR_SETTING,    // for cautery/tool_setting
+	DOOR_INSTRUMENT, // for cautery/tool_instrument
+	DOOR_REQUEST,    // for cautery/session_request; belongs to no session
 } cau_door_kind;
 
 struct cau_dds_session;
@@ -103,10 +103,10 @@ typedef struct cau_dds_tool {
 	cau_door servo_cp, servo_jp, energize, state_command;
 	cau_door loose_cp, loose_jp; // best-effort readers; open once a best-effort writer exists
 	dds_entity_t pose_topic, asked_topic, force_topic, raw_force_topic, jaw_topic, asked_jaw_topic;
-	cau_dds_outlet pose, asked, force;              // measured_cp, setpoint_cp, measured_cf
-	cau_dds_outlet raw_force;                       // raw/measured_cf
-	cau_dds_outlet jaw, asked_jaw;                  // jaw/measured_js, jaw/setpoint_js
-	dds_entity_t operating_topic, operating_writer; // operating_state
+	cau_dds_outlet pose, asked, force;              // for measured_cp, setpoint_cp, measured_cf
+	cau_dds_outlet raw_force;                       // for raw/measured_cf
+	cau_dds_outlet jaw, asked_jaw;                  // for jaw/measured_js, jaw/setpoint_js
+	dds_entity_t operating_topic, operating_writer; // for operating_state
 	cau_dds_operating operating, operating_told;
 	struct cau_dds_hand *hands;
 	int hand_count;

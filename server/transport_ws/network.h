@@ -16,7 +16,7 @@ typedef struct cau_page {
 	const char *path;         // path of the request
 	const char *accept;       // Accept header of the request; "" if none
 	unsigned status;          // HTTP status of the answer; the members below are the answer too
-	const char *content_type; // static
+	const char *content_type; // borrowed static text
 	char *body;               // malloc'ed; NULL if memory ran out
 	size_t bytes;
 } cau_page;

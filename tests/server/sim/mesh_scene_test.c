@@ -7,7 +7,7 @@
 #include "cautery/scene_json.h"
 #include "sim_fixture.h"
 
-enum { N = 9 }; // vertices on a side
+enum { N = 9 }; // vertices on a horizontal side
 
 static const char *write_block(const char *name)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One process per store, and one store per process.
+// A store is open in one process only, and only once in that process.
 #include "store_fixture.h"
 
 #include <signal.h>
