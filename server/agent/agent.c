@@ -83,7 +83,7 @@ static void *serve(void *argument)
 	return NULL;
 }
 
-// ---- creating and destroying ----
+// ---- creating and destroying
 static int listen_at(const struct addrinfo *at)
 {
 	int on = 1;

@@ -78,7 +78,7 @@ static double on_look(void *user, double now_s)
 	return daemon->lease ? fmin(look_s, now_s + cau_lease_check(daemon->lease)) : look_s;
 }
 
-// ---- losing the label ----
+// ---- losing the label
 // Ends the process as a kill would. The store withstands a kill: what was acknowledged is on the
 // disk. Energy ends with the process, and no client gets another message. If the reader of the log
 // blocks, the kernel's timer signal still ends the process.

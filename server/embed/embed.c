@@ -59,7 +59,7 @@ static cau_status create(const char *name, const cau_scene_def *scene,
 	cau_session_def def = wanted ? *wanted : cau_default_session_def();
 	def.scene = scene;
 	if (error)
-		error->file[0] = 0; // if a mesh file is wrong, the core sets this
+		error->file[0] = 0; // the core sets the file if a mesh file is wrong
 	cau_status status = cau_session_create(&def, session, error);
 	if (status && error && !error->file[0])
 		snprintf(error->file, sizeof error->file, "%.255s", name ? name : "");

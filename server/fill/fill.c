@@ -247,7 +247,7 @@ static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish
 	return state;
 }
 
-// ---- reports and errors of the process ----
+// ---- reports and errors of the process
 // Copies the report without the lines of progress.
 static void take_report(char *text, char *report)
 {

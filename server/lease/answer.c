@@ -14,7 +14,7 @@ static cau_status refuse(cau_error *error, const char *what)
 	return cau_fail(error, CAU_CORRUPT, "etcd", "%s in etcd's answer", what);
 }
 
-// ---- moving in the text ----
+// ---- moving in the text
 static const char *skip_space(const char *at)
 {
 	return at + strspn(at, " \t\r\n");
@@ -93,7 +93,7 @@ static bool read_number(const char *at, int64_t *number)
 		return false;
 	size_t bytes = strspn(at + 1, "-0123456789");
 	if (bytes == 0 || bytes >= 20 ||
-	    at[1 + bytes] != '"') // 64 bits have at most 19 digits, or 18 and a sign
+	    at[1 + bytes] != '"') // at most 19 characters, with a sign if there is one
 		return false;
 	memcpy(digits, at + 1, bytes);
 	digits[bytes] = 0;

@@ -24,7 +24,7 @@ struct cau_etcd {
 	char trouble[CURL_ERROR_SIZE];
 };
 
-// ---- creating and destroying ----
+// ---- creating and destroying
 static void start_library(void)
 {
 	curl_global_init(CURL_GLOBAL_DEFAULT);

@@ -56,7 +56,7 @@ static bool wait_for_end(const cau_lease *lease, double seconds)
 	return poll(&ending, 1, (int)ceil(1000 * fmax(0, seconds))) > 0;
 }
 
-// ---- the holder's name ----
+// ---- the holder's name
 // Names this boot of this machine's kernel. If the boot id cannot be read, the name is random. It
 // is not the machine id, because copies of a disk share it.
 static cau_status name_kernel(char name[40], cau_error *error)
@@ -116,7 +116,7 @@ static cau_status store(const cau_lease *lease, cau_error *error)
 	return lease->def.store_generation(lease->def.user, text, error);
 }
 
-// ---- taking the label ----
+// ---- taking the label
 // Makes one attempt. CAU_BAD_STATE with *again: another daemon holds the label, or was faster.
 static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_value *holder,
                         bool *again, cau_error *error)
@@ -204,7 +204,7 @@ static cau_status take(cau_lease *lease, cau_error *error)
 	}
 }
 
-// ---- renewing the lease ----
+// ---- renewing the lease
 static void publish(cau_lease *lease)
 {
 	atomic_store(&lease->held_until_us, (int64_t)(1e6 * lease->logic.held_until_s));
@@ -254,7 +254,7 @@ int64_t cau_lease_generation(const cau_lease *lease)
 	return lease->held.number;
 }
 
-// ---- creating and destroying ----
+// ---- creating and destroying
 static void destroy(cau_lease *lease)
 {
 	cau_etcd_destroy(lease->etcd);

@@ -49,7 +49,7 @@ bool cau_generation_read(const char *text, size_t bytes, cau_generation *generat
 	return true;
 }
 
-// ---- whether this store may be served ----
+// ---- whether this store may be served
 static bool is_the_newest(const cau_claim *claim)
 {
 	if (claim->is_copy)
@@ -110,7 +110,7 @@ void cau_lease_choose(cau_claim *claim, bool *has_next, uint64_t mark)
 	*has_next = true;
 }
 
-// ---- the end of the lease ----
+// ---- the end of the lease
 cau_lease_rules cau_lease_rules_of(double ttl_s)
 {
 	CAU_ASSERT(ttl_s >= 2, "a time to live of %g s", ttl_s);

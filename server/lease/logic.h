@@ -34,7 +34,7 @@ void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BY
 // Reads a text exactly as it is written, of `bytes` bytes. Returns false if it is no generation.
 bool cau_generation_read(const char *text, size_t bytes, cau_generation *generation);
 
-// ---- whether this store may be served ----
+// ---- whether this store may be served
 typedef struct cau_claim {
 	cau_generation held, next; // generations in the store
 	cau_generation known;      // generation in etcd
@@ -58,7 +58,7 @@ cau_verdict cau_lease_judge(const cau_claim *claim, cau_error *error);
 // the newest store.
 void cau_lease_choose(cau_claim *claim, bool *has_next, uint64_t mark);
 
-// ---- the end of the lease ----
+// ---- the end of the lease
 typedef struct cau_lease_rules {
 	double ttl_s; // time to live that etcd is asked for
 	// the lease ends this much earlier here, for clock errors and requests on their way

@@ -64,7 +64,7 @@ static const cau_command_line line = {
 	.row_count = sizeof rows / sizeof *rows,
 };
 
-// ---- limits ----
+// ---- limits
 static bool bound(int resource, rlim_t most)
 {
 	struct rlimit limit = {most, most};

@@ -153,7 +153,7 @@ void cau_service_frames(void *user);
 // ---- delivery.c
 void cau_service_read_posts(cau_service *service);
 
-// ---- the handlers that methods.def names, in the files of their families -----------------------
+// ---- the handlers that methods.def names, in the files of their families
 // Each handler answers the call, now or later.
 typedef void cau_call_handler(cau_call *call);
 #define REQUEST(code, name, params, result, role, effect, cost, handler, meaning)                  \
@@ -209,7 +209,7 @@ const char *cau_answers_method_name(cau_method method); // "none" for CAU_METHOD
 void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *out);
 void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out);
 
-// ---- metrics_daemon.c: the part of /metrics about the whole daemon ----
+// ---- metrics_daemon.c: the part of /metrics about the whole daemon
 void cau_service_daemon_metrics(cau_service *service, cau_metrics_format format, FILE *out);
 
 // ---- metrics.c: writes the whole of /metrics; returns the HTTP status

@@ -6,7 +6,7 @@
 
 #include "rpc/internal.h"
 
-// ---- the metrics of sessions ----
+// ---- the metrics of sessions
 
 // The metrics of each session: name, type, unit, help, and the value from its counts `c` and its
 // summary `s`.

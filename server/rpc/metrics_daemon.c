@@ -114,7 +114,7 @@ static void write_store(cau_service *service, const exposition *to)
 	write_commits(to, &m);
 }
 
-// ---- the store's disk ------------
+// ---- the store's disk
 static void write_disk(const cau_service *service, const exposition *to)
 {
 	struct statvfs disk;
@@ -149,7 +149,7 @@ static double heap_bytes(void)
 
 static double open_files(void)
 {
-	double count = -1; // -1, because the folder being read is open too
+	double count = -1; // starts at -1, because the folder that is read is open too
 	DIR *folder = opendir("/proc/self/fd");
 	if (!folder)
 		return 0;

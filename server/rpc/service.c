@@ -240,7 +240,7 @@ static void on_tick(void *user)
 	want_frames(service);
 }
 
-// ---- creating and destroying ----
+// ---- creating and destroying
 cau_status cau_service_create(cau_service **made, const cau_service_def *def, cau_error *error)
 {
 	cau_service *service = calloc(1, sizeof *service);

@@ -6,7 +6,7 @@
 
 enum { TIMELINE_COUNT = 1024 }; // events in an answer if the request gives no count
 
-// ---- session.list ----
+// ---- session.list
 // Makes space for one more item. Sessions may be created during the listing, so a count taken
 // before would not be enough.
 static bool make_room(cau_wire_list *list)
@@ -140,7 +140,7 @@ void cau_call_session_create(cau_call *call)
 	free(creation);
 }
 
-// ---- methods that are one order of the session ----
+// ---- methods that are one order of the session
 static void submit(const cau_call *call, cau_order *order)
 {
 	if (order)

@@ -216,7 +216,7 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 	return CAU_OK;
 }
 
-// ---- exports to clients ----
+// ---- exports to clients
 bool cau_peer_has_room_for_file(const cau_peer *peer)
 {
 	int under_way = peer->files_asked;

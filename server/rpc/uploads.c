@@ -27,7 +27,7 @@ cau_upload *cau_uploads_find_transfer(cau_uploads *uploads, uint32_t transfer)
 	return upload;
 }
 
-// ---- limits ----
+// ---- limits
 // Checks that `byte_count` more bytes are within the limits. `freed` is what a replaced upload
 // gives back.
 static cau_status check_room(const cau_uploads *uploads, const cau_upload_total *total,

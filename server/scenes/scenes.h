@@ -32,9 +32,9 @@ bool cau_scenes_copy(cau_scenes *scenes, const char *name, cau_scene_def *copy);
 
 // ---- uploaded meshes of a scene
 
-// cau_meshes_pack packs the bytes of a scene's uploaded meshes into one allocation, and makes the
-// scene's meshes point into it; *meshes is NULL if the scene has none. cau_meshes_unpack does the
-// reverse, after both were read from the store.
+// cau_meshes_pack packs the bytes of a scene's uploaded meshes into one allocation, to which the
+// scene's meshes then point. *meshes is NULL if the scene has none. The function cau_meshes_unpack
+// does the reverse, after both were read from the store.
 cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, cau_error *error);
 cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
                              cau_error *error);

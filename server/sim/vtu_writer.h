@@ -19,9 +19,10 @@ cau_status sim_vtu_begin(const char *folder, sim_vtu *vtu, cau_error *error);
 // the drawn triangles of sheets. Each cell has its kind (0 tetrahedron, 1 link, 2 triangle) and, if
 // it is a triangle, its layer (else -1). Each vertex has velocity, exposure, charring, temperature
 // and stress. tools-<tick>.vtu has a line for each tool, from its tip along its shaft. The line has
-// the tool's number in the tick, the force and torque of the tissue on it (as computed, about the
-// tip), the temperature of its tip, the heat that tissue took up from it, and whether its energy is
-// on. The quantities that the session must observe are requested here and released afterwards.
+// the tool's number in the tick, and the force and torque of the tissue on it (as computed, about
+// the tip). It also has the temperature of the tip, the heat that tissue took up, and whether
+// energy is on. The quantities that the session must observe are requested here and released
+// afterwards.
 cau_status sim_vtu_write(sim_vtu *vtu, cau_session *session, cau_error *error);
 
 // Writes cautery.pvd and frees the series.

@@ -66,7 +66,7 @@ typedef struct cau_row {
 	cau_column column[CAU_ROWS_COLUMNS_MOST];
 } cau_row;
 
-// ---- reading: if cau_rows_check accepted a piece, all its rows can be read ----
+// ---- reading: if cau_rows_check accepted a piece, all its rows can be read
 typedef struct cau_rows_reader {
 	const unsigned char *at, *end;
 	uint32_t index, flags;

@@ -6,7 +6,7 @@
 #include "log/log.h"
 #include "stream/stream.h"
 
-// ---- ring.c: the frames that were encoded last --------------
+// ---- ring.c: the frames that were encoded last
 // Copies the encoded frame from the stream's scratch memory. Returns NULL if memory ran out.
 cau_buffer *cau_ring_take(const cau_stream *stream, size_t bytes);
 // Put a frame into the ring. They take the buffer.

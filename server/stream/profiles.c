@@ -46,7 +46,7 @@ uint32_t cau_streams_watched(cau_streams *streams)
 	return channels;
 }
 
-// ---- finding a stream ----
+// ---- finding a stream
 // True if every client with this wish can read the stream. A client that reads meshoptimizer's
 // codec reads plain numbers too.
 static bool is_readable(const cau_stream *stream, const cau_stream_wish *wish)
@@ -88,7 +88,7 @@ static void wake_stream(cau_stream *stream)
 	stream->key_wanted = true;
 }
 
-// ---- opening a stream ----
+// ---- opening a stream
 // Rounds up to a multiple of the largest alignment, for parts that share one allocation.
 static size_t aligned(size_t bytes)
 {
@@ -217,7 +217,7 @@ static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_w
 	return CAU_OK;
 }
 
-// ---- joining a stream ----
+// ---- joining a stream
 // Counts the subscriber into a stream that fits. Returns NULL if the stream *slot must be opened
 // for it.
 static cau_stream *take_stream(cau_streams *streams, const cau_stream_wish *wish,

@@ -74,7 +74,7 @@ typedef struct cau_streams {
 typedef struct cau_subscriber {
 	int32_t stream;
 	bool topology_sent, has_key, wants_key, acknowledges;
-	uint64_t epoch, sequence; // of the last frame that was sent
+	uint64_t epoch, sequence; // epoch and sequence of the last frame that was sent
 	double key_asked_s;       // when a key frame was last requested, at most once a second
 	// since when frames are ready and the subscriber takes none; 0: it takes them
 	double waiting_since_s;
@@ -91,7 +91,7 @@ typedef struct cau_subscriber {
 void cau_streams_init(cau_streams *streams);
 void cau_streams_finish(cau_streams *streams);
 
-// ---- profiles.c: on the worker's thread ----
+// ---- profiles.c: on the worker's thread
 
 // The stream that a subscriber requests.
 typedef struct cau_stream_wish {
@@ -103,14 +103,15 @@ typedef struct cau_stream_wish {
 // The tissue's data that stay the same for the whole session.
 typedef struct cau_stream_shape {
 	int32_t vertex_count, face_count;
-	const int32_t *face, *face_layer; // (face_count x 3), (face_count)
-	const float *texture;             // (face_count x 3 x 2)
-	const double *rest_position;      // m, (vertex_count x 3)
+	const int32_t *face, *face_layer; // face: (face_count x 3), face_layer: (face_count)
+	// (face_count x 3 x 2): texture coordinates of the faces' corners
+	const float *texture;
+	const double *rest_position; // (vertex_count x 3), m
 } cau_stream_shape;
 
-// cau_streams_opening_bytes returns the bytes that opening a profile takes. cau_streams_stock
-// allocates them beforehand and encodes the topology, on the builder, so that no slice of a worker
-// has to. If this fails, the slice of the first session.join encodes the topology.
+// The first function returns the bytes that opening a profile takes. The second allocates them
+// beforehand and encodes the topology, on the builder, so that no slice of a worker has to. If this
+// fails, the slice of the first session.join encodes the topology.
 size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
 cau_status cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape, cau_error *error);
 
@@ -123,7 +124,7 @@ cau_status cau_streams_join(cau_streams *streams, const cau_stream_wish *wish,
 // Returns the channels that have subscribers: CAU_CHANNEL_*.
 uint32_t cau_streams_watched(cau_streams *streams);
 
-// ---- publish.c: on the worker's thread ----
+// ---- publish.c: on the worker's thread
 
 // A moment at which frames may be due.
 typedef struct cau_stream_moment {

@@ -47,7 +47,7 @@ typedef struct cau_trace_call {
 	bool faulted;
 } cau_trace_call;
 
-// ---- writing; the caller holds the machine's lock ----
+// ---- writing; the caller holds the machine's lock
 
 // In all these functions `to` may be NULL; then nothing is written. A failed write shows in
 // ferror(to).
@@ -60,7 +60,7 @@ void cau_trace_stepped(FILE *to, double now_s, const char *fault); // NULL if it
 void cau_trace_action(FILE *to, const cau_action *action);
 void cau_trace_effects(FILE *to, const cau_effects *effects);
 
-// ---- reading ----
+// ---- reading
 
 // Reads a line that is not indented. CAU_BAD_SYNTAX: error->reason says which part has no meaning.
 cau_status cau_trace_read(const char *line, cau_trace_call *call, cau_error *error);

@@ -181,7 +181,7 @@ static cau_status order_session(asked *a, cau_reply reply, int32_t *code, cau_er
 	return status;
 }
 
-// ---- requests that need no order ----
+// ---- requests that need no order
 static cau_status create(asked *a, cau_reply reply, cau_error *error)
 {
 	cau_wire_session_create params = {.has_client_sequence = true,
@@ -233,7 +233,7 @@ static cau_status join(const asked *a, int32_t *code, cau_error *error)
 	return fail_missing(a, code, error);
 }
 
-// ---- taking a request ----
+// ---- taking a request
 static cau_status serve(asked *a, int32_t *code, cau_error *error)
 {
 	cautery_SessionOperation operation = a->sample->operation;

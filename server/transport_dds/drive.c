@@ -6,7 +6,7 @@
 
 #define CLAIM_S 0.1 // a claim in the queue is not repeated within this time
 
-// ---- the driver of a tool ----
+// ---- the driver of a tool
 // Returns the hand of a DDS client that drives this tool and has been silent for its deadline; NULL
 // if there is none.
 static cau_dds_hand *silent_driver(const cau_dds_tool *tool, uint32_t driver, double now_s)

@@ -313,7 +313,7 @@ typedef struct cau_dds_peers {
 	dds_entity_t writers, readers;
 	cau_dds_peer *first;
 	bool ends_changed; // we have new readers or writers, so check all peers again
-	double told_s;     // start of the second to which `told`, the number of log lines, belongs
+	double told_s;     // start of the second in which `told` log lines were written
 	int told;
 } cau_dds_peers;
 
@@ -366,7 +366,7 @@ static inline cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, co
 	return NULL;
 }
 
-// ---- mailbox.c: wakes the DDS thread ----------------------------------------
+// ---- mailbox.c: wakes the DDS thread
 void cau_dds_wake(cau_dds_wakeup *wakeup, atomic_bool *why);
 
 // Makes the DDS thread look at this session. Any thread may call it.
@@ -377,7 +377,7 @@ bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session);
 // Moves all bits into `taken` and clears `bits`.
 void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken);
 
-// ---- outlets.c: writers that count their readers ----
+// ---- outlets.c: writers that count their readers
 // Opens a writer. The outlet must not move in memory until the writer is deleted. Returns false on
 // failure.
 bool cau_dds_open_outlet(cau_dds_wakeup *wakeup, cau_dds_outlet *outlet, uint32_t session,
@@ -418,14 +418,14 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
 // Opens a best-effort reader beside the door `reliable` of this tool.
 void cau_dds_open_loose(cau_dds *dds, cau_door *loose, const cau_door *reliable);
 
-// ---- peers.c: readers and writers of other programs ----
+// ---- peers.c: readers and writers of other programs
 cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error);
 // Checks new peers, or all peers if we have new readers or writers. Opens best-effort readers. Logs
 // each peer that cannot be matched, once.
 void cau_dds_look_at_peers(cau_dds *dds);
 void cau_dds_forget_peers(cau_dds_peers *peers);
 
-// ---- farewells.c: last samples of ended sessions ----
+// ---- farewells.c: last samples of ended sessions
 // Takes over `publisher`. Deletes it when all readers of its `writer` have the last sample.
 void cau_dds_bid_farewell(cau_dds_farewell **farewells, dds_entity_t publisher,
                           dds_entity_t writer);
@@ -434,7 +434,7 @@ double cau_dds_end_farewells(cau_dds_farewell **farewells, double now_s);
 // Waits until all farewells are done, at most two seconds.
 void cau_dds_await_farewells(cau_dds_farewell **farewells);
 
-// ---- writers.c: writers that our readers have matched ----
+// ---- writers.c: writers that our readers have matched
 // Returns the writer of a sample; NULL if it is gone or memory ran out.
 cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle);
 // Finds the participant's writer with this GUID (all 0: any), among those that the door has
@@ -451,7 +451,7 @@ dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds);
 // next samples.
 void cau_dds_end_silenced(cau_dds *dds);
 
-// ---- places.c: limits on clients and drivers ----
+// ---- places.c: limits on clients and drivers
 cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error);
 uint64_t cau_dds_places_most(const cau_config *config); // largest number of clients
 // Returns the asker of the writer's client, or of the writer if it is not a client.
@@ -477,7 +477,7 @@ void cau_dds_drop_hands(cau_dds_tool *tool);
 // Ends the client, with energy off. Its writers may become clients again.
 void cau_dds_end_place(cau_dds *dds, cau_dds_client *client);
 
-// ---- reload.c: new roles --------------------------
+// ---- reload.c: new roles
 void cau_dds_take_roles(cau_dds *dds);
 
 // ---- orders.c: orders of a hand
@@ -506,7 +506,7 @@ void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_wr
 // Counts the samples that the native reader did not accept.
 void cau_dds_count_dropped(cau_dds_session *session);
 
-// ---- drive.c: samples to orders ----
+// ---- drive.c: samples to orders
 // Checks and submits a motion. Notifies the watchdog if the motion is accepted. Returns NULL if it
 // was refused, which is counted.
 cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool,
@@ -514,7 +514,7 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level, int32_t ticks);
 void cau_dds_grasp(cau_dds_hand *hand, bool level);
 
-// ---- native.c, settings.c, ros2.c: take samples ----
+// ---- native.c, settings.c, ros2.c: take samples
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 void cau_dds_take_instrument(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
@@ -532,7 +532,7 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
 bool cau_dds_is_too_fast(const cau_config *config, cau_dds_writer *writer);
 void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 
-// ---- replies.c: all but the first two answer the request and forget it ----
+// ---- replies.c: all but the first two answer the request and forget it
 cau_dds_request cau_dds_describe_request(const cau_dds_writer *writer,
                                          const cautery_SessionRequest *sample);
 cau_dds_request *cau_dds_keep_request(cau_dds_control *control, const cau_dds_writer *writer,

@@ -7,7 +7,7 @@
 #include "cautery/rpc.h"
 #include "transport_dds/internal.h"
 
-// ---- waking the DDS thread; from any thread ----
+// ---- waking the DDS thread; from any thread
 void cau_dds_wake(cau_dds_wakeup *wakeup, atomic_bool *why)
 {
 	if (!atomic_exchange(why, true) && wakeup->guard > 0)
@@ -20,7 +20,7 @@ void cau_dds_mark(cau_dds_wakeup *wakeup, uint32_t session)
 	cau_dds_wake(wakeup, &wakeup->sliced);
 }
 
-// ---- sets of sessions, marked without a lock ---------
+// ---- sets of sessions, marked without a lock
 void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session)
 {
 	uint32_t bit = session % BITS_MOST;

@@ -27,7 +27,7 @@ cau_status cau_dds_check_ready(const cau_dds_session *session, const char *name,
 	return CAU_OK;
 }
 
-// ---- publishing the state ----
+// ---- publishing the state
 static void tell(cau_dds_tool *tool, cau_dds_operating_state seen)
 {
 	int64_t now_us = cau_wall_us();
@@ -65,7 +65,7 @@ void cau_dds_publish_operating(cau_dds_session *session)
 	}
 }
 
-// ---- taking commands ----
+// ---- taking commands
 typedef enum word { ENABLE, DISABLE, PAUSE, RESUME, HOME, UNHOME, WORD_COUNT } word;
 
 static bool read_word(const char *text, word *read)

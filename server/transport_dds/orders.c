@@ -89,7 +89,7 @@ bool cau_dds_order_move(const cau_dds_hand *hand, const cau_pose *pose, double j
 	return false;
 }
 
-// ---- orders of CRTK's states ----
+// ---- orders of CRTK's states
 void cau_dds_stop_tool(cau_dds_session *session, cau_dds_tool *tool, const cau_asker *by)
 {
 	cau_hosted_tool state;

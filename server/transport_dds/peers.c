@@ -21,7 +21,7 @@ typedef struct end {
 	const char *session;
 } end;
 
-// ---- our end for a peer ----
+// ---- our end for a peer
 static bool is_in_partition(const dds_qos_t *qos, const char *partition)
 {
 	uint32_t count = 0;
@@ -120,7 +120,7 @@ static end find_end(cau_dds *dds, const cau_dds_peer *peer)
 	return found;
 }
 
-// ---- why a peer does not match ----
+// ---- why a peer does not match
 
 // Returns what does not match; NULL if all does. DDS compares types only by name.
 static const char *find_mismatch(const cau_dds_peer *peer, const end *ours)
@@ -171,7 +171,7 @@ static void look_at(cau_dds *dds, cau_dds_peer *peer)
 	}
 }
 
-// ---- the list of peers ----
+// ---- the list of peers
 static void free_peer(cau_dds_peer *peer)
 {
 	free(peer->topic);

@@ -21,7 +21,7 @@ enum {
 #define DENIED_S 0.5       // after a denial, a writer asks again only after this time
 #define DENIALS_TOLD_S 10. // time between log lines about denials
 
-// ---- clients that drive ----
+// ---- clients that drive
 static bool drives(const cau_dds_hand *hand)
 {
 	cau_hosted_tool tool;
@@ -146,7 +146,7 @@ void cau_dds_give_up(cau_dds_client *client)
 	}
 }
 
-// ---- limits ----
+// ---- limits
 static bool is_same(const cau_dds_client *client, const cau_dds_writer *writer)
 {
 	return client->participant == writer->participant ||

@@ -121,7 +121,7 @@ void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 	free(statuses);
 }
 
-// ---- replies from posts ----
+// ---- replies from posts
 // Returns the number by which frames name a session; 0 if the session is gone.
 static uint32_t number_of(cau_hub *hub, const char *id)
 {

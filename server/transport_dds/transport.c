@@ -14,7 +14,7 @@
 
 enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = 4096 };
 
-// ---- the sink; called by any thread ----
+// ---- the sink; called by any thread
 static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 {
 	cau_dds *dds = user;
@@ -146,7 +146,7 @@ void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
 	}
 }
 
-// ---- creating and destroying ----
+// ---- creating and destroying
 static cau_status fail(cau_error *error, const char *what, dds_return_t code)
 {
 	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));

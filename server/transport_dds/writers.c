@@ -114,7 +114,7 @@ cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instan
 	return writer;
 }
 
-// ---- matched writers ----
+// ---- matched writers
 
 // Returns the writers that the reader has matched, in order. The caller frees the array; NULL if
 // there are none.
@@ -166,7 +166,7 @@ cau_dds_writer *cau_dds_find_writer(cau_dds *dds, const cau_door *door, uint64_t
 	return found ? cau_dds_writer_of(dds, door, found) : NULL;
 }
 
-// ---- forgetting writers ----
+// ---- forgetting writers
 static void drop_writer(cau_dds *dds, cau_dds_writer *writer)
 {
 	if (writer->reader == dds->control.door.reader)

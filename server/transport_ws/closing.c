@@ -23,7 +23,7 @@ enum {
 	CODE_BYTES = 2,
 };
 
-// ---- lists: the handler sees open connections, but not ending ones -------
+// ---- lists: the handler sees open connections, but not ending ones
 void cau_connection_link(cau_connection **first, cau_connection *c)
 {
 	c->previous = NULL;

@@ -13,7 +13,7 @@
 
 enum { PONG_FRAME = 0x8A };
 
-// ---- beginning and end ----
+// ---- beginning and end
 // Limits unsent bytes in the kernel, so that a slow reader gets fresh data. Without the low-water
 // mark the kernel takes seconds of frames in advance, and pings wait behind them.
 static void set_socket(int descriptor)

@@ -54,7 +54,7 @@ static bool names(const char *list, const char *wanted)
 	return false;
 }
 
-// ---- requirements of an upgrade ----
+// ---- requirements of an upgrade
 static bool has_path(struct lws *wsi)
 {
 	char text[HEADER_BYTES];

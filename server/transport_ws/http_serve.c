@@ -46,7 +46,7 @@ static int serve_page(cau_network *network, struct lws *wsi, cau_http_body *body
 		                          .extra_value = "Bearer"};
 		return cau_http_answer_start(wsi, body, &denied);
 	}
-	// A longer Accept header than ours is treated as absent: the pages have no other type.
+	// An Accept header that is longer than ours counts as absent.
 	char accept[HEADER_BYTES];
 	if (!cau_request_header(wsi, WSI_TOKEN_HTTP_ACCEPT, accept, sizeof accept))
 		accept[0] = 0;

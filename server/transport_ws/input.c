@@ -59,7 +59,7 @@ void cau_input_end(cau_connection *c)
 	c->input.reading = CAU_READING_ENDED;
 }
 
-// ---- the list of connections with input -----
+// ---- the list of connections with input
 void cau_input_wait(cau_connection *c)
 {
 	if (c->turn.waits)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bytes of a connection that transport_ws reads and ends by itself, past libwebsockets: those
-// of its socket or, with TLS, the contents of its records. libwebsockets writes and transport_ws
-// reads, both on one thread. So the TLS state has one user at a time.
+// The bytes of a connection that transport_ws reads and ends by itself, past libwebsockets. These
+// are the bytes of its socket or, with TLS, the contents of its records. The library writes and
+// transport_ws reads, both on one thread. So the TLS state has one user at a time.
 #include <errno.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>

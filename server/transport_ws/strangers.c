@@ -38,7 +38,7 @@ void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
 	inet_ntop(AF_INET6, &parsed, owner, CAU_ADDRESS_BYTES);
 }
 
-// ---- connections whose request has not come yet ----
+// ---- connections whose request has not come yet
 static bool is_unread(const cau_unread *unread, const char *owner)
 {
 	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
@@ -114,7 +114,7 @@ void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 	lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
 }
 
-// ---- WebSocket connections without hello ----
+// ---- WebSocket connections without hello
 static bool is_silent(const cau_connection *c, const char *owner)
 {
 	return !c->served && !c->end.code && (!owner || strcmp(c->owner, owner) == 0);
@@ -169,7 +169,7 @@ void cau_strangers_bound_talk(cau_connection *c)
 		close_silent(c);
 }
 
-// ---- limits on served connections ----
+// ---- limits on served connections
 bool cau_connection_has_place(const cau_connection *c, bool resumes)
 {
 	uint64_t most = (uint64_t)c->network->def.config->max_connections;

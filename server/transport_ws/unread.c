@@ -31,7 +31,7 @@ void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large)
 	cau_wsi_last_words(wsi, text, cau_http_write_refusal(refusal, text, sizeof text));
 }
 
-// ---- functions that replace the library's ----
+// ---- functions that replace the library's
 int lws_return_http_status(struct lws *wsi, unsigned int code, const char *html_body)
 {
 	(void)code, (void)html_body;
@@ -51,7 +51,7 @@ int lws_service_fd_tsi(struct lws_context *context, struct lws_pollfd *pollfd, i
 	return result;
 }
 
-// ---- connections whose request has not come yet ----
+// ---- connections whose request has not come yet
 bool cau_unread_add(cau_network *network, struct lws *wsi)
 {
 	int descriptor = lws_get_socket_fd(wsi);

@@ -94,7 +94,7 @@ static void await(const int *count, int wanted)
 	pthread_mutex_unlock(&t.lock);
 }
 
-// ---- a busy builder -------
+// ---- a busy builder
 static void hold(cau_job *job)
 {
 	(void)job;

@@ -32,7 +32,7 @@ static void assert_line(const cau_log_line *line, const char *expected)
 	assert_memory_equal(line->text, expected, line->bytes);
 }
 
-// ---- random values ----
+// ---- random values
 static uint64_t random_state = 7;
 
 static unsigned random_below(unsigned most)

@@ -185,7 +185,7 @@ static void answers_within_their_share_stay(void **state)
 	cau_store_close(store);
 }
 
-// ---- notices of a running store ----
+// ---- notices of a running store
 typedef struct told {
 	atomic_int count;
 	cau_store_budget_state states[8];

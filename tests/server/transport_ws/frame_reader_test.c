@@ -48,7 +48,7 @@ static void put_frame(unsigned first, const void *payload, size_t bytes)
 		put(((const unsigned char *)payload)[i] ^ mask[i % 4]);
 }
 
-// ---- the events as text: "T:abc B:.. F P:x O: C:1000 X:1002" ----
+// ---- the events as text: "T:abc B:.. F P:x O: C:1000 X:1002"
 static char heard[BYTES_MOST];
 
 static void note(const char *what, const void *bytes, size_t count)
