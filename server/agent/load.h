@@ -23,7 +23,5 @@ int cau_load_free_percent(const cau_load *load);
 
 enum { CAU_LOAD_LINE_BYTES = 16 };
 
-// Writes the line of HAProxy's agent-check: "ready 63%
-// " or "drain
-// ". Returns its bytes.
+// Writes the line of HAProxy's agent-check: "ready 63%\n" or "drain\n". Returns its bytes.
 size_t cau_load_write(const cau_load *load, char line[CAU_LOAD_LINE_BYTES]);

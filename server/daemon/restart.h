@@ -11,7 +11,7 @@ typedef struct cau_restart {
 	double began_s, told_s;
 } cau_restart;
 
-// Begins, once the hub has begun to resume that many sessions. One thread uses this.
+// Begins the reports, once the hub has begun to resume `sessions` sessions. One thread uses this.
 void cau_restart_begin(cau_restart *restart, cau_hub *hub, int32_t sessions);
 // Reports the progress. Call it now and then, also when all are resumed.
 void cau_restart_tell(cau_restart *restart);

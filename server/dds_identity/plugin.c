@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plugin that Cyclone loads. It wraps Cyclone's own authentication and listens to some of its
-// functions.
+// The plugin that Cyclone loads. It passes all calls to Cyclone's own authentication, and notes
+// what some of them report.
 #include <dds/security/dds_security_api.h>
 #include <dlfcn.h>
 #include <stddef.h>

@@ -26,8 +26,8 @@ void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BY
 // Below INT64_MAX, so that there are numbers left for later generations.
 static const int64_t number_most = 999999999999999999;
 
-// Reads a generation. The text must be exactly as it is written, so that each generation has one
-// text.
+// Reads a generation. The text must be exactly what cau_generation_write writes, so that each
+// generation has one text.
 bool cau_generation_read(const char *text, size_t bytes, cau_generation *generation)
 {
 	char copy[CAU_GENERATION_BYTES], again[CAU_GENERATION_BYTES];

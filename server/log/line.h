@@ -4,10 +4,10 @@
 //
 // In text, a value is in quotes if the format has quotes, if it is empty, or if it contains
 // anything but printable ASCII without space, `"`, `=` and `\`. Otherwise it has no quotes. Within
-// quotes `"` and `\` get a `\` before them; line feed, return and tab are
-// , \r and \t. Other control characters, the line separators of Unicode, and bytes that are not
-// UTF-8 are \x and two hex digits for each byte. So whatever a client sends, a line stays one line
-// and its fields stay apart.
+// quotes `"` and `\` get a `\` before them; line feed, return and tab are \n, \r and \t. Other
+// control characters, the line separators of Unicode, and bytes that are not UTF-8 are \x and two
+// hex digits for each byte. So whatever a client sends, a line stays one line and its fields stay
+// apart.
 //
 // In JSON a value is a number if the format prints only one number (%d, %f), else a string. Control
 // characters and line separators are escaped; zeros and bytes that are not UTF-8 become U+FFFD.

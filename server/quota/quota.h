@@ -25,8 +25,8 @@ typedef struct cau_quota_token {
 cau_quota *cau_quota_create(const cau_config *config); // NULL if memory ran out
 void cau_quota_destroy(cau_quota *quota);              // `quota` may be NULL
 
-// Takes one request from each allowance that applies, or from none. In that case returns CAU_LIMIT,
-// with the setting that limits it and when to try again. `address` is text, "" if unknown. Any
-// thread may call it; `connection` belongs to the caller, `token` may be NULL.
+// Takes one request from each allowance that applies. If one of them is used up, takes none and
+// returns CAU_LIMIT, with the setting that limits it and when to try again. `address` is text, ""
+// if unknown. Any thread may call it; `connection` belongs to the caller, `token` may be NULL.
 cau_status cau_quota_take(cau_quota *quota, cau_allowance *connection, const cau_quota_token *token,
                           const char *address, cau_role role, double now_s, cau_error *error);

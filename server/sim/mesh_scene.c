@@ -117,7 +117,8 @@ static void use_own_words(char *text, size_t bytes)
 	}
 }
 
-// Rewrites an error for the user, who wrote no scene with paths, and knows only the options.
+// Rewrites an error in the words of the options. The user wrote no scene, so paths into a scene
+// mean nothing.
 static cau_status in_own_words(const char *file, cau_status status, cau_error *error)
 {
 	if (!error)

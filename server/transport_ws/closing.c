@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How connections end. Whoever ends a connection, the handler is notified at once. A close frame
-// goes out behind the queued bytes, and then our side of the socket is shut. What the peer still
-// sends is read and dropped until it shuts its side. A peer that does not do so within
-// CLOSE_WITHIN_S, or is one of more than LINGERING_MOST, is reset. So no socket of a closed
-// connection stays.
+// How connections end. Whoever ends a connection, the handler is notified soon. A close frame goes
+// out behind the queued bytes, and then our side of the socket is shut. What the peer still sends
+// is read and dropped until it shuts its side. A peer that does not do so within CLOSE_WITHIN_S, or
+// is one of more than LINGERING_MOST, is reset. So no socket of a closed connection stays.
 #include <math.h>
 #include <netinet/in.h>
 #include <string.h>
