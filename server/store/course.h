@@ -56,10 +56,10 @@ bool cau_store_course_range(const struct cau_store_course *course, int64_t after
                             struct cau_store_range *range);
 
 // Returns the index of the checkpoint that thinning removes next; -1 if none. A checkpoint can be
-// removed if the distance of its neighbours is at most `spacing` ticks, or at most a quarter of the
-// later neighbour's age. So the number of checkpoints grows with the logarithm of time. A view of
-// `a` ticks ago needs a replay of at most a / 4 ticks. The first, the newest two, marked ones and
-// one at the end of a hole always stay.
+// removed if its two neighbours are at most `spacing` ticks apart, or at most a quarter of the
+// later one's age. So the number of checkpoints grows with the logarithm of time. A view of `a`
+// ticks ago needs a replay of at most a / 4 ticks. The first, the newest two, marked ones and one
+// at the end of a hole always stay.
 int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing);
 
 // Returns the index of the oldest checkpoint that may be removed; -1 if none may.

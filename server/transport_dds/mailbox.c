@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Deliveries of other threads to the DDS thread: requests to look again, at which sessions, and the
-// answers of workers and of the store thread.
+// Deliveries from other threads to the DDS thread: the request to look again, the sessions to look
+// at, and the answers of workers and of the store thread.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Limits how many DDS writers become clients of the hub and hold a hand on a tool. A writer becomes
-// a client with a valid sample, if its role may drive. The limits always allow a driver for every
-// tool that the sessions may have. Clients that drive nothing are limited to a few, and make way
-// for a writer that would drive.
+// Limits how many DDS writers become clients of the hub and get a hand (cau_dds_hand) on a tool. A
+// writer becomes a client with a valid sample, if its role may drive. The limits always allow a
+// driver for every tool that the sessions may have. Clients that drive nothing are limited to a
+// few, and make way for a writer that would drive.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
