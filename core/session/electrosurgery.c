@@ -32,7 +32,7 @@ static const double least_conductance_s = 1e-12;
 // Radius of the spot through which an arc enters tissue; no measurement was found. Most of the
 // resistance and most of the heat are at the spot.
 static const double spot_m = 1e-4;
-static const double cold_k = 0.01;
+static const double cold_k = 0.01; // K: a blade closer to the surroundings counts as cold
 // Temperature above the surroundings; warmer tissue gets cells for its neighbours too.
 static const double warm_k = 3;
 // Share of the water that tissue still has when it bursts. No measurement was found. Steam in

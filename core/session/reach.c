@@ -30,6 +30,8 @@ static const double beside_m = 2e-5;
 static const double same_m = 1e-5; // points closer together than this count as one
 // A pushed face that is farther away than this is released.
 static const double most_margin_m = 2e-3;
+// STEPS_ON_WAY bounds a grazing approach, whose steps get ever shorter. After it the face counts as
+// not reached in this tick.
 enum { CANDIDATES = 4 * CAU_MAX_POINT_ROWS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {

@@ -17,6 +17,7 @@
 #include "tissue/tissue.h"
 #include "vessel/vessels.h"
 
+// Capacity of one tool's jaws, in attachments. All tools together have CAU_MAX_HELD (contact.h).
 enum { CAU_MAX_GRASPED = 96, CAU_MAX_REFUSALS = 32 };
 
 typedef struct cau_grasp { // one attached vertex, or a point of a face between vertices

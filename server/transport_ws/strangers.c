@@ -16,7 +16,9 @@
 
 enum {
 	STRANGERS_MOST = 256,
-	UNREAD_MOST = 512, // connections whose request has not come, of all addresses together
+	// Connections whose request has not come, of all addresses together: four addresses at their
+	// limit. Each holds a file descriptor and no more.
+	UNREAD_MOST = 512,
 	OF_ADDRESS_MOST = 128,
 	// strangers reconnect 4,000 times in a second, which is 512 times in an eighth of a second
 	GRACE_FACTOR = 8,
