@@ -19,15 +19,19 @@ from cautery.environments import seal_and_divide as strip
 
 LANES_M = (-0.0055, -0.0018, 0.0018, 0.0055)  # of the hook's middle: its foot of 4 mm sweeps all strands in four
 IN_FRONT_M, BEHIND_M = -0.0065, 0.0055  # of the plane
+WIRE_M = 0.0009  # of the wire's middle over the lower sheet, which it burns at 0.7 mm
 
 
-def clear(info: dict[str, Any], height_m: float = 0.006) -> Iterator[np.ndarray]:
-    """Actions that clear the plane under traction of this height: from the free edge inwards, lane by lane."""
+def clear(info: dict[str, Any], height_m: float = 0.007, wire_m: float = WIRE_M) -> Iterator[np.ndarray]:
+    """Actions that clear the plane under traction of this height: from the free edge inwards, lane by lane.
+
+    `wire_m`: height of the wire's middle over the lower sheet.
+    """
     tip, height = info["tip_m"].copy(), plane.HEIGHT_FIRST_M
 
     def towards(x: float, y: float, hot: bool) -> Iterator[np.ndarray]:
         nonlocal height
-        goal = np.array([x, y, -plane.GAP_M / 2])
+        goal = np.array([x, y, wire_m - plane.GAP_M])
         while np.abs(goal - tip).max() > 1e-6 or abs(height_m - height) > 1e-6:
             move = ((goal - tip) / plane.MOVE_M).clip(-1, 1)
             lift = float(np.clip((height_m - height) / plane.MOVE_M, -1, 1))

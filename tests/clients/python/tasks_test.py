@@ -60,8 +60,8 @@ class Tasks(unittest.TestCase):
                     task.step(action)
 
     def test_an_episode_begins_where_options_say(self):
-        _, info = self.ClearPlane.reset(seed=1, options={"tip_m": [0.001, -0.007, -0.002]})
-        self.assertEqual(info["tip_m"].tolist(), [0.001, -0.007, -0.002])
+        _, info = self.ClearPlane.reset(seed=1, options={"tip_m": [0.001, -0.007, -0.001]})
+        self.assertEqual(info["tip_m"].tolist(), [0.001, -0.007, -0.001])
         _, info = self.SealAndDivide.reset(seed=1, options={"forceps_x_m": 0.002})
         self.assertEqual(info["forceps_m"][0], 0.002)
 

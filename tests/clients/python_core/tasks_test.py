@@ -21,6 +21,7 @@ PACKAGE = os.path.dirname(os.path.dirname(cautery_core.__file__))
 CLEARED_SEEDS, SEALED_SEEDS = (0, 3, 5, 8), (1, 4)
 BESIDE_M = 0.006  # from the middle of the jaws, which are 6 mm wide
 LOOSE_M = 0.0005  # height of a grasper that gives no traction
+WIRES_M = (0.0005, 0.0006, 0.0007, 0.0008)  # heights of the wire over the lower sheet
 SEAL = 15  # steps of an episode that is compared: the forceps have closed and heat
 PLANE = 30  # the first strands have parted
 
@@ -101,6 +102,14 @@ class Clearing(unittest.TestCase):
             self.assertFalse(info["cleared"])
             self.assertGreater(info["faces_burnt_above"], 0)
             self.assertLess(total, 10)
+
+    def test_without_traction_a_wire_of_any_height_burns_a_sheet(self):
+        for wire_m in WIRES_M:
+            with self.subTest(wire_m=wire_m):
+                _, info, _ = scripted_policies.play(self.task, CLEARED_SEEDS[0],
+                                                    lambda info, at_m=wire_m: scripted_policies.clear(info, LOOSE_M, at_m))
+                self.assertFalse(info["cleared"])
+                self.assertGreater(info["faces_burnt_above"] + info["faces_burnt_below"], 0)
 
     def test_more_traction_than_that_costs(self):
         self.task.reset(seed=1)

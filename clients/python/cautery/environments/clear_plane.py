@@ -14,17 +14,25 @@ from .tissue import Seen, ToolCommand
 
 LENGTH_M, WIDTH_M = 0.014, 0.010  # of the plane, along x and y
 TAB_M = 0.004  # of the upper sheet, in front of the plane, where the grasper holds it
+BACK_M = 0.004  # of the upper sheet, behind the plane, so that traction can lift it there too
 STEP_M = 0.001  # from strand to strand, along x and y
-GAP_M = 0.003  # from sheet to sheet: a strand's length
-HOT_RADIUS_M = 0.0004  # so thin that the wire passes between the sheets a millimetre from both
+# From sheet to sheet: a strand's length. The wire burns a sheet that is 0.7 mm from its middle, and spares one at 0.8 mm.
+# So it passes nowhere between sheets 1.4 mm apart: traction has to open the plane.
+GAP_M = 0.0014
+HOT_RADIUS_M = 0.0004
 FOOT_M = 0.004  # of the hook, along x: four strands beside each other
 TEMPERATURE_C = 700
+THICKNESS_M, STIFFNESS_PA = 0.0005, 1e6  # of a sheet; the stiffness is that of its strain limit
+# A sheet bends as a plate of that stiffness, E h^3 / (12 (1 - nu^2)) (Timoshenko and Woinowsky-Krieger, Theory of Plates
+# and Shells, 1959, eq. 3). Soft tissue keeps its volume, so nu is 0.5. Without bending stiffness the tab hangs straight
+# down, and the grasper finds nothing to hold. With it the tab's edge sags by 0.03 mm.
+BENDING_NM = STIFFNESS_PA * THICKNESS_M ** 3 / (12 * (1 - 0.5 ** 2))
 LEAST_M = np.array([-0.008, -0.012, -GAP_M])  # that the tip reaches
 MOST_M = np.array([0.008, 0.006, 0.003])
 MOVE_M = 0.0005  # of the tip in a step, along each axis, and of the grasper, at most
 HEIGHT_MOST_M = 0.01  # of the grasper
-HEIGHT_FIRST_M = 0.004  # the tab stands upright there, and the strands bear nothing yet
-FORCE_MOST_N = 0.8  # that costs nothing: a grasper 6 mm high, where the sheet is out of the way, feels up to 0.76 N
+HEIGHT_FIRST_M = 0.004  # the grasper feels 0.16 N there, and no strand is longer than 4.6 mm
+FORCE_MOST_N = 0.8  # that costs nothing: a grasper 7 mm high, where the plane is open enough, feels up to 0.61 N
 TICKS = 4  # of the simulation in a step
 STEPS_MOST = 250  # of an episode
 ROWS = 5  # of blocks of strands, along x and along y
@@ -43,35 +51,38 @@ def _sheet(name: str, width_m: float, y_m: float, z_m: float) -> dict[str, Any]:
 
 
 def _layer(name: str) -> dict[str, Any]:
-    return {"kind": "fascia", "name": name, "mesh": name, "thickness_m": 0.0005, "density_kg_m3": 1100,
-            "limit_stiffness_pa": 1e6, "limit": "range", "strain_min": [-0.1, -0.1], "strain_max": [0.1, 0.1],
-            "shear_max": 0.2, "ignition_c": 120, "ignition_spread_c": 20, "absorption_per_s": 4}
+    return {"kind": "fascia", "name": name, "mesh": name, "thickness_m": THICKNESS_M, "density_kg_m3": 1100,
+            "bending_stiffness_nm": BENDING_NM, "limit_stiffness_pa": STIFFNESS_PA, "limit": "range",
+            "strain_min": [-0.1, -0.1], "strain_max": [0.1, 0.1], "shear_max": 0.2,
+            "ignition_c": 120, "ignition_spread_c": 20, "absorption_per_s": 4}
 
 
 def scene(seed: int) -> dict[str, Any]:
     """The task's scene. `seed`: of which strands and faces are tougher."""
     # Each strand goes straight down: no other vertex is within its reach. The ends of a strand are further from the
-    # wire than the faces of a cut, so it takes heat up ten times as fast as these.
+    # wire than the faces of a cut, so it takes heat up ten times as fast as these. It is 0.18 mm thick: then traction that
+    # opens the plane as far as the wire needs stays below FORCE_MOST_N.
     strands = {"kind": "links", "name": "strands", "of": "upper", "to": "lower", "young_modulus_pa": 1e5,
-               "area_m2": 1e-7, "reach_m": 1.02 * GAP_M, "per_vertex": 1, "ignition_c": 120, "ignition_spread_c": 20,
+               "area_m2": 2.5e-8, "reach_m": 1.02 * GAP_M, "per_vertex": 1, "ignition_c": 120, "ignition_spread_c": 20,
                "absorption_per_s": 40}
     hook = {"name": "hook", "shape": "hook", "hot_radius_m": HOT_RADIUS_M, "tip_length_m": FOOT_M,
             "shaft_radius_m": HOT_RADIUS_M, "temperature_c": TEMPERATURE_C, "grid_step_m": HOT_RADIUS_M,
             "position_m": [0, _FREE_Y_M, -GAP_M / 2], "rotation": list(_SIDEWAYS)}
     grasper = {"name": "grasper", "shape": "grasper", "tip_length_m": 0.008, "shaft_radius_m": 0.003,
                "close_force_n": 4, "position_m": [0, _FREE_Y_M, 0], "rotation": list(_FLAT)}
-    far = {"kind": "box", "layer": "upper", "least_m": [-1, WIDTH_M / 2 - 1e-4, -1], "most_m": [1, 1, 1]}
+    far = {"kind": "box", "layer": "upper", "least_m": [-1, WIDTH_M / 2 + BACK_M - 1e-4, -1], "most_m": [1, 1, 1]}
     bed = {"kind": "box", "layer": "lower", "least_m": [-1, -1, -1], "most_m": [1, 1, 1]}
+    upper = _sheet("upper", WIDTH_M + TAB_M + BACK_M, (BACK_M - TAB_M) / 2, 0)
     return {"name": "clear-plane", "description": "Two sheets, joined by strands.", "seed": seed, "parting": "elements",
-            "meshes": [_sheet("upper", WIDTH_M + TAB_M, -TAB_M / 2, 0), _sheet("lower", WIDTH_M, 0, -GAP_M)],
+            "meshes": [upper, _sheet("lower", WIDTH_M, 0, -GAP_M)],
             "layers": [_layer("upper"), _layer("lower"), strands], "pins": [bed, far], "tools": [hook, grasper]}
 
 
 class ClearPlane(Task):
     """Part all strands, and no face of either sheet. `cautery.environments.Task` has the parameters.
 
-    A grasper holds the upper sheet's free edge. Its height is the traction: without it the sheet lies in the hook's way.
-    The hook lies between the sheets, its foot along x.
+    A grasper holds the upper sheet's free edge. Its height is the traction: without it the sheets are
+    so near each other that the hook burns one of them. The hook lies between the sheets, its foot along x.
 
     An action has five numbers from -1 to 1: how the hook's tip moves along x, y and z, and the grasper up (1 is 0.5 mm),
     and the energy, which is on above 0. An observation: the tip's place (3, from -1 to 1 in its reach), whether energy is
@@ -96,7 +107,7 @@ class ClearPlane(Task):
 
     # ---- an episode
     def _begin(self, options: Mapping[str, Any]) -> None:
-        place = self._random.uniform((-0.006, -0.011, -0.002), (0.006, -0.008, -0.001))
+        place = self._random.uniform((-0.006, -0.011, -0.0012), (0.006, -0.008, -0.0006))
         toughness = self._draw_tissue()
         if "tip_m" in options:
             place = np.asarray(options["tip_m"], float)
