@@ -66,7 +66,7 @@ const link: Link = new Link({
   moved: (session, to, url) => {
     if (session === model.session) follow(to, url);
   },
-  notJoined: (session, message) => model.notice('error', `${session} cannot be watched: ${message}`),
+  notJoined: (session, message) => model.notice('error', `Session ${session} cannot be opened: ${message}`),
   frame: (frame) => {
     const buffers = viewport.takeFrame(frame);
     model.setFrame(frame);
@@ -74,7 +74,7 @@ const link: Link = new Link({
   },
   push: (method, params) => control.push(method, params),
   file: (name, mediaType, bytes, sound) => {
-    if (!sound) model.notice('error', `${name} was damaged in transfer. Try again.`);
+    if (!sound) model.notice('error', `The file ${name} was damaged during the download. Try again.`);
     else saveReceived(name, mediaType, bytes);
   },
 });
@@ -149,7 +149,7 @@ function socketAddress(session: string | null): string {
 /** A page may connect to its own address alone: a daemon that has another has its page there, too. */
 function follow(session: string, daemon: string): void {
   const there = daemon === '' ? null : new URL(daemon);
-  model.notice('info', `The session is ${session} now.`);
+  model.notice('info', `The session has moved to another server. Its name is now ${session}.`);
   if (there && there.host !== window.location.host) {
     there.protocol = there.protocol === 'wss:' || there.protocol === 'https:' ? 'https:' : 'http:';
     there.pathname = '/';

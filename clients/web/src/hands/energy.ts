@@ -21,29 +21,29 @@ const AGAIN: Readonly<Record<Held, string>> = {
   pointer: 'Lift and press again.',
   pedal: 'Lift the pedal and press it again.',
   cap: 'Release the 3D mouse’s button and press it again.',
-  latch: 'Press Keep on for more.',
+  latch: 'Press Keep on again to continue.',
 };
 const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
-  watchdog: 'this page sent no heartbeat in time, which a busy machine can cause',
+  watchdog: 'this page sent no heartbeat in time. A busy computer can cause this',
   taken_over: 'another user took the tool over',
   restored: 'the session was rewound or restarted',
-  never_enabled: 'the simulation cut it before it came on',
-  commanded: 'another user switched it off',
+  never_enabled: 'the simulation turned energy off before it came on',
+  commanded: 'another user turned energy off',
 };
 /** Why a hold ended that nobody ended by letting go. */
 const LET_GO_WORDS: Readonly<Record<Exclude<Lost, 'released'>, string>> = {
   buttons: 'a second button was pressed. Release both and press again.',
-  cancelled: 'the browser took the press over. Press again.',
-  second: 'a second finger came. Lift both and press again.',
-  focus: 'the focus went to another control. Press again.',
-  typing: 'the focus went to a field. Press again.',
+  cancelled: 'the browser interrupted the press. Press again.',
+  second: 'a second finger touched the picture. Lift both and press again.',
+  focus: 'another control was selected. Press again.',
+  typing: 'a text field was selected. Press again.',
   menu: 'a menu opened. Press again.',
   dialog: 'a dialog opened. Press again.',
-  blur: 'the page lost the focus. Press again.',
-  hidden: 'the page was out of sight. Press again.',
-  gone: 'the control that was held is no longer usable.',
+  blur: 'another window was selected. Press again.',
+  hidden: 'this page was hidden. Press again.',
+  gone: 'the control that you held can no longer be used.',
   unplugged: 'the device was disconnected.',
-  past: 'this is a past view.',
+  past: 'the picture shows a past view.',
 };
 const PAUSED = 'the session is paused';
 const KEY = 'energy';
@@ -171,12 +171,12 @@ export class Energy {
 
   private wentDark(frame: Frame, state: ToolState | undefined): void {
     const over = state?.energyOff === 'commanded' && this.limit !== null && frame.tick >= this.since!.tick + this.limit;
-    this.lose(over ? `it stays on for ${LATCH_S} s at most` : this.reason(state));
+    this.lose(over ? `Keep on lasts ${LATCH_S} s at most` : this.reason(state));
   }
 
   /** Frames tell why energy went off; of what never came on they tell only the reason of the time before. */
   private reason(state: ToolState | undefined): string {
-    if (!state) return 'the tool was taken away';
+    if (!state) return 'the tool was removed from the session';
     if (this.state === 'asked' && state.energyOff !== 'watchdog') return LOST_WORDS['never_enabled'];
     return LOST_WORDS[state.energyOff];
   }
@@ -184,7 +184,7 @@ export class Energy {
   private checkDriver(): void {
     if (!this.alive || this.tool === null || this.model.link.state !== 'online') return;
     const driver = this.model.drivers.get(this.tool);
-    if (!driver) this.lose('the tool was taken away');
+    if (!driver) this.lose('the tool was removed from the session');
     else if (driver.client === 0) this.lose('the tool has no driver any more');
     else if (!this.model.drives(this.tool)) this.lose(`${nameOf(driver)} took the tool over`);
   }

@@ -7,18 +7,18 @@ import { keyId } from './holds';
 import type { ToolHand } from './tool_hand';
 
 export const KEY_HELP: readonly (readonly [string, string])[] = [
-  ['Mouse', 'leads the tool over the tissue'],
-  ['Press and drag', 'cut: energy while held'],
-  ['Arrows', 'lead the tool'],
-  ['Space', 'energy while held'],
-  ['Wheel, W S', 'depth; W deeper, S nearer'],
-  ['Q E, R F', 'turn the tool, tilt it'],
-  ['L', `keep energy on, for ${LATCH_S} s at most; L or Escape ends it`],
-  ['G', 'grasp or release'],
-  ['Right drag, Shift + drag', 'turn or move the camera'],
+  ['Mouse', 'moves the tool over the tissue'],
+  ['Press and drag', 'cut: energy is on while you press'],
+  ['Arrows', 'move the tool'],
+  ['Space', 'energy is on while you hold the key'],
+  ['Wheel, W S', 'depth of the tool: W deeper, S nearer'],
+  ['Q E, R F', 'Q and E turn the tool, R and F tilt the tool'],
+  ['L', `keep energy on for at most ${LATCH_S} s; L or Escape turns energy off`],
+  ['G', 'close the jaws to grasp, or open them'],
+  ['Right drag, Shift + drag', 'right drag turns the camera, Shift + drag moves it'],
   ['Ctrl + wheel, + −', 'zoom'],
-  ['H', 'camera home'],
-  ['Gamepad', 'sticks lead, right trigger cuts, A grasps'],
+  ['H', 'put the camera back to its first view'],
+  ['Gamepad', 'the sticks move the tool, the right trigger cuts, A grasps'],
 ];
 
 const SPEED_M_S = 0.03;

@@ -18,7 +18,7 @@ export class Past {
 
   /** Says so to a hand that tries. */
   refuses(): boolean {
-    if (this.shown) this.model.say('info', 'This is a past view. Return to live to work.');
+    if (this.shown) this.model.say('info', 'This is a past view. Press Return to live to use the tools.');
     return this.shown;
   }
 }

@@ -54,7 +54,7 @@ export class Pedal {
     event.preventDefault();
     event.stopPropagation();
     if (event.code === '' || EVERY_PAGES.test(event.code) || WORKING_KEYS.has(event.code)) {
-      told(`${keyWords(event.code || event.key)} is already used in this page. Give the pedal another key, with the program that came with it.`);
+      told(`${keyWords(event.code || event.key)} is already used by this page. Give the pedal another key with the program that came with the pedal.`);
       return;
     }
     this.asked = null;

@@ -41,8 +41,8 @@ export class Taking {
 
   private obstacle(): string | null {
     const { model } = this;
-    if (model.link.state !== 'online') return 'There is no connection: the tool cannot be moved.';
-    if (!model.mayOperate) return 'You can only watch: your token does not allow the use of tools.';
+    if (model.link.state !== 'online') return 'There is no connection, so the tool cannot be moved.';
+    if (!model.mayOperate) return 'You can only watch, because your access token does not allow you to use tools.';
     if (!model.joined) return null; // the picture says what it waits for
     if (model.tools.length === 0) return 'This session has no tools.';
     return model.driver ? `${nameOf(model.driver)} is using the ${model.driver.tool}.` : null;
@@ -64,6 +64,6 @@ export class Taking {
         (error: unknown) => model.say('error', errorWords(error)),
       );
     };
-    model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for it`, press: ask } });
+    model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for the tool`, press: ask } });
   }
 }

@@ -9,8 +9,8 @@ import { errorWords } from './sentences';
 
 /** What makes the picture doubtful from then on, though the session goes on. */
 function doubtOf({ kind, count, detail }: Pushes['event']['event']): string | null {
-  if (kind === 'inverted') return `${count} tetrahedra of ${detail} have been inside out for half a second. Do not trust what is there: rewind or reset.`;
-  if (kind === 'energy_gain') return `The tissue gained energy by itself (${detail}). Do not trust its motion.`;
+  if (kind === 'inverted') return `${count} tetrahedra of ${detail} have been inverted (inside out) for half a second. Do not trust the tissue there. Rewind or reset the session.`;
+  if (kind === 'energy_gain') return `The simulation gained energy that no tool gave (${detail}). Do not trust the motion of the tissue.`;
   return null;
 }
 
@@ -66,7 +66,7 @@ export class Control {
   }
 
   async create(params: { scene?: string; definition?: Scene; name?: string }): Promise<SessionDescription> {
-    const description = await this.during('Making the session', this.link.call('session.create', params));
+    const description = await this.during('Creating the session', this.link.call('session.create', params));
     this.model.putSession(description.summary);
     this.watch(description.summary.session);
     return description;
@@ -186,7 +186,7 @@ export class Control {
   }
 
   here(): { session: string } {
-    if (this.model.session === null) throw new Error('no session is open');
+    if (this.model.session === null) throw new Error('no session is open; choose or create one');
     return { session: this.model.session };
   }
 
@@ -194,15 +194,15 @@ export class Control {
     'session.changed': (params) => this.sessionChanged(params),
     'session.faulted': ({ session, reason }) => {
       if (session === this.model.session)
-        this.model.notice('error', `The simulation met numerical trouble: ${reason}. Rewind or reset the session.`);
+        this.model.notice('error', `The simulation stopped because of a numerical error: ${reason}. Rewind or reset the session.`);
     },
     'tool.driver_changed': ({ session, driver }) => {
       if (session !== this.model.session) return;
       const drove = this.model.drives(driver.tool);
       this.model.setDriver(driver);
-      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', `${nameOf(driver)} uses the ${driver.tool} now.`);
+      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', `${nameOf(driver)} now uses the ${driver.tool}.`);
     },
-    'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow: ${reason}.`),
+    'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow your hand: ${reason}.`),
     'takeover.requested': (params) => this.model.setTakeover(params),
     'session.frame_progress': (params) => {
       if (params.session === this.model.session) this.model.emit('looking', params);
@@ -233,7 +233,7 @@ export class Control {
 
   private left(session: string): void {
     if (session !== this.model.session) return;
-    this.model.notice('info', `${session} no longer exists.`);
+    this.model.notice('info', `The session ${session} no longer exists.`);
     this.watch(this.model.sessions.find((other) => other.session !== session)?.session ?? null);
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What goes wrong, in sentences for people: no paths of members, no expressions of programs.
 
-export const NAME_RULE = 'A name begins with a small letter and goes on with small letters and digits, with single - or _ between them, as in knee-2';
+export const NAME_RULE = 'A name begins with a small letter and contains only small letters, digits and single - or _ between them, as in knee-2';
 const EXPRESSION = '[a-z]'; // the daemon's own rule for names
 const UNIT = /_(j_m2|j_k|w_k|j|w|v|a|m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/;
 

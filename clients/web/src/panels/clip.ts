@@ -4,7 +4,7 @@ import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { element, field } from './dom';
 
-const AXES = [['', 'nothing'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
+const AXES = [['', 'nothing (whole tissue)'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
 const STEPS = 200;
 const MM = 1000;
 
@@ -37,5 +37,5 @@ export function clipFields(control: Control, viewport: Viewport): { fields: HTML
     axis.value = '';
     apply();
   };
-  return { fields: element('div', { class: 'form' }, field('Cut away', axis), where), off };
+  return { fields: element('div', { class: 'form' }, field('Hide tissue', axis), where), off };
 }

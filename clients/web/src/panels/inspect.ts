@@ -30,8 +30,8 @@ function find(viewport: Viewport, x: number, y: number): Found | null {
 function words({ layer, vertex, stressed }: Found, state: VertexState, position: ArrayLike<number>): string {
   const at = [0, 1, 2].map((c) => (MM * position[3 * vertex + c]).toFixed(1)).join(', ');
   const temperature = state.temperatureC === null ? '' : `${state.temperatureC.toFixed(1)} °C`;
-  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress: only of fat';
-  const heat = `${Math.round(100 * state.exposure)} % of the heat that parts it`;
+  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress is shown for fat only';
+  const heat = `${Math.round(100 * state.exposure)} % of the heat exposure at which this tissue parts`;
   return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
 }
 

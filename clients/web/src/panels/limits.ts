@@ -38,7 +38,7 @@ const FAT: Choice[] = [
 const CHOICES: Readonly<Record<Kind, readonly Choice[]>> = { fascia: SHEET, membrane: SHEET, fat: FAT, links: [] };
 
 const AXES = ['along fibres', 'across', 'through'];
-const SHEAR = ['shear', 'shear, through along', 'shear, through across'];
+const SHEAR = ['shear along/across', 'shear along/through', 'shear across/through'];
 
 function directions(count: 2 | 3): readonly Directions[] {
   const axes = AXES.slice(0, count);
@@ -73,10 +73,10 @@ export function limitInputs(kind: Kind): LimitInputs {
   const vectors = DIRECTIONS[kind].map((vector) => {
     const inputs = vector.entries.map((entry) =>
       element('input', {
-        type: 'number', name: `${vector.name}-${entry.replaceAll(/[ ,]+/g, '-')}`, step: 'any', min: String(vector.least), max: String(vector.most),
+        type: 'number', name: `${vector.name}-${entry.replaceAll(/[ /]+/g, '-')}`, step: 'any', min: String(vector.least), max: String(vector.most),
       }),
     );
-    const title = vector.name === 'shrink' ? 'squared stretch of cut rims; 1: none' : vector.name === 'target' ? 'of F^T F: a squared stretch' : '';
+    const title = vector.name === 'shrink' ? 'squared stretch to which the rims of cuts shrink; 1: no shrinking' : vector.name === 'target' ? 'target of F^T F, a squared stretch' : '';
     return { vector, inputs, labels: inputs.map((input, i) => field(`${vector.words} ${vector.entries[i]}`, input, '', title)) };
   });
   const limit = choices.find(({ choice }) => choice.name === 'limit');

@@ -21,7 +21,7 @@ function instrument(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
   const choose = element('select', { name: 'instrument' });
   choose.addEventListener('change', () => model.selectTool(choose.value));
-  const chosen = field('In hand', choose);
+  const chosen = field('Instrument in hand', choose);
   const driving = drivingButtons(control, problem);
   model.on('tools', () => {
     choose.replaceChildren(...model.tools.map(({ name }) => element('option', { value: name }, name)));
@@ -36,7 +36,7 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   const { model } = control;
   const usual = PARAMETERS.tool.find(({ name }) => name === 'temperature_c')!.default;
   const slider = element('input', {
-    type: 'range', name: 'power', min: String(POWER_LEAST_C), max: String(POWER_MOST_C), step: String(POWER_STEP_C), aria: { label: 'Power: temperature of the tip' },
+    type: 'range', name: 'power', min: String(POWER_LEAST_C), max: String(POWER_MOST_C), step: String(POWER_STEP_C), aria: { label: 'Power: temperature of the hot tip' },
   });
   const shown = element('output', { class: 'now-power' });
   const tell = (): void => {
@@ -57,7 +57,7 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
     const { tool } = model;
     section.hidden = !tool || !hasHeat(tool.shape) || model.joined?.description.definition.energy === 'tissue'; // there a generator gives power
     slider.disabled = !hand.driving;
-    slider.title = hand.driving ? '' : 'Use the instrument first';
+    slider.title = hand.driving ? '' : 'Take the tool first';
     if (held || !tool) return;
     slider.value = String(tool.temperature_c ?? usual);
     tell();
@@ -83,7 +83,7 @@ function person(control: Control, self: Self): HTMLElement {
     const named = [...control.model.drivers.values()].filter(({ client, tool }) => client !== 0 && !control.model.drives(tool));
     others.textContent = named.map((driver) => `${nameOf(driver)} uses the ${driver.tool}.`).join(' ');
   });
-  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as others in the session see it'), others, element('div', { class: 'buttons' }, inviteButton(control.model, self.token)));
+  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'other people in the session see this name'), others, element('div', { class: 'buttons' }, inviteButton(control.model, self.token)));
 }
 
 function session(control: Control): HTMLElement {

@@ -37,14 +37,14 @@ export function showLink(control: Control): void {
 }
 
 const MOUSE_HINT = [
-  'Move the mouse over the tissue to lead the tool; press to cut.',
-  'Go slowly: tissue takes a few seconds of heat before it parts.',
-  'Drag beside the tissue to turn the view; the timeline below takes you back.',
+  'Move the mouse over the tissue to move the tool. Press to cut.',
+  'Go slowly. Tissue needs a few seconds of heat before it parts.',
+  'Drag beside the tissue to turn the view. Use the timeline below to view an earlier time.',
 ];
 const FINGER_HINT = [
-  'Touch the tissue to cut; choose Move to lead the tool without heat.',
-  'Go slowly: tissue takes a few seconds of heat before it parts.',
-  'Two fingers turn the view; the timeline takes you back.',
+  'Touch the tissue to cut. Choose Move to move the tool without heat.',
+  'Go slowly. Tissue needs a few seconds of heat before it parts.',
+  'Use two fingers to turn the view. Use the timeline to view an earlier time.',
 ];
 
 /** All that the hands can do, when somebody asks: the cue on the tissue is enough to begin. */

@@ -8,13 +8,13 @@ import { button, byId, element } from './dom';
 
 const SETTLED_MS = 250; // a hand that drags along the timeline asks for where it rests
 
-const STAGE_WORDS = { building: 'a second tissue is made for it', reading: 'it is read', restoring: 'it is restored', replaying: 'the commands are replayed' };
+const STAGE_WORDS = { building: 'preparing a second copy of the tissue', reading: 'reading the stored state', restoring: 'restoring the stored state', replaying: 'replaying the commands' };
 
 export function showPast(control: Control): void {
   const { model } = control;
   const place = byId('past');
   const words = element('p');
-  const bar = element('progress', { max: 1, aria: { label: 'On the way there' } });
+  const bar = element('progress', { max: 1, aria: { label: 'Loading the past view' } });
   place.append(words, bar, button('Return to live', () => model.hold(null), { id: 'live' }));
   let timer: ReturnType<typeof setTimeout> | undefined;
   let wanted: number | null = null;
@@ -27,7 +27,7 @@ export function showPast(control: Control): void {
   };
   const there = (): boolean => wanted !== null && model.frame?.past?.tick === wanted;
   const tell = (): void => {
-    if (wanted !== null && there()) say(`Viewing ${at(wanted)}. The session goes on.`, false);
+    if (wanted !== null && there()) say(`You see the past at ${at(wanted)}. The session continues.`, false);
   };
   const ask = async (tick: number): Promise<void> => {
     try {
@@ -46,7 +46,7 @@ export function showPast(control: Control): void {
       control.lookAtPresent();
       return;
     }
-    say(`Fetching ${at(tick)}…`, true);
+    say(`Loading ${at(tick)}…`, true);
     timer = setTimeout(() => void ask(tick), SETTLED_MS);
   };
 
@@ -54,7 +54,7 @@ export function showPast(control: Control): void {
   model.on('frame', tell);
   model.on('looking', ({ tick, stage, from_tick: from, at_tick: now }) => {
     if (tick !== wanted || there()) return;
-    say(`Fetching ${at(tick)}: ${STAGE_WORDS[stage]}…`, true);
+    say(`Loading ${at(tick)}: ${STAGE_WORDS[stage]}…`, true);
     if (stage === 'replaying' && tick > from) bar.value = (now - from) / (tick - from);
     else bar.removeAttribute('value');
   });

@@ -78,11 +78,11 @@ export function sceneRecordingButton(model: Model, viewport: Viewport, problem: 
       step: -1,
       seen: null,
     };
-    worker.addEventListener('error', () => finish(recording, 'The recording has failed: its worker stopped.'));
+    worker.addEventListener('error', () => finish(recording, 'The recording has failed: a part of this page stopped. Reload the page to record again.'));
     worker.addEventListener('message', ({ data }: MessageEvent<FromMcap>) => {
       if (data.type === 'failure') finish(recording, `The recording has failed: ${data.message}`);
       if (data.type === 'full') {
-        model.notice('warning', 'The recording has reached 1 GB, the most. It has been saved.');
+        model.notice('warning', 'The recording has reached its limit of 1 GB and was saved.');
         end();
       }
       if (data.type !== 'file') return;

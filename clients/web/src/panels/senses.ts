@@ -5,7 +5,7 @@ import type { Viewport } from '../scene/viewport';
 import { check, element } from './dom';
 
 type Sense = Sound | 'smoke';
-const SENSES: readonly (readonly [Sense, string])[] = [['smoke', 'Smoke'], ['tone', 'Activation tone'], ['sizzle', 'Sizzle'], ['alarm', 'Alarm: no heartbeat']];
+const SENSES: readonly (readonly [Sense, string])[] = [['smoke', 'Smoke'], ['tone', 'Activation tone'], ['sizzle', 'Sizzle'], ['alarm', 'Alarm when the connection fails']];
 const KEPT = 'off'; // names of those that are off, by commas
 
 export function sensesSection(viewport: Viewport, sounds: Sounds): HTMLElement {

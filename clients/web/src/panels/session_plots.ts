@@ -11,7 +11,7 @@ import { makePlot, plotColour, resizePlot } from './plot';
 const PLOTS: readonly (readonly [string, string, (moment: ToolMoment) => number])[] = [
   ['Temperature of the tip, °C', '°C', ({ temperatureC }) => temperatureC],
   ['Force, N', 'N', ({ forceN }) => forceN],
-  ['Energy taken up, J', 'J', ({ energyJ }) => energyJ],
+  ['Energy taken up by the tissue, J', 'J', ({ energyJ }) => energyJ],
 ];
 const CURSOR = 'session';
 /** More are not told apart in a panel's width. */
@@ -36,7 +36,7 @@ export function sessionPlots(model: Model): SessionPlots {
     const tick = pointed ?? model.held;
     const moment = tick === null ? model.history.moments.at(-1) : model.history.at(tick);
     const each = [...(moment?.tools ?? [])].map(([name, { temperatureC, forceN, energyJ }]) => `${name} ${temperatureC.toFixed(0)} °C, ${short(forceN, 2)} N, ${short(energyJ, 3)} J`);
-    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'No values of that time';
+    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'No values are known for this time';
     const words = `${when}${moment ? ': ' : ''}${each.join('; ')}`;
     if (told.value !== words) told.value = words;
   };

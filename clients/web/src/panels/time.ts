@@ -37,7 +37,7 @@ function nameMoments(place: HTMLSelectElement, events: readonly TimelineEvent[],
   if (place.dataset['last'] === last && place.dataset['count'] === String(events.length)) return;
   Object.assign(place.dataset, { last, count: String(events.length) });
   const options = momentsOf(events, seconds).map(({ tick, words }) => element('option', { value: String(tick) }, words));
-  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'What happened'), ...options);
+  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'Events'), ...options);
 }
 
 export function timeBar(control: Control, shared: number | null): void {
@@ -52,7 +52,7 @@ export function timeBar(control: Control, shared: number | null): void {
     void ask('Start over?', 'This resets the tissue for everyone in the session.', 'Start over').then((sure) => {
       if (sure) void attempt(problem, () => control.reset(), reset);
     });
-  }, { id: 'reset', title: 'Whole tissue, from the start' });
+  }, { id: 'reset', title: 'Return to the whole tissue at time 0' });
   const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
   speed.value = '1';
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
@@ -60,11 +60,11 @@ export function timeBar(control: Control, shared: number | null): void {
   const track = element('div', { class: 'track' }, slider);
   const rewind = button('Rewind here', () => {
     const tick = slider.valueAsNumber;
-    void ask(`Rewind to ${seconds(tick)}?`, 'This rewinds the session for everyone. Later history stays on the old branch.', 'Rewind').then((sure) => {
+    void ask(`Rewind to ${seconds(tick)}?`, 'This rewinds the session for everyone. The later history is kept as a branch.', 'Rewind').then((sure) => {
       if (sure) void attempt(problem, () => control.rewind(tick).then(() => model.hold(null)), rewind);
     });
   }, { id: 'rewind', hidden: true });
-  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: 'What happened: show when' } });
+  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: 'Events: choose one to view its time' } });
   moments.addEventListener('change', () => model.hold(Number(moments.value)));
   const now = element('output', { class: 'now', id: 'now' });
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
@@ -125,7 +125,7 @@ export function timeBar(control: Control, shared: number | null): void {
     if (!frame.paused && frame.paused === paused && performance.now() - writtenMs < WRITE_MS) return;
     writtenMs = performance.now();
     const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
-    const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · faulted' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
+    const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · stopped by an error' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
     if (now.value !== text) now.value = text;
   };
   model.on('frame', (frame) => {

@@ -11,7 +11,7 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
   const problem = problemPlace();
   const submit = element('button', { type: 'submit' }, 'Connect');
   const form = element('form', { class: 'form' }, user, field('Access token', token), problem, element('div', { class: 'buttons' }, submit, button('Close', () => dialog.close())));
-  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation needs a token. Ask its administrator for one.'), form);
+  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation needs an access token. Ask its administrator for one.'), form);
   document.body.append(dialog);
   let given = false;
   const open = (): void => {

@@ -8,12 +8,12 @@ import type { MeshRead, MeshReading } from '../wire/messages.gen';
 import { attempt, button, check, element, field, problemPlace } from './dom';
 
 const TISSUES: readonly (readonly [string, string])[] = [
-  ['', 'by the file'],
+  ['', 'decided from the file'],
   ['fat', 'fat (tetrahedra)'],
   ['fascia', 'fascia (triangles)'],
 ];
 const SIDES: readonly (readonly [string, string])[] = [
-  ['', 'by the file'],
+  ['', 'automatic'],
   ...['bottom', 'top', 'left', 'right', 'front', 'back', 'left,right', 'front,back', 'none'].map((side) => [side, side.replace(',', ' and ')] as const),
 ];
 
@@ -46,19 +46,19 @@ interface WishFields {
 /** How the file is to be read. */
 function wishFields(): WishFields {
   const kind = choice('kind', TISSUES);
-  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guess', min: '1e-6', max: '1000000', step: 'any' });
-  const edge = element('input', { type: 'number', name: 'edge', placeholder: 'choose', min: '0.001', max: '10000', step: 'any' });
+  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guessed', min: '1e-6', max: '1000000', step: 'any' });
+  const edge = element('input', { type: 'number', name: 'edge', placeholder: 'automatic', min: '0.001', max: '10000', step: 'any' });
   const labels = element('input', { type: 'text', name: 'labels', placeholder: 'all', maxLength: 255 });
   const pin = choice('pin', SIDES);
   let strict = false;
   return {
     fields: [
-      field('Tissue', kind, '', 'by the file: fat where there are tetrahedra or an inside'),
-      field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres; guessed where its size is clear'),
-      field('Edge', edge, 'mm', 'length of an edge of the tetrahedra that fill a surface or a segmentation'),
-      field('Labels', labels, '', 'of a segmentation, as in 1,3'),
-      field('Pinned', pin, '', 'by the file: the bottom, or the rim of a sheet; more pins with the press Pin on the picture'),
-      check('Strict: refuse a mesh that needs repair', 'strict', (on) => (strict = on)),
+      field('Tissue', kind, '', 'decided from the file: fat if the file has tetrahedra or a closed surface, else fascia'),
+      field('One unit is', size, 'mm', 'length of one unit of the file: 1 for millimetres, 1000 for metres. Empty: guessed from the size of the mesh.'),
+      field('Edge', edge, 'mm', 'edge length of the tetrahedra with which a surface or a segmentation is filled'),
+      field('Labels', labels, '', 'labels of the segmentation to use, for example 1,3'),
+      field('Pinned', pin, '', 'automatic: the bottom, or the rim of a sheet. Add pins with Pin in the picture.'),
+      check('Strict: refuse a mesh with errors instead of repairing it', 'strict', (on) => (strict = on)),
     ],
     read: () => ({
       upload: UPLOAD_NAME,
@@ -144,7 +144,7 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   const form = element(
     'form',
     { class: 'form' },
-    field('Mesh file', file, '', 'Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, NRRD, NIfTI, or both files of TetGen'),
+    field('Mesh file', file, '', 'formats: Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, NRRD, NIfTI, or both files of TetGen'),
     ...wish.fields,
     element('div', { class: 'buttons' }, submit, cancel),
     bar,

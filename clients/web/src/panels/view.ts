@@ -11,15 +11,15 @@ import type { Panel } from './tabs';
 import { videoButton } from './video';
 
 const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
-  ['tissue', 'as tissue'],
+  ['tissue', 'colour of the tissue'],
   ['exposure', 'heat exposure'],
   ['charring', 'char'],
   ['stress', 'stress'],
   ['temperature', 'temperature'],
 ];
 const TITLES: Readonly<Record<Scalar, string>> = {
-  exposure: 'Heat exposure over ignition',
-  charring: 'Char: share of parted edges',
+  exposure: 'Heat exposure (1: tissue parts)',
+  charring: 'Char: share of edges that heat has parted',
   stress: 'Von Mises stress',
   temperature: 'Temperature',
 };
@@ -71,7 +71,7 @@ function themes(viewport: Viewport): HTMLElement {
   const choose = element(
     'select',
     { name: 'theme' },
-    ...['as the system', 'dark', 'light'].map((words) => element('option', { value: words }, words)),
+    ...['as the system', 'dark', 'light'].map((value) => element('option', { value }, value === 'as the system' ? 'same as the system' : value)),
   );
   const system = window.matchMedia('(prefers-color-scheme: dark)');
   const apply = (): void => {
@@ -86,7 +86,7 @@ function themes(viewport: Viewport): HTMLElement {
   });
   system.addEventListener('change', apply);
   apply();
-  return field('Light', choose);
+  return field('Theme', choose);
 }
 
 export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: HTMLElement, clip: HTMLElement): Panel {
@@ -124,7 +124,7 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     field('Colour', colouring),
     layers,
     check('Wireframe', 'wireframe', (on) => set({ wireframe: on })),
-    check('Force on the tool', 'force', (on) => set({ forceArrow: on })),
+    check('Show the force on the tool', 'force', (on) => set({ forceArrow: on })),
     inspectSwitch,
     clip,
     cameraViews(viewport),

@@ -298,7 +298,7 @@ export class Viewport {
 
   /** The picture as PNG. */
   async png(): Promise<Blob> {
-    if (this.graphics !== 'ready') throw new Error('there is no picture to save');
+    if (this.graphics !== 'ready') throw new Error('there is no picture to save yet');
     this.setDetail(FULL);
     this.render();
     return new Promise<Blob>((resolve, reject) =>

@@ -133,7 +133,7 @@ export class Connection {
     socket.onclose = null;
     socket.onmessage = null;
     socket.close();
-    this.lost('the session has moved');
+    this.lost('the session has moved to another server');
   }
 
   /** The session that was followed has been found. */
@@ -153,7 +153,7 @@ export class Connection {
       const sequenced = CHANGING_METHODS.has(method) ? { ...params, client_sequence: ++this.clientSequence } : params;
       const text = JSON.stringify({ jsonrpc: '2.0', id, method, params: sequenced });
       if (!this.online && method !== 'hello' && !outlivesLoss(method)) {
-        reject(new RpcError('lost', 'the daemon cannot be reached at the moment'));
+        reject(new RpcError('lost', 'the server cannot be reached at the moment'));
         return;
       }
       this.pending.set(id, { method, text, resolve: resolve, reject });
@@ -204,7 +204,7 @@ export class Connection {
 
   private end(status: 'version' | 'unauthorized' | 'replaced', words: string): void {
     this.stop();
-    const versions = `This page speaks wire version ${WIRE_VERSION}, and the daemon does not: reload the page, or update the daemon.`;
+    const versions = `This page and the server have different versions (this page: ${WIRE_VERSION}). Reload the page. If that does not help, update the server.`;
     this.events.state({ state: 'refused', status, words: status === 'version' ? versions : words });
   }
 
@@ -232,7 +232,7 @@ export class Connection {
   private closed(event: CloseEvent): void {
     this.socket = null;
     this.hello = null;
-    const words = CLOSE_REASONS[event.code] ?? (event.reason || 'the daemon cannot be reached');
+    const words = CLOSE_REASONS[event.code] ?? (event.reason || 'the server cannot be reached');
     const refusal = REFUSALS[event.code];
     if (refusal) {
       this.end(refusal, words);

@@ -208,7 +208,7 @@ function download(found: PastFrame): Promise<StreamState> {
     downloads.announce(found, ({ bytes, sound }) => {
       const decoder = new FrameDecoder(found);
       if (sound && decoder.decode(bytes).kind === 'applied') resolve(decoder.state);
-      else reject(new RpcError('corrupt', 'the frame was damaged on its way'));
+      else reject(new RpcError('corrupt', 'a frame was damaged in transfer'));
     });
   });
 }
@@ -226,7 +226,7 @@ async function showPast({ call: number, session, tick }: ToWorker & { type: 'pas
   const wish = ++wished;
   const of = feed;
   if (!connection || !of) {
-    fail(number, new RpcError('bad_state', 'no session is open'));
+    fail(number, new RpcError('bad_state', 'no session is open; choose or create one'));
     return;
   }
   const { channels, step_m } = of.joined.stream;
