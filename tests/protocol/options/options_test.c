@@ -118,7 +118,7 @@ static void mistakes_say_what_would_be_right(void **state)
 		{"a b --from 1,2", "example: --from wants three numbers X,Y,Z, not \"1,2\"\n"},
 		{"a b --from 1,2,3,4", "example: --from wants three numbers X,Y,Z, not \"1,2,3,4\"\n"},
 		{"a b --from 1,2,inf", "example: --from wants three numbers X,Y,Z, not \"1,2,inf\"\n"},
-		{"a b --scene", "example: --scene wants a value\n"},
+		{"a b --scene", "example: --scene needs a value\n"},
 		{"a b --cut=1", "example: --cut takes no value\n"},
 		{"a b --secnods 1", "example: there is no option --secnods: did you mean --seconds?\n"},
 		{"a b --annihilate", "example: there is no option --annihilate (--help lists them)\n"},

@@ -7,7 +7,7 @@ import { attempt, button, element } from './dom';
 
 function driverWords(control: Control, tool: string): string {
   const driver = control.model.drivers.get(tool);
-  if (!driver || driver.client === 0) return control.model.mayOperate ? `The ${tool} is free. Use it to become its driver.` : `Nobody uses the ${tool}. Your access allows you to watch only.`;
+  if (!driver || driver.client === 0) return control.model.mayOperate ? `The ${tool} is free. Use it to become its driver.` : `The ${tool} is free. Your access allows you to watch only.`;
   if (driver.client === control.model.hello?.client) return `You use the ${tool}.`;
   return `${nameOf(driver)} uses the ${tool}.`;
 }
