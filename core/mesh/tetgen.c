@@ -49,7 +49,7 @@ static int64_t read_nodes(cau_mesh_builder *builder)
 		cau_scan_fail(scan, CAU_BAD_MESH,
 		              dimension == 4 ? "elements without their points: keep the .node file beside "
 		                               "this one, or put its lines before these"
-		                             : "points in two dimensions");
+		                             : "points in two dimensions are not supported");
 	rest_of_header(scan, rest);
 	cau_scan_check_count(scan, "number of points", count, 8);
 	for (int64_t i = 0; i < count && !scan->status; i++) {
@@ -57,7 +57,7 @@ static int64_t read_nodes(cau_mesh_builder *builder)
 		int64_t number = next_integer(scan, "a point's number", 0, INT32_MAX);
 		first = i == 0 ? number : first;
 		if (first > 1 || number != first + i)
-			cau_scan_fail(scan, CAU_BAD_SYNTAX, "points are numbered from 0 or 1 in order");
+			cau_scan_fail(scan, CAU_BAD_SYNTAX, "points must be numbered in order, from 0 or 1");
 		for (int c = 0; c < 3; c++)
 			position[c] = next_real(scan, "a coordinate");
 		for (int64_t a = 0; a < rest[0] + rest[1] && !scan->status; a++)

@@ -96,7 +96,8 @@ static bool acts_at_once(cau_session *session, const cau_command *command)
 static cau_status check(const cau_session *session, const cau_command *command, cau_error *error)
 {
 	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT)
-		return cau_fail(error, CAU_BAD_VALUE, "command", "%d is no command", command->kind);
+		return cau_fail(error, CAU_BAD_VALUE, "command", "no command has the number %d",
+		                command->kind);
 	return cau_command_check(session, command, error);
 }
 

@@ -170,7 +170,6 @@ bool cau_options_read(const cau_command_line *line, int argument_count, char **a
 			return false;
 	if (r.helped || r.word_count == line->word_count)
 		return true;
-	fprintf(complaints, "%s: the arguments %s are needed (see --help)\n", line->program,
-	        line->words);
+	fprintf(complaints, "%s: needs the arguments %s (see --help)\n", line->program, line->words);
 	return false;
 }

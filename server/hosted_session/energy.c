@@ -54,7 +54,7 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 	                 drive->tool, drive->driver.name, 0, drive->cut_cause);
 	if (watchdog) // who holds a pedal down must not wonder why nothing burns
 		cau_log(CAU_LOG_WARNING, h->identity.id, "energy_cut",
-		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"it stays dark until its driver "
+		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"energy stays off until the driver "
 		        "releases and enables it anew\"",
 		        drive->tool, drive->driver.name, drive->cut_cause);
 }

@@ -94,7 +94,7 @@ static cau_status lock_file(int descriptor, cau_error *error)
 	if (errno == EAGAIN || errno == EACCES)
 		return cau_fail(error, CAU_BAD_STATE, NULL,
 		                "in use by another process under another name (a hard link, or a mount)");
-	return cau_fail(error, CAU_IO, NULL, "cannot lock it: %s", strerrordesc_np(errno));
+	return cau_fail(error, CAU_IO, NULL, "cannot lock the store: %s", strerrordesc_np(errno));
 }
 
 // Called with the mutex held.
@@ -104,7 +104,8 @@ static cau_status hold(struct cau_store_lock *lock, const char *path, cau_error 
 	if (stat(path, &file) || !S_ISREG(file.st_mode))
 		return CAU_OK; // none yet, or nothing that the probe would take
 	if (is_held_here(&file))
-		return cau_fail(error, CAU_BAD_STATE, NULL, "this process has it open under another name");
+		return cau_fail(error, CAU_BAD_STATE, NULL,
+		                "this process has the store open under another name");
 	int descriptor = open(path, O_RDWR | O_CLOEXEC);
 	if (descriptor < 0)
 		return CAU_OK; // not to be written by us: what opens it for writing says why

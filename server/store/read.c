@@ -238,7 +238,7 @@ cau_status cau_store_find_line(struct cau_store_reader *reader, int64_t key, int
 	*count = 0;
 	for (; branch >= 0; branch = parent) {
 		if (*count == MAX_DEPTH)
-			return cau_fail(error, CAU_CORRUPT, NULL, "branches form a circle");
+			return cau_fail(error, CAU_CORRUPT, NULL, "the branches form a cycle");
 		if (*count == capacity) {
 			capacity = capacity ? 2 * capacity : 16;
 			struct cau_store_stretch *grown = realloc(*line, (size_t)capacity * sizeof **line);

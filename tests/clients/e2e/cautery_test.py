@@ -80,7 +80,7 @@ class Backups(programs.Case):
         file, size = re.fullmatch(r"(.*/backups/evening\.db): (\d+) bytes\n", said).groups()
         self.assertEqual(os.path.getsize(file), int(size))
         self.assertEqual(file, os.path.join(self.daemon.folder, "backups", "evening.db"))
-        self.assertIn("something is there", self.cautery("backup", "evening", code=1)[1])
+        self.assertIn("a file of this name exists", self.cautery("backup", "evening", code=1)[1])
         made = self.json("backup")
         self.assertGreater(made["byte_count"], 0)
         self.cautery("create", "fascia", "--name", "later", "--paused")
