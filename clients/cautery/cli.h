@@ -91,7 +91,7 @@ cli_exit cli_fail_file(cli *c); // the same, where a file here is to blame
 // The same, where there was no memory. Here, so that the analyzer knows that it is not CLI_DONE.
 static inline cli_exit cli_fail_memory(cli *c)
 {
-	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory here");
+	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory on this machine");
 	cli_fail(c);
 	return CLI_CONNECTION;
 }
