@@ -48,11 +48,11 @@ class CoreTissue:
     def session(self) -> Session:
         """The session of the present episode."""
         if self._session is None:
-            raise ValueError("there is no session: call begin")
+            raise ValueError("there is no session: call begin first")
         return self._session
 
     def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
-        """Builds the scene, or restores its beginning."""
+        """Builds the scene, or restores the snapshot of its beginning."""
         text = json.dumps(scene, sort_keys=True)
         if text in self._sessions:
             session, beginning = self._sessions[text]
@@ -67,7 +67,7 @@ class CoreTissue:
         self.faces, self.face_layers, self.rest = session.faces, session.face_layers, session.rest
 
     def step(self, commands: Sequence[ToolCommand], ticks: int) -> Seen:
-        """The commands act at the first of the ticks."""
+        """Computes `ticks` steps. The commands take effect at the first tick."""
         now = self.session
         for wanted in commands:
             self._command(now, wanted)
