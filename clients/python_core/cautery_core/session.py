@@ -267,7 +267,7 @@ class Session:
         with self._lock:
             self._core.cau_session_set_threads(self._opened(), threads)
 
-    # ---- what a step made
+    # ---- the present state
     @property
     def tick(self) -> int:
         """Number of steps since the beginning."""
@@ -282,11 +282,11 @@ class Session:
 
     @property
     def positions(self) -> Floats:
-        """(V, 3), m."""
+        """Positions of the vertices, (V, 3), m."""
         return self.read_positions(np.empty((self.vertex_count, 3)))
 
     def read_positions(self, out: Floats) -> Floats:
-        """Writes the positions into an array of the caller's, (V, 3) doubles in C's order, and returns it."""
+        """Writes the positions into the array `out`, (V, 3) doubles in C order, and returns `out`."""
         shape = (self.vertex_count, 3)
         if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != np.float64 \
                 or not out.flags.c_contiguous or not out.flags.writeable:
@@ -297,13 +297,13 @@ class Session:
 
     @property
     def velocities(self) -> Floats:
-        """(V, 3), m/s."""
+        """Velocities of the vertices, (V, 3), m/s."""
         with self._lock:
             return _array(layout.DOUBLES, self._frame().velocity, self.vertex_count, 3)
 
     @property
     def removed(self) -> npt.NDArray[np.bool_]:
-        """(F,): faces that are not drawn, because they are cut away or lie inside."""
+        """Whether each face is not drawn, because it is removed or lies inside, (F,)."""
         with self._lock:
             words = _array(layout.WORDS, self._frame().face_mask, -(-self.face_count // 32))
         bits = np.unpackbits(words.astype("<u4").view(np.uint8), bitorder="little")
@@ -311,17 +311,17 @@ class Session:
 
     @property
     def visible(self) -> npt.NDArray[np.bool_]:
-        """(V,): vertices of drawn faces."""
+        """Whether each vertex belongs to a drawn face, (V,)."""
         with self._lock:
             return _array(layout.BYTES, self._frame().vertex_visible, self.vertex_count).astype(bool)
 
     def scalar(self, name: str) -> npt.NDArray[np.float32]:
-        """(V,) of "exposure", "charring", "stress" (Pa), "temperature" (degC) or "blood" (m).
+        """Returns a value of each vertex, (V,): "exposure", "charring", "stress" (Pa), "temperature" (degC) or "blood" (m).
 
-        From the first call on, steps compute stress, temperature or blood too.
+        From the first call on, steps also compute stress, temperature or blood.
         """
         if name not in layout.SCALARS:
-            raise ValueError(f"{name!r} is none of {', '.join(layout.SCALARS)}")
+            raise ValueError(f"{name!r} is not one of {', '.join(layout.SCALARS)}")
         with self._lock:
             pointer = self._opened()
             if not self._watched & layout.SCALARS[name]:
@@ -347,7 +347,7 @@ class Session:
 
     @property
     def statistics(self) -> dict[str, float]:
-        """Cost and condition of the last step, as `cautery/session.h` has them.
+        """Times, counts and errors of the last step, as in `cautery/session.h`.
 
         `long_inverted` is the sum over all layers.
         """
@@ -359,7 +359,7 @@ class Session:
 
     # ---- snapshots
     def snapshot(self) -> bytes:
-        """The whole state with the queued commands."""
+        """Returns the whole state with the queued commands."""
         count, error = ctypes.c_size_t(), layout.Error()
         with self._lock:
             pointer = self._opened()
@@ -369,9 +369,10 @@ class Session:
             return held.raw[:count.value]
 
     def restore(self, snapshot: bytes) -> bool:
-        """Restores a snapshot of a session of the same scene. False: of another build or instruction set, so not exact.
+        """Restores a snapshot of a session of the same scene. Returns False if another build or instruction set wrote it:
+        later steps may then differ in the last digits.
 
-        Raises CoreError "corrupt", and the session stays as it was, where the bytes are none of this scene's.
+        Raises CoreError "corrupt" if the bytes are not a snapshot of this scene. Then the session does not change.
         """
         exact, error = ctypes.c_bool(), layout.Error()
         bytes_ = bytes(snapshot)
@@ -382,11 +383,11 @@ class Session:
         return bool(exact.value)
 
     def hash(self) -> int:
-        """Hash of the whole state: equal hashes, equal bits."""
+        """Returns the hash of the whole state. Equal hashes mean equal bits."""
         with self._lock:
             return int(self._core.cau_session_hash(self._opened()))
 
     def share(self) -> int:
-        """Shares memory with other sessions of equal tissue that called this; the bytes shared. Results stay the same."""
+        """Shares memory with other sessions of equal tissue that called this. Returns the shared bytes."""
         with self._lock:
             return int(self._core.cau_session_share(self._opened()))
