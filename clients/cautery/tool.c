@@ -315,9 +315,10 @@ const cli_command cli_tool = {
 	.summary = "adds, moves or energizes a tool, by actions one after the other",
 	.help =
 		"Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
-		"jaw J, on [TICKS], off, grasp, release, wait S, configure. Metres, m/s, a unit\n"
-		"quaternion, 0 to 1, seconds; TICKS limits the energy. Actions that need the driver take\n"
-		"the tool first. Energy goes off when the command ends:\n"
+		"jaw J, on [TICKS], off, grasp, release, wait S, configure. X, Y and Z are in m, SPEED\n"
+		"in m/s, S in s. W X Y Z is a unit quaternion. J is 0 (closed) to 1 (open). After TICKS\n"
+		"ticks energy goes off. Actions that need the driver take the tool first. Energy goes\n"
+		"off when the command ends:\n"
 		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n"
 		"With --instrument, `configure` makes the tool that instrument, and `add` adds it:\n"
 		"  cautery tool d1-demo hook configure --instrument monopolar-hook --mode blend\n",

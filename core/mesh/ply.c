@@ -178,8 +178,8 @@ static void read_corners(ply *p, const property *of, int32_t *corner, int32_t *c
 		if (!kept)
 			continue;
 		if (!(number >= 0 && number < vertices))
-			cau_scan_fail(scan, CAU_BAD_MESH, "a face names vertex %g, but there are %d", number,
-			              vertices);
+			cau_scan_fail(scan, CAU_BAD_MESH, "a face names vertex %g, but there are %d vertices",
+			              number, vertices);
 		else
 			corner[i] = (int32_t)number;
 	}

@@ -78,8 +78,9 @@ static void read_element(cau_mesh_builder *builder, cau_shape shape, int64_t nod
 	for (int64_t n = 0; n < nodes; n++) {
 		int64_t number = next_integer(scan, "a point's number", first, INT32_MAX);
 		if (!scan->status && number - first >= builder->mesh.vertex_count)
-			cau_scan_fail(scan, CAU_BAD_MESH, "an element names point %lld, but there are %d",
-			              (long long)number, builder->mesh.vertex_count);
+			cau_scan_fail(scan, CAU_BAD_MESH,
+			              "an element names point %lld, but there are %d points", (long long)number,
+			              builder->mesh.vertex_count);
 		if (n < corners)
 			vertex[n] = (int32_t)(number - first);
 	}

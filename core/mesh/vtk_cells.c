@@ -162,8 +162,8 @@ void cau_vtk_read_cell_types(cau_vtk *vtk)
 	int64_t count = cau_scan_count(scan, "number of cell types", 1);
 	bool fits = vtk->first && count == vtk->waiting_count;
 	if (!fits)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld CELL_TYPES for %lld CELLS", (long long)count,
-		              (long long)vtk->waiting_count);
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the file has %lld CELL_TYPES for %lld CELLS",
+		              (long long)count, (long long)vtk->waiting_count);
 	cau_vtk_start_numbers(scan);
 	for (int64_t i = 0; fits && i < count && !scan->status; i++) {
 		int64_t type = cau_scan_integer(scan, "a type of cell", 4, 0, 255);

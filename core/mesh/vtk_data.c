@@ -124,8 +124,9 @@ static void read_array(cau_vtk *vtk, cau_word name, const cau_vtk_type *type, in
 	if (vtk->scan->status)
 		return;
 	if (components > INT32_MAX || count > INT32_MAX)
-		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX, "an array of %lld items with %lld numbers each",
-		              (long long)count, (long long)components);
+		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX,
+		              "an array is too large: %lld items with %lld numbers each", (long long)count,
+		              (long long)components);
 	else if (cells && components == 1 && cau_vtk_is_region_name(name))
 		read_regions(vtk, type, count);
 	else

@@ -360,8 +360,9 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 	if (!status)
 		status = finite_vector(layer->fibre, 3, CAU_FIBRE_MOST, path, "fibre", error);
 	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
-		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",
-		                  layer->material_count, CAU_MAX_MATERIALS);
+		status =
+			cau_fail(error, CAU_BAD_VALUE, path, "the layer has %d materials; 1 to %d are allowed",
+		             layer->material_count, CAU_MAX_MATERIALS);
 	for (int32_t m = 0; m < layer->material_count && !status; m++) {
 		char inner[PATH_BYTES];
 		if (m)
@@ -411,8 +412,9 @@ static cau_status check_vessel(const cau_scene_def *scene, int32_t index, cau_er
 		                  "a wall of %g m leaves no lumen in a tube of radius %g m", object->wall_m,
 		                  object->radius_m);
 	if (!status && !(object->point_count >= 2 && object->point_count <= CAU_MAX_VESSEL_POINTS))
-		status = cau_fail(error, CAU_BAD_VALUE, path, "%d points; 2 to %d are allowed",
-		                  object->point_count, CAU_MAX_VESSEL_POINTS);
+		status =
+			cau_fail(error, CAU_BAD_VALUE, path, "the vessel has %d points; 2 to %d are allowed",
+		             object->point_count, CAU_MAX_VESSEL_POINTS);
 	bool has_length = false;
 	for (int32_t i = 0; i < object->point_count && !status; i++) {
 		status = finite_vector(object->points_m[i], 3, CAU_PLACE_MOST_M, path, "points", error);

@@ -366,7 +366,7 @@ static cau_status check_tool(const cau_session *session, const snapshot_state *s
 		return corrupt(error, "the name or the pose of a tool is damaged");
 	for (int32_t i = 0; i < index; i++)
 		if (!strcmp(state->tool[i].state.name, tool->state.name))
-			return corrupt(error, "two tools have one name");
+			return corrupt(error, "two tools have the same name");
 	if ((tool->state.grasping && !has_jaws(&tool->state.definition)) ||
 	    (tool->grasp_count && !tool->state.grasping))
 		return corrupt(error, "the grasp of a tool is damaged");

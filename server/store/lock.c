@@ -25,7 +25,7 @@ static cau_status held_by_another(int descriptor, const char *path, cau_error *e
 	ssize_t count = pread(descriptor, holder, sizeof holder - 1, 0);
 	holder[count > 0 ? count : 0] = 0;
 	holder[strspn(holder, "0123456789")] = 0;
-	return cau_fail(error, CAU_BAD_STATE, NULL, "in use by process %s (lock file %s)",
+	return cau_fail(error, CAU_BAD_STATE, NULL, "the store is in use by process %s (lock file %s)",
 	                holder[0] ? holder : "unknown", path);
 }
 
@@ -92,8 +92,9 @@ static cau_status lock_file(int descriptor, cau_error *error)
 	if (fcntl(descriptor, F_OFD_SETLK, &whole) == 0)
 		return CAU_OK;
 	if (errno == EAGAIN || errno == EACCES)
-		return cau_fail(error, CAU_BAD_STATE, NULL,
-		                "in use by another process under another name (a hard link, or a mount)");
+		return cau_fail(
+			error, CAU_BAD_STATE, NULL,
+			"the store is in use by another process under another name (a hard link, or a mount)");
 	return cau_fail(error, CAU_IO, NULL, "cannot lock the store: %s", strerrordesc_np(errno));
 }
 
