@@ -169,7 +169,7 @@ class Silence(programs.Case):
         out, told = running.communicate(timeout=programs.PATIENCE_S)
         self.assertEqual(running.returncode, 5, told)
         self.assertEqual(json.loads(out.splitlines()[-1])["watchdog_cuts"], 1)
-        self.assertIn("the watchdog cut the energy of `hook`", told)
+        self.assertIn("the watchdog turned off the energy of `hook`", told)
 
     def await_event(self, session, kind):
         deadline = time.monotonic() + programs.PATIENCE_S

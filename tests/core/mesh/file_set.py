@@ -261,7 +261,7 @@ def all_obj():
          "size: 0.04 x 0.03 x 0 m, unit_m 1 (metres)", "regions: 0 (2 triangles)")
     case("other-lines.obj", obj(TRIANGLES) + "l 1 2\np 1\nf 1 2\n",
          *surface("OBJ", passed="passed over: 1 lines, 1 points, 1 faces of fewer than 3 corners"))
-    case("missing-vertex.obj", obj([*TRIANGLES, (0, 1, 8)]), "refused: line 21: 9 as a vertex number: there are 8 so far")
+    case("missing-vertex.obj", obj([*TRIANGLES, (0, 1, 8)]), "refused: line 21: 9 as a vertex number: the file has only 8 so far")
 
 
 # ---- STL -------------------------------------------------------------------------------------------

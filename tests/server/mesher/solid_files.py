@@ -68,7 +68,7 @@ def all_surfaces():
     case("strict_open.stl", stl(ball()[40:]), "--strict refuses to fill an open surface: 40 edges on its rim", arguments=("--strict",), code=3)
     case("strict_turned.stl", stl(turned(ball(), 7)), "--strict refuses to turn 218 triangles whose normal points inward", arguments=("--strict",), code=3)
     case("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "nothing is inside this surface", code=3)
-    case("fine.stl", stl(ball()), "--edge: an edge so short makes ", arguments=("--edge", "0.01"), code=3)
+    case("fine.stl", stl(ball()), "--edge: this edge is too short: it gives ", arguments=("--edge", "0.01"), code=3)
     case("coarse.stl", stl(ball()), "--edge: an edge of 500 is longer than the tissue is thick", arguments=("--edge", "500"), code=3)
     case("labels.stl", stl(ball()), "--labels: a surface has no labels", arguments=("--labels", "1"), code=3)
     case("damaged.stl", stl(ball())[:-30], "cautery-mesh: ", code=3)
