@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places of the tissue that a place of the picture (both coordinates from -1 to 1) points at.
+// Finds the point of the tissue under a point of the picture (both coordinates from -1 to 1).
 import { Vector3 } from 'three';
 
 import { acrossGap } from '../model/gap';
@@ -18,7 +18,7 @@ export class Aim {
     return distance === null ? null : origin.addScaledVector(direction, distance);
   }
 
-  /** In the plane that faces the eye, through a point. */
+  /** Returns the point in the plane through `through` that faces the eye. */
   inPlane(x: number, y: number, through: Vector3): Vector3 {
     const { orbit } = this.viewport;
     const { origin, direction } = orbit.ray(x, y);
@@ -26,7 +26,7 @@ export class Aim {
     return origin.addScaledVector(direction, through.clone().sub(origin).dot(z) / direction.dot(z));
   }
 
-  /** The tissue straight under a point, or else its vertex nearest to it; without tissue in the picture the point. */
+  /** Returns the tissue straight under a point, else the nearest vertex; without tissue in the picture, the point itself. */
   under(point: Vector3): Vector3 {
     const { tissue, clip } = this.viewport;
     if (!tissue) return point.clone();
