@@ -9,8 +9,8 @@ import type { Viewport } from '../scene/viewport';
 export class Aim {
   constructor(private readonly viewport: Viewport) {}
 
-  /** The nearest tissue that is drawn there, or where it would be if it had no gap there; null beside it, and where the picture
-   * is dark. */
+  /** Returns the nearest drawn tissue, or the point in a gap where the tissue would be. Returns null beside the tissue, and
+   * where the picture is black. */
   onSurface(x: number, y: number): Vector3 | null {
     if (!this.viewport.sees(x, y)) return null;
     const { origin, direction } = this.viewport.orbit.ray(x, y);

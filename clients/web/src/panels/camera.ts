@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the camera looks from: standard views, and views that somebody has kept under a name.
+// Views of the camera: standard views, and views that the user has saved under a name.
 import type { CameraPose } from '../scene/orbit';
 import type { Viewport } from '../scene/viewport';
 import { cameraText, readCamera } from './address';
@@ -64,7 +64,7 @@ function keptViews(): View[] {
     if (!Array.isArray(kept)) return [];
     return (kept as Partial<View>[]).filter((view): view is View => typeof view.name === 'string' && typeof view.camera === 'string');
   } catch {
-    return []; // somebody else's, or damaged
+    return []; // stored by another program, or damaged
   }
 }
 

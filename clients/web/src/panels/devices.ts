@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pedal, gamepad, 3D mouse: what the page knows of them, and how they are made known to it.
+// The section for pedal, gamepad and 3D mouse: their state, and buttons that connect them.
 import { keyWords, type Pedal } from '../hands/pedal';
 import type { SpaceMouse } from '../hands/space_mouse';
 import { attempt, button, element, problemPlace } from './dom';

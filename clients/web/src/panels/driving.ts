@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who drives the chosen tool, and taking it, asking for it, letting it go.
+// Shows the driver of the chosen tool, with buttons to take the tool, ask for it and release it.
 import type { Control } from '../model/control';
 import { nameOf } from '../model/person';
 import { ask } from './ask';

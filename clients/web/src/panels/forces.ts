@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices held where they are or let go, and outer forces on them.
+// The section that pins and unpins vertices, and applies outer forces to them.
 import type { Control } from '../model/control';
 import type { Selection } from '../wire/messages.gen';
 import { attempt, button, element, field, problemPlace } from './dom';
@@ -38,7 +38,7 @@ function vectorField(label: string, name: string, unit: string, most: number): {
 
 const metres = (millimetres: Vector): Vector => millimetres.map((value) => value / MM) as Vector;
 
-/** A choice of vertices by where they are at rest. */
+/** Fields for a selection of vertices by their rest positions. */
 function selectionFields(control: Control): { fields: HTMLElement[]; read(): Selection; refresh(): void } {
   const { model } = control;
   const kind = element('select', { name: 'selection' }, ...KINDS.map(([value, words]) => element('option', { value }, words)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tool's buttons over the picture: what a press on the tissue does, energy while held, jaws, depth.
+// The buttons of the tool over the picture: the effect of a press, energy, jaws, depth.
 import { depthWords } from '../hands/depth';
 import { LATCH_S } from '../hands/energy';
 import { keyId, pointerId } from '../hands/holds';
@@ -48,11 +48,11 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   const press = (id: string): void => hand.take({ type: 'press', by: 'button', id, place: 'energy', ripe: true });
   energy.addEventListener('pointerdown', (event) => {
     if (event.button !== 0) return;
-    energy.focus(); // a second finger on the picture takes it away again, and that is no loss
+    energy.focus(); // a second finger on the picture moves the focus away again, which does not end the hold
     energy.setPointerCapture(event.pointerId);
     press(pointerId(event.pointerId));
   });
-  energy.addEventListener('mousedown', (event) => event.preventDefault()); // some browsers would take the focus away
+  energy.addEventListener('mousedown', (event) => event.preventDefault()); // some browsers would move the focus away
   energy.addEventListener('keydown', (event) => {
     if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) press(keyId(event.code));
   });
@@ -73,7 +73,7 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   return energy;
 }
 
-/** Energy without a hand on it, with a sign in the picture that says so, and for how long. */
+/** The button Keep on, with a sign in the picture that shows how long energy stays on. */
 function latchButton(control: Control, hand: ToolHand): HTMLButtonElement {
   const { model } = control;
   const sign = byId('latched');

@@ -6,7 +6,7 @@ import { tokenFragment } from '../model/kept_token';
 import type { Model } from '../model/model';
 import { button, element } from './dom';
 
-const EDGE = 2; // modules of white around the code, for cameras
+const EDGE = 2; // white modules around the code, which cameras need
 
 function joinLink(model: Model, token: string | undefined): string {
   const link = new URL(window.location.pathname, window.location.href);

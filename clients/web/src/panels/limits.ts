@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a material has besides its plain numbers: models and limits to choose from, and values for each
+// Inputs for the members of a material that are not single numbers: models and limits to choose, and values for each
 // direction of the material.
 import { LIMITS, MODELS, PROJECTIONS, type Layer } from '../wire/messages.gen';
 import { element, field } from './dom';
@@ -55,12 +55,12 @@ const DIRECTIONS: Readonly<Record<Kind, readonly Directions[]>> = {
   fascia: directions(2), membrane: directions(2), fat: directions(3), links: [],
 };
 
-/** Members of a material of this kind that have inputs here. */
+/** Returns the members of a material of this kind that have inputs in this module. */
 export const limitMembers = (kind: Kind): string[] => [...CHOICES[kind], ...DIRECTIONS[kind]].map(({ name }) => name);
 
 export interface LimitInputs {
   fields: HTMLElement[];
-  /** all members; throws a sentence if one is out of range */
+  /** Returns all members. Throws a sentence if a number is out of range. */
   read(): Record<string, string | number[]>;
   show(values: Values): void;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a trainee needs: instrument, power, camera, and a name for the others. Time is along the foot.
+// The panel for trainees: instrument, power, camera, and the own name. The time bar is at the foot of the page.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
 import { NAME_MAX, nameOf, ownName, setOwnName } from '../model/person';
@@ -14,7 +14,7 @@ import { inviteButton } from './invite';
 import { vesselList } from './vessels';
 
 const POWER_LEAST_C = 60;
-const POWER_MOST_C = 400; // a spark's heat is beyond what tissue shows
+const POWER_MOST_C = 400; // tissue looks the same above this
 const POWER_STEP_C = 10;
 
 function instrument(control: Control, problem: HTMLElement): HTMLElement {
@@ -55,7 +55,7 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   const section = element('section', { aria: { label: 'Power' } }, element('h2', {}, 'Power'), slider, shown);
   model.on('tools', () => {
     const { tool } = model;
-    section.hidden = !tool || !hasHeat(tool.shape) || model.joined?.description.definition.energy === 'tissue'; // there a generator gives power
+    section.hidden = !tool || !hasHeat(tool.shape) || model.joined?.description.definition.energy === 'tissue'; // with a generator, the power is set in its form
     slider.disabled = !hand.driving;
     slider.title = hand.driving ? '' : 'Take the tool first';
     if (held || !tool) return;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking back: where the timeline is held the picture shows that time, read-only. A sign over the picture
-// says so, how far the daemon is in fetching it, and how to come back.
+// Past views: while the timeline is held, the picture shows that time, read-only. A sign over the picture says so. It shows
+// the progress of loading, and has a button to return.
 import type { Control } from '../model/control';
 import { errorWords } from '../model/sentences';
 import { RpcError } from '../wire/connection';
 import { button, byId, element } from './dom';
 
-const SETTLED_MS = 250; // a hand that drags along the timeline asks for where it rests
+const SETTLED_MS = 250; // time without motion of the timeline after which the view is requested
 
 const STAGE_WORDS = { building: 'preparing a second copy of the tissue', reading: 'reading the stored state', restoring: 'restoring the stored state', replaying: 'replaying the commands' };
 
@@ -33,7 +33,7 @@ export function showPast(control: Control): void {
     try {
       await control.lookAt(tick);
     } catch (error) {
-      if (tick !== wanted) return; // given up for another
+      if (tick !== wanted) return; // replaced by another request
       const later = error instanceof RpcError && error.status === 'bad_state';
       say(`${at(tick)} cannot be shown${later ? ' now' : ''}. ${errorWords(error)}`, false);
     }
@@ -58,7 +58,7 @@ export function showPast(control: Control): void {
     if (stage === 'replaying' && tick > from) bar.value = (now - from) / (tick - from);
     else bar.removeAttribute('value');
   });
-  // Who joins again (other channels, a connection that was lost) holds the newest.
+  // After joining again (for other channels, or after a lost connection) the stream shows the newest state.
   model.on('joined', (joined) => {
     if (joined && wanted !== null) look(wanted);
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature, force and energy of each tool over the session, with one cursor in all of them: the time that
-// is pointed at, else the one that the timeline is held at. A press holds the timeline there.
+// Plots temperature, force and energy of each tool over the session. All plots have one cursor: the time under the
+// pointer, else the time at which the timeline is held. A press holds the timeline at that time.
 import type uPlot from 'uplot';
 
 import type { ToolMoment } from '../model/history';
@@ -14,7 +14,7 @@ const PLOTS: readonly (readonly [string, string, (moment: ToolMoment) => number]
   ['Energy taken up by the tissue, J', 'J', ({ energyJ }) => energyJ],
 ];
 const CURSOR = 'session';
-/** More are not told apart in a panel's width. */
+/** Largest number of points; more cannot be distinguished in the width of a panel. */
 const POINTS_MAX = 1500;
 
 export interface SessionPlots {
@@ -40,7 +40,7 @@ export function sessionPlots(model: Model): SessionPlots {
     const words = `${when}${moment ? ': ' : ''}${each.join('; ')}`;
     if (told.value !== words) told.value = words;
   };
-  /** A line where the timeline is held. */
+  /** Draws a line at the time at which the timeline is held. */
   const drawHeld = (plot: uPlot): void => {
     if (model.held === null || !plot.ctx) return;
     const x = plot.valToPos(model.held * step(), 'x', true);

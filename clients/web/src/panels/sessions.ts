@@ -10,7 +10,7 @@ import { snapshotSection } from './snapshots';
 import type { Panel } from './tabs';
 import { uploadForm } from './upload';
 
-const REFRESH_MS = 5000; // of states and counts, while the list is looked at
+const REFRESH_MS = 5000; // refresh of states and counts while the list is visible
 
 function row(control: Control, summary: SessionSummary, problem: HTMLElement): HTMLElement {
   const here = summary.session === control.model.session;
@@ -31,7 +31,7 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
   return element('li', { class: here ? 'session here' : 'session' }, join, element('small', {}, details), destroy);
 }
 
-/** A session of another daemon: the page opens anew, since its connection serves one of them. */
+/** A session of another daemon. The link loads the page again, because a connection reaches only one daemon. */
 function rowElsewhere(summary: SessionSummary): HTMLElement {
   const details = `${summary.scene}, ${summary.state}, ${summary.time_s.toFixed(1)} s, ${summary.subscriber_count} watching`;
   const link = element('a', { class: 'session-name', title: `Watch ${summary.session}, on another server` }, summary.session);
@@ -39,7 +39,7 @@ function rowElsewhere(summary: SessionSummary): HTMLElement {
   return element('li', { class: 'session' }, link, element('small', {}, details));
 }
 
-/** Scene members that are worth choosing before a session is made. */
+/** The form for a new session, with the most useful members of the scene. */
 function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const { model, link } = control;
   const scene = element('select', { name: 'scene' });
@@ -49,7 +49,7 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
   const seed = element('input', { type: 'number', name: 'seed', min: '0', step: '1' });
   const about = element('p', { class: 'about' });
-  const unread = problemPlace(); // its own: the page also loads a scene unasked, and must not hide another problem
+  const unread = problemPlace(); // separate, because the page also loads scenes by itself, which must not hide another problem
   const submit = element('button', { type: 'submit' }, 'Create');
   let definition: Scene | null = null;
   const load = async (): Promise<void> => {
@@ -97,7 +97,7 @@ interface CreateFields {
   seed: HTMLInputElement;
 }
 
-/** A scene by name if nothing in it was changed, else whole. */
+/** Returns the request: the name of the scene if no member was changed, else the whole scene. */
 function request(definition: Scene | null, fields: CreateFields): { scene?: string; definition?: Scene; name?: string } {
   const name = fields.name.value === '' ? {} : { name: fields.name.value };
   if (!definition) return { scene: fields.scene.value, ...name };
@@ -139,7 +139,7 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
   const { model } = control;
   const problem = problemPlace();
   const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
-  const stale = problemPlace(); // its own: the page refreshes the list unasked
+  const stale = problemPlace(); // separate, because the page refreshes the list by itself
   const about = element('p', { class: 'about' });
   const show = (): void => {
     list.replaceChildren(

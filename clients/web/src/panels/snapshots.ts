@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Snapshots: the state under a name, and back to it.
+// The section that stores the state under a name and restores it.
 import type { Control } from '../model/control';
 import { attempt, button, element, field, problemPlace } from './dom';
 import { nameInput } from './names';
 
-/** Names in the timeline's words: `name=half-way branch=1 ...`. */
+/** Returns the names in the events of the timeline, as in `name=half-way branch=1 ...`. */
 function namesIn(control: Control): string[] {
   const events = control.model.timeline?.events ?? [];
   return events.filter(({ kind }) => kind === 'snapshot').flatMap(({ detail }) => /^name=(\S+)/.exec(detail ?? '')?.[1] ?? []);
@@ -17,7 +17,7 @@ export function snapshotSection(control: Control): HTMLElement {
   const name = nameInput({ name: 'snapshot', maxLength: 48, placeholder: 'automatic' });
   const known = element('datalist', { id: 'snapshots' });
   name.setAttribute('list', known.id);
-  /** those of other branches are not in the timeline, but can be gone back to */
+  /** names of snapshots; those of other branches are not in the timeline, but can be restored */
   let taken: string[] = [];
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 0)).toFixed(2)} s`;
   const showKnown = (): void => {

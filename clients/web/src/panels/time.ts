@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time: pause, step, speed, and the timeline with its events, along which a session goes back.
+// The time bar: pause, step, speed, and the timeline with its events, from which a session can be rewound.
 import type { Control } from '../model/control';
 import { EVENT_WORDS, momentsOf } from '../model/moments';
 import type { TimelineEvent } from '../wire/messages.gen';
@@ -9,7 +9,7 @@ import { attempt, button, byId, element, problemPlace } from './dom';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 const REFRESH_MS = 2000;
-/** A running session's time is written this often: each change has the browser lay the page out anew. */
+/** Interval in which the time of a running session is written. Each change makes the browser compute the layout again. */
 const WRITE_MS = 100;
 
 const research = (): boolean => document.body.dataset['mode'] === 'research';
@@ -97,7 +97,7 @@ export function timeBar(control: Control, shared: number | null): void {
   const enable = (): void => {
     const usable = model.mayOperate && model.joined !== null;
     for (const control_ of [pause, reset, speed, rewind]) control_.disabled = !usable;
-    slider.disabled = model.joined === null; // whoever may look may look back
+    slider.disabled = model.joined === null; // every user who may watch may also view the past
     step.disabled = !usable || model.frame?.paused !== true;
   };
   model.on('timeline', () => {
@@ -110,8 +110,8 @@ export function timeBar(control: Control, shared: number | null): void {
     enable();
     if (joined) void attempt(problem, () => control.loadTimeline());
   });
-  // A link's moment is shown, not gone to: going back moves everybody in the session. Whichever comes last,
-  // the timeline or the first frame, says whether it is there.
+  // A shared moment is only viewed, because a rewind would affect everyone in the session. When both the timeline and the
+  // first frame are known, it is clear whether the moment can be reached.
   const showShared = (): void => {
     const { timeline, frame } = model;
     if (shared === null || !timeline || !frame) return;

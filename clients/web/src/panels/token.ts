@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks for the access token, says what was wrong with it where one types, and can be opened again: whoever
-// closes it is not locked out. Password managers find a name and a password.
+// The dialog for the access token. It shows beside the input why a token was not accepted. The user can open the dialog
+// again after closing it. Password managers find a name and a password in it.
 import type { Model } from '../model/model';
 import { button, element, field, problemPlace } from './dom';
 
-/** Returns what opens the dialog. */
+/** Returns a function that opens the dialog. */
 export function askForToken(model: Model, connect: (token: string) => void): () => void {
   const token = element('input', { type: 'password', name: 'password', id: 'token-input', autocomplete: 'current-password', required: true });
   const user = element('input', { type: 'text', name: 'username', value: 'cautery', autocomplete: 'username', readOnly: true, class: 'unseen', tabIndex: -1, aria: { hidden: 'true' } });

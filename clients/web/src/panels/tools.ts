@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
+// The panel of tools: the tool in hand, its driver, its shape and sizes, and new tools.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
 import { hasHeat, hasJaws, type Shape } from '../model/tool_parts';

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over a picture that is not what it seems: nothing to draw with, nobody to talk to, a session that is being
-// made or brought elsewhere in time, or a daemon that has fallen silent. Words, and that something goes on.
+// A veil over a picture that is not up to date: without WebGL, without a connection, while a session is built, rewound or
+// restored, or if the daemon sends nothing. It shows a text, and a progress bar while something is under way.
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { button, byId, element } from './dom';
 
 const LOOK_MS = 250;
-const SILENT_MS = 2000; // of a session that runs
-const QUICK_MS = 300; // what is done sooner is not worth words
+const SILENT_MS = 2000; // without frames of a running session
+const QUICK_MS = 300; // shorter work is not shown
 
 interface Veil {
   words: string;
-  /** something is under way */
+  /** whether something is under way */
   busy: boolean;
   action?: { words: string; press: () => void };
 }
@@ -50,7 +50,7 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
   place.append(element('div', { class: 'veil-card' }, words, bar, action));
   let framedAt = performance.now();
   let joinedAt = framedAt;
-  let everShown = false; // an empty picture is never bare
+  let everShown = false; // an empty picture always has a veil
   // A hidden page draws nothing.
   const shows = (session: string): boolean => viewport.shown.session === session || document.hidden;
   let busySince: number | null = null;

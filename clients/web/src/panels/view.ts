@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the picture is drawn: layers, wireframe, scalars as colour with a legend, force, light or dark.
+// The panel with options of the picture: layers, wireframe, scalars as colours with a legend, force, theme.
 import type { Control } from '../model/control';
 import { colourAt, MAP_OF, type ColourMap, type Scalar } from '../model/colour_maps';
 import type { ViewOptions, Viewport } from '../scene/viewport';
@@ -33,7 +33,7 @@ function paint(canvas: HTMLCanvasElement, map: ColourMap): void {
   }
 }
 
-/** What the ends of the colours stand for. */
+/** Returns the values at both ends of the colours. */
 function endsOf(scalar: Scalar, frame: Frame | null): readonly [string, string] {
   if (scalar === 'stress') return ['0', `${short(frame?.stressScalePa ?? 0, 2)} Pa`];
   if (scalar !== 'temperature') return ['0', '1'];
