@@ -24,7 +24,7 @@ const AGAIN: Readonly<Record<Held, string>> = {
   latch: 'Press Keep on again to continue.',
 };
 const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
-  watchdog: 'this page sent no heartbeat in time. A busy computer can cause this',
+  watchdog: 'the server did not hear from this page in time. A busy computer can cause this',
   taken_over: 'another user took the tool over',
   restored: 'the session was rewound or restarted',
   never_enabled: 'the simulation turned energy off before it came on',
@@ -185,7 +185,7 @@ export class Energy {
     if (!this.alive || this.tool === null || this.model.link.state !== 'online') return;
     const driver = this.model.drivers.get(this.tool);
     if (!driver) this.lose('the tool was removed from the session');
-    else if (driver.client === 0) this.lose('the tool has no driver any more');
+    else if (driver.client === 0) this.lose('the tool no longer has a driver');
     else if (!this.model.drives(this.tool)) this.lose(`${nameOf(driver)} took the tool over`);
   }
 

@@ -12,7 +12,7 @@ export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   sealed: 'vessel sealed',
   energy_on: 'energy on',
   energy_off: 'energy off',
-  watchdog: 'energy off: no heartbeat',
+  watchdog: 'energy off: no signal from the driver',
   fault: 'simulation error',
   snapshot: 'snapshot',
   rewind: 'rewind',

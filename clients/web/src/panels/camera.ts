@@ -43,7 +43,7 @@ export function cameraButtons(viewport: Viewport): HTMLElement {
     { class: 'buttons' },
     to('First view', () => orbit.reset()),
     to('From above', () => orbit.look(FROM_ABOVE)),
-    to('Along the tissue', () => orbit.look(ALONG)),
+    to('Low, along the tissue', () => orbit.look(ALONG)),
     to('From the left', () => orbit.look(ASIDE, -QUARTER)),
     to('From the right', () => orbit.look(ASIDE, QUARTER)),
     to('Nearer', () => orbit.zoom(NEARER)),

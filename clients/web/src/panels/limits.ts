@@ -76,7 +76,7 @@ export function limitInputs(kind: Kind): LimitInputs {
         type: 'number', name: `${vector.name}-${entry.replaceAll(/[ /]+/g, '-')}`, step: 'any', min: String(vector.least), max: String(vector.most),
       }),
     );
-    const title = vector.name === 'shrink' ? 'squared stretch to which the rims of cuts shrink; 1: no shrinking' : vector.name === 'target' ? 'target of F^T F, a squared stretch' : '';
+    const title = vector.name === 'shrink' ? 'squared stretch to which the rims of cuts shrink; 1: no shrinking' : vector.name === 'target' ? 'squared stretch to which the limit pulls the tissue (target of F^T F)' : '';
     return { vector, inputs, labels: inputs.map((input, i) => field(`${vector.words} ${vector.entries[i]}`, input, '', title)) };
   });
   const limit = choices.find(({ choice }) => choice.name === 'limit');

@@ -7,7 +7,7 @@ export type Mode = 'operate' | 'research';
 
 const MODES: readonly (readonly [Mode, string, string])[] = [
   ['operate', 'Operate', 'Instrument, power, time and camera'],
-  ['research', 'Research', 'All of Operate, and sessions, tools, materials, display and plots'],
+  ['research', 'Research', 'All of Operate, and sessions, tools, materials, view and plots'],
 ];
 const KEPT = 'mode';
 

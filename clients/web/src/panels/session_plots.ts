@@ -26,7 +26,7 @@ export interface SessionPlots {
 export function sessionPlots(model: Model): SessionPlots {
   const figures = PLOTS.map(([title]) => element('div', { class: 'plot', aria: { role: 'img', label: `${title}, over the session` } }, element('p', { class: 'of' }, title)));
   const told = element('output', { class: 'state', id: 'at-cursor' });
-  const place = element('section', { class: 'form', aria: { label: 'Over the session' } }, element('h2', {}, 'Over the session'), told, ...figures);
+  const place = element('section', { class: 'form', aria: { label: 'Tools over the session' } }, element('h2', {}, 'Tools over the session'), told, ...figures);
   let plots: uPlot[] = [];
   let tools = '';
   let pointed: number | null = null;

@@ -118,7 +118,7 @@ function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
   const name = nameInput({ name: 'fork', maxLength: 40, placeholder: 'name' });
   name.setAttribute('aria-label', 'Name of the new session');
-  const fork = button('Fork this session', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork', title: 'Create a new session from the present state of this one' });
+  const fork = button('Fork this session into a new one', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork', title: 'Create a new session from the present state of this one' });
   const exported = (format: 'vtu' | 'obj'): HTMLButtonElement => {
     const press = button(`Save as .${format}`, () => void attempt(problem, () => control.call('session.export', { format }), press));
     return press;

@@ -41,7 +41,7 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
     if (link.state !== 'refused' || link.status !== 'unauthorized') return;
     open();
     if (!given) return;
-    say('This token was not accepted. Check that it is complete and not expired.');
+    say('This token was not accepted. Check that the token is complete and has not expired.');
     token.select();
   });
   const say = (words: string): void => {

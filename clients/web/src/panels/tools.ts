@@ -20,7 +20,7 @@ const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
 const OFF_WORDS = {
   never_enabled: 'energy off',
   commanded: 'energy off',
-  watchdog: 'energy off: no heartbeat from the driver',
+  watchdog: 'energy off: no signal from the driver',
   restored: 'energy off: the session was rewound',
   taken_over: 'energy off: another user took the tool',
 } as const;

@@ -55,7 +55,7 @@ function wishFields(): WishFields {
     fields: [
       field('Tissue', kind, '', 'decided from the file: fat if the file has tetrahedra or a closed surface, else fascia'),
       field('One unit is', size, 'mm', 'length of one unit of the file: 1 for millimetres, 1000 for metres. Empty: guessed from the size of the mesh.'),
-      field('Edge', edge, 'mm', 'edge length of the tetrahedra with which a surface or a segmentation is filled'),
+      field('Edge length', edge, 'mm', 'edge length of the tetrahedra that fill a surface or a segmentation'),
       field('Labels', labels, '', 'labels of the segmentation to use, for example 1,3'),
       field('Pinned', pin, '', 'automatic: the bottom, or the rim of a sheet. Add pins with Pin in the picture.'),
       check('Strict: refuse a mesh with errors instead of repairing it', 'strict', (on) => (strict = on)),

@@ -13,13 +13,13 @@ import { videoButton } from './video';
 const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
   ['tissue', 'colour of the tissue'],
   ['exposure', 'heat exposure'],
-  ['charring', 'char'],
+  ['charring', 'charring'],
   ['stress', 'stress'],
   ['temperature', 'temperature'],
 ];
 const TITLES: Readonly<Record<Scalar, string>> = {
   exposure: 'Heat exposure (1: tissue parts)',
-  charring: 'Char: share of edges that heat has parted',
+  charring: 'Charring: share of edges that heat has parted',
   stress: 'Von Mises stress',
   temperature: 'Temperature',
 };
