@@ -226,7 +226,7 @@ const cli_command cli_events = {
 	.arguments = "[SESSION]",
 	.summary = "lists cuts and other events of a session",
 	.help = "With --json and --follow, the first line is the whole timeline. Each later line is "
-            "one event.\n",
+			"one event.\n",
 	.session_optional = true,
 	.options = {{"from", "TICK", "first tick (default 0)"},
                 {"count", "N", "largest number of events, newest first (default 1024)"},

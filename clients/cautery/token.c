@@ -126,7 +126,7 @@ const cli_command cli_token = {
 	.help =
 		"The token is written into a new file, for the option --token-file of its user. The line\n"
 		"holds only its hash. The daemon reads its file of tokens again when it reloads "
-        "(SIGHUP).\n",
+		"(SIGHUP).\n",
 	.least = 1,
 	.most = 1,
 	.options =

@@ -293,7 +293,7 @@ const cli_command cli_watch = {
 		"shows the tick, rate, moved vertices, removed faces and parted edges of a live session",
 	.help = "On a terminal it updates one line; elsewhere it prints lines. Ctrl-C ends it.\n"
 			"moved: vertices in the newest frame; gone: faces that were drawn at the start and are "
-            "not now;\n"
+			"not now;\n"
 			"parted, removed: since creation.\n",
 	.session_optional = true,
 	.options = {{"seconds", "T", "time to watch, s (default: until Ctrl-C)"},

@@ -405,8 +405,7 @@ static void write_servers(cau_json_writer *writer)
 	cau_json_open(writer, "local", '{');
 	cau_json_string(writer, "host", "127.0.0.1:8740");
 	cau_json_string(writer, "protocol", "ws");
-	cau_json_string(writer, "description",
-	                "a daemon on this machine, with default settings");
+	cau_json_string(writer, "description", "a daemon on this machine, with default settings");
 	cau_json_close(writer);
 	cau_json_open(writer, "secured", '{');
 	cau_json_string(writer, "host", "{host}");

@@ -188,7 +188,8 @@ static void add_region(model *to, int kind, char name[NAME_BYTES])
 	char word[24];
 	pascal(word, sizeof word, layer_words[kind]);
 	snprintf(name, NAME_BYTES, "%sRegion", word);
-	type *region = add_type(to, name, "members of a region's material that differ from the layer's material");
+	type *region =
+		add_type(to, name, "members of a region's material that differ from the layer's material");
 	region->strict = true;
 	add_record(region, &cau_region_record, NULL, -1);
 	add_material(region, kind);
@@ -236,7 +237,8 @@ static void add_scene_parts(model *to)
 	type *vessel = add_type(to, "Vessel", "a blood vessel in a layer of fat");
 	vessel->strict = true;
 	add_record(vessel, &cau_vessel_record, &vessel_defaults, -1);
-	add_objects(vessel, "points", "VesselPoint", CAU_MAX_VESSEL_POINTS, "points of the middle line of the vessel");
+	add_objects(vessel, "points", "VesselPoint", CAU_MAX_VESSEL_POINTS,
+	            "points of the middle line of the vessel");
 	type *pull = add_type(to, "Pull", "a scripted pull, for measurements");
 	pull->strict = true;
 	add_record(pull, &cau_pull_record, &scene_defaults.pull, -1);
@@ -273,8 +275,9 @@ static void add_scene_types(model *to)
 
 static void add_envelope(type *to)
 {
-	property *session = add_property(to, "session", PROPERTY_NAME,
-	                                 "id of the session (default: the session in the connection's URL)");
+	property *session =
+		add_property(to, "session", PROPERTY_NAME,
+	                 "id of the session (default: the session in the connection's URL)");
 	session->required = false;
 	property *sequence =
 		add_property(to, "client_sequence", PROPERTY_INTEGER, "see session_change");

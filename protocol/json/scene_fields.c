@@ -40,7 +40,7 @@ static const cau_field scene_fields[] = {
 	{CHOICE(
 		energy, energy_choices,
 		"model of an energized tool: with `paper` the hot part has a set temperature; with "
-        "`tissue` "
+		"`tissue` "
 		"a generator heats tissue, boils its water and parts elements (needs parting `elements`)")},
 	{OTHER(seed, COUNT, "seed of all random numbers")},
 	{VECTOR(gravity_m_s2, 3, -CAU_GRAVITY_MOST_M_S2, CAU_GRAVITY_MOST_M_S2, "m/s^2", "gravity")},
