@@ -118,7 +118,8 @@ static cli_exit run_fork(cli *c)
 
 const cli_command cli_rewind = {.name = "rewind",
                                 .arguments = "[SESSION] TICK",
-                                .summary = "rewinds to a tick, on a new branch; energy goes off",
+                                .summary =
+                                    "rewinds a session to a tick, on a new branch; energy goes off",
                                 .help = "`cautery events` shows the earliest tick.\n",
                                 .least = 1,
                                 .most = 1,

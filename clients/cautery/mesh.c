@@ -40,7 +40,7 @@ static cli_exit run(cli *c)
 	words[count] = (char *)c->arguments[0];
 	fflush(c->out);
 	start(words);
-	cli_complain(c, "cautery-mesh, which is in the daemon's package, does not start: %s",
+	cli_complain(c, "cautery-mesh cannot be started (install the daemon's package): %s",
 	             strerror(errno));
 	return CLI_FILE;
 }

@@ -83,10 +83,11 @@ static cau_status read_dimension(header *of, const char *text)
 	of->dimension = (int)strtol(text, NULL, 10);
 	if (of->dimension == 3)
 		return CAU_OK;
-	return fail(of,
-	            "this volume has %.8s axes, and 3 are read: of segments that overlap, save one "
-	            "labelmap (in 3D Slicer: export to a labelmap node)",
-	            text);
+	return fail(
+		of,
+		"this volume has %.8s axes, but only 3 are supported: save overlapping segments as one "
+		"labelmap (in 3D Slicer: export to a labelmap node)",
+		text);
 }
 
 static cau_status read_sizes(header *of, const char *text)

@@ -105,7 +105,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(ephemeral_bytes, 1073741824, 1048576, 1099511627776,                                   \
 	        "largest memory for the history of all ephemeral sessions, bytes")                     \
 	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints at shutdown")                        \
-	SWITCH(dds, false, "open the DDS transport")                                                   \
+	SWITCH(dds, false, "also serve clients over DDS")                                              \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \
 	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
 	TEXT(dds_security, "", "folder of this daemon's DDS identity; empty: no DDS Security")         \

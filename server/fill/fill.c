@@ -192,13 +192,15 @@ static cau_status start(process *of, const cau_fill_wish *wish, cau_error *error
 		if (pipes[1] >= 0)
 			close(pipes[1]);
 		of->said = pipes[0];
-		return cau_fail(error, CAU_IO, "", "cautery-mesh gets no files: %s", strerror(reason));
+		return cau_fail(error, CAU_IO, "", "the files for cautery-mesh cannot be opened: %s",
+		                strerror(reason));
 	}
 	of->said = pipes[0];
 	int failed = spawn(of, &line, pipes[1]);
 	close(pipes[1]);
-	return failed ? cau_fail(error, CAU_IO, "", "cautery-mesh does not start: %s", strerror(failed))
-	              : CAU_OK;
+	return failed
+	           ? cau_fail(error, CAU_IO, "", "cautery-mesh cannot be started: %s", strerror(failed))
+	           : CAU_OK;
 }
 
 // Reads output of the process from its pipe. False: the process has ended.

@@ -31,10 +31,9 @@ static const cau_option rows[] = {
 	{"vtu-every", "N", CAU_OPTION_WHOLE, AT(vtu_every), 1, 1e9,
      .meaning = "ticks between the files of --vtu (default 10)"},
 	{"csv", "FILE", CAU_OPTION_TEXT, AT(csv), .meaning = "write the statistics of every tick"},
-	{"json", NULL, CAU_OPTION_FLAG, AT(json),
-     .meaning = "one JSON object as the last line of output"},
-	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
-	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "version of this program"},
+	{"json", NULL, CAU_OPTION_FLAG, AT(json), .meaning = "print one JSON object as the last line"},
+	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "print this text"},
+	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "print the version of this program"},
 };
 
 static const cau_command_line line = {

@@ -52,7 +52,7 @@ static cau_status check_header(const char *path, cau_error *error)
 	unsigned char header[HEADER_BYTES];
 	struct stat info;
 	if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) // opening a FIFO waits for a writer
-		return cau_fail(error, CAU_IO, NULL, "it is no regular file");
+		return cau_fail(error, CAU_IO, NULL, "the store is not a regular file");
 	int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 	if (descriptor < 0)
 		return cau_fail(error, CAU_IO, NULL, "cannot read the store: %s", strerrordesc_np(errno));
@@ -102,8 +102,9 @@ static cau_status check_label(sqlite3 *database, const char *label, cau_error *e
 	if (code == SQLITE_ROW) {
 		const char *stored = (const char *)sqlite3_column_text(statement, 0);
 		if (stored && strcmp(stored, label) != 0)
-			status = cau_fail(error, CAU_BAD_STATE, NULL,
-			                  "belongs to the daemon labelled '%s', not '%s'", stored, label);
+			status =
+				cau_fail(error, CAU_BAD_STATE, NULL,
+			             "the store belongs to the daemon labelled '%s', not '%s'", stored, label);
 	} else if (code != SQLITE_DONE) {
 		status = cau_store_fault(database, code, "reading the label", error);
 	}
@@ -211,7 +212,7 @@ cau_status cau_store_probe(const char *path, const char *label, enum cau_store_f
 		return CAU_OK;
 	}
 	if (!S_ISREG(file.st_mode))
-		return cau_fail(error, CAU_UNSUPPORTED, NULL, "not a regular file");
+		return cau_fail(error, CAU_UNSUPPORTED, NULL, "the store is not a regular file");
 	cau_status status = check_header(path, error);
 	if (!status && beside_bytes(path, "-journal") > 0)
 		status = cau_fail(error, CAU_CORRUPT, NULL,

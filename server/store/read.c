@@ -440,7 +440,7 @@ static cau_status look_for_forgotten(struct cau_store_reader *reader, const char
 	}
 	sqlite3_finalize(statement);
 	if (status == CAU_NOT_FOUND)
-		return cau_fail(error, status, "sequence", "no answer to request %llu of '%s'",
+		return cau_fail(error, status, "sequence", "there is no answer to request %llu of '%s'",
 		                (unsigned long long)sequence, client);
 	if (status)
 		return status;

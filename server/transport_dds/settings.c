@@ -63,7 +63,7 @@ static cau_status order_setting(const cau_dds_hand *hand, const cau_tool_def *to
 	order->as.command.as.definition = *tool;
 	return cau_dds_submit(hand, order)
 	           ? CAU_OK
-	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders now");
+	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders at the moment");
 }
 
 // Finds the tool that a sample names, as it is, and the writer's hand that drives it.

@@ -169,7 +169,7 @@ def all_segmentations():
     case("image.nrrd", nrrd(bytes(k % 200 for k in range(SIDE ** 3))), "more than 63 different labels: choose some of them (labels); an image", **complaint)
     case("negative.nrrd", nrrd(struct.pack("<27000h", *(v - 1000 for v in VOXELS)), kind="short"), "a voxel holds -1000", **complaint)
     case("empty.nrrd", nrrd(bytes(SIDE ** 3)), "all voxels of this volume are 0", **complaint)
-    case("layers.nrrd", nrrd(small, dimension="4"), "this volume has 4 axes, and 3 are read", **complaint)
+    case("layers.nrrd", nrrd(small, dimension="4"), "this volume has 4 axes, but only 3 are supported", **complaint)
     case("detached.nrrd", nrrd(b"", extra="data file: voxels.raw\n"), "the voxels are in a separate file", **complaint)
     case("bzip2.nrrd", nrrd(small, encoding="bzip2"), "the encoding 'bzip2' is not read: save the file as raw or gzip", **complaint)
     case("flat.nrrd", nrrd(small, directions="(1,0,0) (1,0,0) (0,0,1)"), "the axes of this volume do not span a space", **complaint)
