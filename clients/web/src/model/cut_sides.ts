@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds where a sheet was cut: sides between a drawn face and a removed face. The border of the sheet does not count.
 
-/** Vertices of faces (x 3). */
+/** Returns the vertices of faces (x 3). */
 export function cornersOf(faces: Int32Array, of: Int32Array): Int32Array {
   const corners = new Int32Array(3 * of.length);
   of.forEach((face, i) => corners.set(faces.subarray(3 * face, 3 * face + 3), 3 * i));
