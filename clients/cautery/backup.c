@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// backup: a copy of the daemon's store, on the daemon's disk.
+// The command `backup`: copies the daemon's store to the daemon's own disk.
 #include <string.h>
 
 #include "cautery/commands.h"

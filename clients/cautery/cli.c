@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The connection of a command, what it was given, and how commands end.
+// What commands share: results and exit codes, options, and the connection to a daemon.
 #include "cautery/cli.h"
 
 #include <signal.h>
@@ -13,7 +13,7 @@
 
 enum { SESSIONS_MAX = 4096 };
 
-// ---- ends --------------------------------------------------------------------------------------
+// ---- complaints and exit codes -----------------------------------------------------------------
 void cli_complain(const cli *c, const char *format, ...)
 {
 	va_list arguments;
@@ -129,7 +129,7 @@ double cli_number(const cli *c, const char *option, double least, double most, d
 // ---- connection --------------------------------------------------------------------------------
 typedef struct cli_daemon {
 	char url[CLI_CONTEXT_TEXT_BYTES];
-	char token[CAU_CLIENT_TOKEN_BYTES]; // "": none
+	char token[CAU_CLIENT_TOKEN_BYTES]; // "" if there is none
 } cli_daemon;
 
 static cli_exit read_token(cli *c, const char *file, cli_daemon *daemon)
@@ -137,7 +137,7 @@ static cli_exit read_token(cli *c, const char *file, cli_daemon *daemon)
 	return cau_client_read_token(file, daemon->token, &c->error) ? cli_fail_file(c) : CLI_DONE;
 }
 
-// The session that is meant where none is named: the only one.
+// Chooses the daemon's only session, for a command line that names none.
 static cli_exit only_session(cli *c)
 {
 	cli_exit code = CLI_DONE;
@@ -164,7 +164,7 @@ static cli_exit choose_session(cli *c)
 {
 	if (!c->command->session_optional)
 		return CLI_DONE;
-	// Named if there is one argument more than the command must have.
+	// An argument beyond the command's minimum is the session.
 	if (c->argument_count <= c->command->least)
 		return only_session(c);
 	snprintf(c->session, sizeof c->session, "%s", c->arguments[0]);
@@ -173,8 +173,8 @@ static cli_exit choose_session(cli *c)
 	return CLI_DONE;
 }
 
-// What is nearer to the command counts: its options, the environment, the current context.
-// `context` is empty unless it is the one that is meant.
+// Returns the URL of the daemon. --url comes first, then --context, then CAUTERYD_URL, then the
+// current context. The caller leaves `context` empty unless it applies.
 static const char *choose_url(const cli *c, const cli_context *context)
 {
 	const char *url = getenv("CAUTERYD_URL");
@@ -189,7 +189,7 @@ static cli_exit find_daemon(cli *c, cli_daemon *daemon)
 {
 	cli_context context = {0};
 	const char *token = getenv("CAUTERYD_TOKEN");
-	// a context's token is for its own daemon
+	// A context's token is only for the context's own daemon.
 	bool told = c->url || (getenv("CAUTERYD_URL") && !c->context);
 	if ((c->context || !told) && cli_context_find(c->context, &context, &c->error))
 		return cli_fail_file(c);
@@ -201,7 +201,7 @@ static cli_exit find_daemon(cli *c, cli_daemon *daemon)
 	return CLI_DONE;
 }
 
-// The session that the command line names, or NULL.
+// Returns the session that the command line names, or NULL.
 static const char *named_session(const cli *c)
 {
 	const cli_command *command = c->command;
@@ -218,10 +218,12 @@ cli_exit cli_connect_to(cli *c, const char *session, const char *label)
 	cli_exit found = find_daemon(c, &daemon);
 	if (found)
 		return found;
-	// a proxy in front of several daemons goes by it; what is no name the daemon refuses
+	// A proxy in front of several daemons routes by the session. The daemon refuses an invalid
+	// name.
 	c->def.session = session && cau_name_is_valid(session) ? session : NULL;
 	c->def.label = label;
-	// commands connect elsewhere by the same definition, when this function is over
+	// Commands reuse this definition for other connections after this function has returned. So the
+	// strings must outlive it.
 	memcpy(c->daemon_url, daemon.url, sizeof daemon.url);
 	memcpy(c->token, daemon.token, sizeof daemon.token);
 	c->def.url = c->daemon_url;
@@ -271,7 +273,7 @@ void cli_finish(cli *c)
 // ---- results -----------------------------------------------------------------------------------
 void cli_print_result(const cli *c, cau_method method, const void *result)
 {
-	// The tables write whole answers; what stands in their member "result" is printed.
+	// The message tables write a whole JSON-RPC answer. Only its member "result" is printed.
 	static const char member[] = "\"result\":";
 	cau_rpc_id id = {.kind = CAU_RPC_ID_NONE};
 	cau_rpc_buffer out = {NULL, 0, 0};

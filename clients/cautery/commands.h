@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every command of `cautery`, each in the file that is named beside it.
+// All commands of `cautery`. The comment after each command names its file.
 #pragma once
 
 #include "cautery/cli.h"
 
-extern const cli_command *const cli_commands[]; // ends with NULL
+extern const cli_command *const cli_commands[]; // NULL marks the end
 
 extern const cli_command cli_ls, cli_scenes, cli_instruments;        // list.c
 extern const cli_command cli_create;                                 // create.c

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// completion: scripts for shells. What a word may become is told by the program itself (`cautery
-// complete`), so that scripts do not age: commands and options by the tables, sessions and scenes
-// by the daemon.
+// The command `completion`: prints completion scripts for shells. The scripts call `cautery
+// complete`, which prints the possible next words, so a script stays correct when commands change.
+// Commands and options come from the command tables, sessions and scenes from the daemon.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 enum { SESSIONS_MAX = 4096, SCENES_MAX = 256 };
 
-#define PATIENCE_S 1.0 // of somebody who pressed the tabulator
+#define PATIENCE_S 1.0 // how long the shell waits for the daemon after the Tab key
 
 static void offer(const cli *c, const char *word, const char *begin)
 {
@@ -17,7 +17,7 @@ static void offer(const cli *c, const char *word, const char *begin)
 		fprintf(c->out, "%s\n", word);
 }
 
-// ---- what the daemon has ------------------------------------------------------------------------
+// ---- sessions and scenes of the daemon ----------------------------------------------------------
 static void offer_sessions(cli *c, const char *begin)
 {
 	cau_wire_session_list list = {
@@ -40,7 +40,8 @@ static void offer_scenes(cli *c, const char *begin)
 			offer(c, all[i].name, begin);
 }
 
-// Nothing is said where there is no daemon: a shell would write it into the line.
+// Offers words that only the daemon knows. Prints no error if the daemon does not answer, because
+// the shell would show the error in the command line.
 static void offer_from_daemon(cli *c, void (*offer_them)(cli *c, const char *begin),
                               const char *begin)
 {
@@ -71,7 +72,8 @@ static void offer_options(const cli *c, const cli *line, const char *begin)
 	}
 }
 
-// The first words of commands, or the second ones of those that begin with `first`.
+// Offers the first words of all commands. If `first` is given, offers the second words of the
+// commands that begin with it.
 static void offer_commands(const cli *c, const char *first, const char *begin)
 {
 	size_t length = strlen(first);
@@ -82,7 +84,7 @@ static void offer_commands(const cli *c, const char *first, const char *begin)
 			offer(c, space + 1, begin);
 		if (!*first && !space)
 			offer(c, name, begin);
-		const char *also = c->commands[i]->also; // "context" of "context ls"
+		const char *also = c->commands[i]->also; // the alias "context" of "context ls"
 		if (!*first && space && also && strlen(also) == (size_t)(space - name) &&
 		    strncmp(name, also, strlen(also)) == 0)
 			offer(c, also, begin);
@@ -104,7 +106,7 @@ static void offer_arguments(cli *c, const cli *line, const char *begin)
 
 static cli_exit run_complete(cli *c)
 {
-	// what stands before the word at the cursor, as the program would read it
+	// the words before the cursor, read as a command line
 	cli line = {.out = c->out, .complaints = fopen("/dev/null", "w"), .commands = c->commands};
 	char *before[CLI_ARGUMENTS_MAX + 1] = {(char *)(uintptr_t) "cautery"};
 	int count = c->argument_count;
@@ -115,7 +117,7 @@ static cli_exit run_complete(cli *c)
 		before[i + 1] = (char *)(uintptr_t)c->arguments[i];
 	bool read = cli_read_words(&line, count ? count : 1, before);
 	fclose(line.complaints);
-	if (!read) // a value is wanted, of which nothing is known here
+	if (!read) // An option's value comes next, and no values can be offered.
 		return CLI_DONE;
 	c->url = line.url;
 	c->token_file = line.token_file;

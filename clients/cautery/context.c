@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// context: daemons by name.
+// The command `context`: manages the named daemons of contexts.h.
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,7 +36,8 @@ static bool fill_context(cJSON *context, const cli *c)
 	return made;
 }
 
-// The file as `change` makes it. It tells what is wrong by itself.
+// Reads the contexts, lets `change` edit them, and writes them back. `change` prints its own
+// errors.
 static cli_exit change_contexts(cli *c, cli_exit (*change)(cli *c, cJSON *all))
 {
 	cJSON *all;
@@ -55,7 +56,7 @@ static bool use(cJSON *all, const char *name)
 	return cJSON_AddStringToObject(all, "current", name);
 }
 
-// The first one is the current one.
+// Adds or replaces a context. The first context also becomes the current one.
 static cli_exit set(cli *c, cJSON *all)
 {
 	const char *name = c->arguments[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file of contexts.
+// Reads and writes the file of contexts.
 #include "cautery/contexts.h"
 
 #include <errno.h>
@@ -14,7 +14,8 @@
 enum { FILE_BYTES_MAX = 1 << 20 };
 
 // ---- the file -----------------------------------------------------------------------------------
-// A service or a job of cron may have no home, and so no contexts.
+// True if there is a folder for contexts. A service or a cron job may have neither variable; then
+// there are no contexts.
 static bool has_folder(void)
 {
 	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
@@ -24,7 +25,8 @@ static bool has_folder(void)
 static cau_status find_folder(char *folder, size_t bytes, cau_error *error)
 {
 	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
-	bool set = config && config[0] == '/'; // a relative one is to be ignored (XDG)
+	bool set =
+		config && config[0] == '/'; // The XDG specification says that a relative path is ignored.
 	if (!has_folder())
 		return cau_fail(error, CAU_IO, NULL, "neither XDG_CONFIG_HOME nor HOME is set");
 	int length =

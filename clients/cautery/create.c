@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// create: a session from a scene of the daemon, from a scene file here, or from a mesh.
+// The command `create`: creates a session from a scene of the daemon, a local scene file or a mesh.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "cautery/progress.h"
 #include "cautery/scene_json.h"
 
-// Uploads `file`, and makes the mesh one of source bytes.
+// Uploads `file` and changes the mesh to source `bytes`.
 static cli_exit upload_mesh(cli *c, const char *file, cau_mesh_def *mesh)
 {
 	char *bytes = NULL;
@@ -32,7 +32,7 @@ static cli_exit upload_mesh(cli *c, const char *file, cau_mesh_def *mesh)
 	return CLI_DONE;
 }
 
-// The mesh files of a scene file. Relative names start at the folder of the scene file.
+// Uploads the mesh files of a scene file. Relative names start at the folder of the scene file.
 static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
 {
 	cli_exit code = CLI_DONE;
@@ -52,8 +52,8 @@ static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
 	return code;
 }
 
-// The session has its copies. A server that knows no such request forgets them a moment later, with
-// the connection.
+// Discards the uploads, because the session has its own copies. An older server does not know this
+// request. It discards the uploads when the connection closes.
 static void discard_meshes(cli *c, const cau_scene_def *scene)
 {
 	for (int32_t i = 0; i < scene->mesh_count; i++)
@@ -107,7 +107,8 @@ static bool ends_with(const char *text, const char *ending)
 	return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-// What the option `kind` says, or the argument if it is such a file.
+// Returns the value of the option `kind`. If the option is not given, returns the argument if it is
+// a file of that kind, else NULL.
 static const char *source_of(const cli *c, const char *kind)
 {
 	const char *said = cli_value(c, kind);

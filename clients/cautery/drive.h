@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands that drive tools share.
+// Functions for the commands that drive tools.
 #pragma once
 
 #include "cautery/cli.h"
 
-// Joins the session's tools, mask and statistics at 60 Hz.
+// Joins the session at 60 Hz for the tools, the face mask and the statistics.
 cli_exit cli_join_tools(cli *c, cau_client_stream **stream);
 
-// Becomes the tool's driver, if it exists and somebody else or nobody drives it.
+// Becomes the driver of the tool, if the tool exists and this client does not drive it already.
 cli_exit cli_take(cli *c, const cau_client_stream *stream, const char *tool);
 
-// NULL: there is no such tool.
+// Returns NULL if there is no such tool.
 const cau_stream_tool *cli_find_tool(const cau_client_stream *stream, const char *tool);

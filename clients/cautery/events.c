@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// events: what happened in a session, and what happens.
+// The command `events`: prints the session's past events and then the new ones.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "cautery/commands.h"
 #include "cautery/words.h"
 
-enum { EVENTS_MAX = 4096 }; // of one answer
+enum { EVENTS_MAX = 4096 }; // events in one answer
 
 static void print_event_json(const cli *c, const cau_wire_timeline_event *e)
 {
@@ -63,11 +63,11 @@ static void print_timeline(const cli *c, const cau_wire_timeline *timeline)
 typedef struct follower {
 	cli *c;
 	cau_wire_timeline timeline;
-	bool answered; // events that came before are in the answer
-	bool asks;     // again: what comes meanwhile is in that answer
+	bool answered; // the answer with the earlier events has come
+	bool asks;     // asks for missed events; the answer also has those that happen meanwhile
 	cau_error failure;
-	int64_t last_tick; // of those that were told, the last,
-	int32_t at_last;   // and how many are of that tick
+	int64_t last_tick; // tick of the last printed event
+	int32_t at_last;   // how many printed events have that tick
 } follower;
 
 static void note(follower *f, int64_t tick)
@@ -85,7 +85,7 @@ static void tell_event(follower *f, const cau_wire_timeline_event *event)
 	note(f, event->tick);
 }
 
-// What came about while there was no connection.
+// Prints the events that happened while there was no connection.
 static void tell_missed(follower *f, const cau_wire_timeline *timeline)
 {
 	const cau_wire_timeline_event *events = timeline->events.items;
@@ -114,14 +114,14 @@ static void take_timeline(void *user, const cau_rpc_message *answer, const cau_e
 static void take_missed(void *user, const cau_rpc_message *answer, const cau_error *error)
 {
 	follower *f = user;
-	(void)error; // the connection went again: it is asked again
+	(void)error; // The connection was lost again. The next connection repeats the request.
 	f->asks = false;
 	if (answer && !cau_rpc_result(answer, CAU_METHOD_SESSION_TIMELINE, &f->timeline, &f->failure))
 		tell_missed(f, &f->timeline);
 	fflush(f->c->out);
 }
 
-// Back after a lost connection, or where the session has moved to.
+// Asks for missed events after a lost connection or after the session moved.
 static void take_condition(void *user, cau_client *client, cau_client_condition condition)
 {
 	follower *f = user;
@@ -146,7 +146,8 @@ static void take_notification(void *user, cau_client *client, const cau_rpc_mess
 	fflush(f->c->out);
 }
 
-// Events come to whoever has joined; frames are wanted as seldom as they are to be had.
+// Joins the session, because only joined clients receive events. Asks for the lowest frame rate,
+// because frames are not needed.
 static cli_exit join(cli *c, cau_client_stream **stream)
 {
 	cau_wire_session_join join = {.has_rate_hz = true,
@@ -214,7 +215,7 @@ static cli_exit run(cli *c)
 	f.timeline.events =
 		(cau_wire_list){calloc(EVENTS_MAX, sizeof(cau_wire_timeline_event)), 0, EVENTS_MAX};
 	cli_exit code = f.timeline.events.items ? tell(&f, &params, seconds) : cli_fail_memory(c);
-	if (c->client) // an answer still on its way must not find the list gone
+	if (c->client) // An answer that arrives later must not find the list freed.
 		cau_client_close(c->client);
 	free(f.timeline.events.items);
 	return code;

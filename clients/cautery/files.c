@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// export, log: files from the daemon.
+// The commands `export` and `log`: download files from the daemon.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rewind, fork, snapshot, restore.
+// The commands `rewind`, `fork`, `snapshot`, `snapshots` and `restore`.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/commands.h"
 #include "cautery/words.h"
 
-// The name given with --name; false after complaining.
+// Reads the option --name. Complains and returns false if the name is too long.
 static bool take_name(cli *c, bool *has, char name[CAU_NAME_BYTES])
 {
 	const char *given = cli_value(c, "name");
@@ -76,7 +76,7 @@ static cli_exit run_snapshot(cli *c)
 	return code;
 }
 
-enum { SNAPSHOTS_MAX = 64 }; // of a session
+enum { SNAPSHOTS_MAX = 64 }; // snapshots of one session
 
 static cli_exit run_snapshots(cli *c)
 {

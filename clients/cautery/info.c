@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// info: what a session is.
+// The command `info`: describes a session.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ls, scenes, instruments, rm.
+// The commands `ls`, `scenes`, `instruments` and `rm`.
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +29,7 @@ static int by_id(const void *a, const void *b)
 	return strcmp(left->session, right->session);
 }
 
-// Adds the sessions of the daemon that is connected.
+// Adds the sessions of the connected daemon to the list.
 static cli_exit add_sessions(cli *c, cau_wire_list *all)
 {
 	cau_wire_session_summary *first = all->items;
@@ -41,7 +41,8 @@ static cli_exit add_sessions(cli *c, cau_wire_list *all)
 	return CLI_DONE;
 }
 
-// Of the daemons of all labels, "d1,d2". A connection through a proxy serves one of them.
+// Adds the sessions of the daemons of all labels in the list `labels`, such as "d1,d2". A
+// connection through a proxy serves one of these daemons.
 static cli_exit gather_named(cli *c, const char *labels, cau_wire_list *all)
 {
 	char label[CAU_NAME_BYTES];
@@ -60,8 +61,9 @@ static cli_exit gather_named(cli *c, const char *labels, cau_wire_list *all)
 	return CLI_DONE;
 }
 
-// Of all daemons that the proxy tells of. One that does not answer hides no other's sessions: it is
-// told of, and the exit code says that the list is not whole.
+// Adds the sessions of all daemons that the proxy lists. If a daemon does not answer, the other
+// sessions are still listed. The failure is printed, and the exit code says that the list is
+// incomplete.
 static cli_exit gather_fleet(cli *c, const cau_fleet *fleet, cau_wire_list *all)
 {
 	cli_exit worst = CLI_DONE;

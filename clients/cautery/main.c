@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery: the command line of cauteryd.
+// cautery: the command-line client of cauteryd.
 #include "cautery/commands.h"
 
 int main(int argument_count, char **arguments)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// material: a layer's material, shown, and changed member by member.
+// The command `material`: shows or changes the material of a layer.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,10 +9,10 @@
 #include "cautery/commands.h"
 #include "cautery/defaults.h"
 
-// What of a material's command does not describe the material.
+// members of a material command that do not describe the material
 static const char *const around[] = {"command", "tick", "sequence", "layer", "kind"};
 
-// ---- the present one ----------------------------------------------------------------------------
+// ---- the present material -----------------------------------------------------------------------
 static cli_exit describe(cli *c, cau_scene_def *scene)
 {
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
@@ -39,7 +39,8 @@ static const cau_layer_def *find_layer(const cli *c, const cau_scene_def *scene,
 	return NULL;
 }
 
-// That of the region, where the layer has one of its own, else the layer's default.
+// Returns the index of the region's own material. Returns 0, the layer's default, if the region has
+// none.
 static int32_t find_region(const cau_layer_def *layer, int32_t region)
 {
 	for (int32_t i = 1; i < layer->material_count; i++)
@@ -61,7 +62,8 @@ static void take_material(const cau_layer_def *layer, int32_t region, cau_comman
 	command->as.material.sheet.region = command->as.material.fat.region = region;
 }
 
-// As JSON, to be deleted; NULL: c->error says why.
+// Returns the material as JSON, which the caller deletes. Returns NULL if it fails; then c->error
+// has the reason.
 static cJSON *tell_material(cli *c, const cau_command *command)
 {
 	char text[CAU_COMMAND_JSON_MAX_BYTES];
@@ -84,7 +86,7 @@ static void complain_of_member(const cli *c, const cJSON *json, const char *name
 	cli_complain_unknown(c, "member", name, names, count);
 }
 
-// NAME=VALUE, the value as JSON, or a word that stands for itself.
+// Applies NAME=VALUE. The value is JSON or a plain word.
 static cli_exit change(cli *c, cJSON *json, const char *assignment)
 {
 	char name[64] = "";

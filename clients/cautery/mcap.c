@@ -11,12 +11,12 @@ enum {
 	RECORD_HEAD_BYTES = 1 + 8,            // opcode, length
 	MESSAGE_HEAD_BYTES = 2 + 4 + 8 + 8,   // channel, sequence, log time, publish time
 	CHUNK_HEAD_BYTES = 8 * 3 + 4 * 2 + 8, // times, sizes, CRC, the compression's empty name
-	INDEX_BYTES = 2 + 4 + 8 + 8,          // channel, array's bytes, time, offset in the chunk
-	SMALL_RECORD_BYTES = 256,             // all but schemas, messages and chunks are shorter
+	INDEX_BYTES = 2 + 4 + 8 + 8,          // channel, bytes of the array, time, offset in the chunk
+	SMALL_RECORD_BYTES = 256, // larger than every record except schemas, messages and chunks
 	FIRST_CHUNKS = 64,
 };
 
-// Opcodes of the specification
+// Opcodes of the MCAP specification.
 enum {
 	HEADER = 0x01,
 	FOOTER = 0x02,
@@ -34,8 +34,8 @@ static const unsigned char magic[] = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'}
 
 struct cli_mcap_chunk {
 	uint64_t time_ns;
-	uint64_t offset; // of the chunk's record in the file
-	uint64_t bytes;  // of the chunk's record, its head included
+	uint64_t offset; // offset of the chunk record in the file
+	uint64_t bytes;  // size of the chunk record, with its head
 };
 
 // ---- records -----------------------------------------------------------------------------------
@@ -58,14 +58,15 @@ static void put_text(record *r, const char *text)
 	r->count += count;
 }
 
-// Streams keep their own error until cli_mcap_close; what is counted is what was asked for.
+// Writes bytes. The FILE stream keeps its own error until cli_mcap_close. `mcap->bytes` also counts
+// bytes that could not be written.
 static void emit(cli_mcap *mcap, const void *bytes, size_t count)
 {
 	fwrite(bytes, 1, count, mcap->file);
 	mcap->bytes += count;
 }
 
-// `more`: bytes of the record that the caller emits after it.
+// Writes a record. `more` is the number of its bytes that the caller writes afterwards.
 static void emit_record(cli_mcap *mcap, int opcode, const record *r, size_t more)
 {
 	record head = {.count = 0};
@@ -80,7 +81,7 @@ static cau_status written(const cli_mcap *mcap, cau_error *error)
 	return ferror(mcap->file) ? cau_fail(error, CAU_IO, NULL, "%s", strerror(errno)) : CAU_OK;
 }
 
-// ---- what stands at the beginning and, once more, in the summary ------------------------------
+// ---- records at the beginning, repeated in the summary ----------------------------------------
 static void emit_schema(cli_mcap *mcap)
 {
 	record r = {.count = 0};
@@ -103,7 +104,7 @@ static void emit_channel(cli_mcap *mcap)
 	put(&r, SCHEMA_ID, 2);
 	put_text(&r, "/scene");
 	put_text(&r, "json");
-	put(&r, 0, 4); // metadata: none
+	put(&r, 0, 4); // no metadata
 	emit_record(mcap, CHANNEL, &r, 0);
 }
 
@@ -115,7 +116,7 @@ cau_status cli_mcap_create(cli_mcap *mcap, const char *name, cau_error *error)
 	if (!mcap->file)
 		return cau_fail(error, CAU_IO, NULL, "%s", strerror(errno));
 	emit(mcap, magic, sizeof magic);
-	put_text(&header, ""); // profile
+	put_text(&header, ""); // empty profile
 	put_text(&header, "cautery");
 	emit_record(mcap, HEADER, &header, 0);
 	emit_schema(mcap);
@@ -144,18 +145,18 @@ cau_status cli_mcap_message(cli_mcap *mcap, uint64_t time_ns, const void *json, 
 	record chunk = {.count = 0}, message = {.count = 0}, index = {.count = 0};
 	uint64_t offset = mcap->bytes;
 	size_t record_bytes = RECORD_HEAD_BYTES + MESSAGE_HEAD_BYTES + byte_count;
-	put(&chunk, time_ns, 8); // first
-	put(&chunk, time_ns, 8); // last
+	put(&chunk, time_ns, 8); // time of the chunk's first message
+	put(&chunk, time_ns, 8); // time of the chunk's last message
 	put(&chunk, record_bytes, 8);
-	put(&chunk, 0, 4); // CRC: not told
+	put(&chunk, 0, 4); // no CRC
 	put_text(&chunk, "");
 	put(&chunk, record_bytes, 8);
 	emit_record(mcap, CHUNK, &chunk, record_bytes);
 
 	put(&message, CHANNEL_ID, 2);
 	put(&message, mcap->messages, 4);
-	put(&message, time_ns, 8); // logged
-	put(&message, time_ns, 8); // published
+	put(&message, time_ns, 8); // log time
+	put(&message, time_ns, 8); // publish time
 	emit_record(mcap, MESSAGE, &message, byte_count);
 	emit(mcap, json, byte_count);
 	uint64_t chunk_bytes = mcap->bytes - offset;
@@ -163,7 +164,7 @@ cau_status cli_mcap_message(cli_mcap *mcap, uint64_t time_ns, const void *json, 
 	put(&index, CHANNEL_ID, 2);
 	put(&index, 8 + 8, 4);
 	put(&index, time_ns, 8);
-	put(&index, 0, 8); // the chunk's only message
+	put(&index, 0, 8); // offset in the chunk: 0, because the chunk has one message
 	emit_record(mcap, MESSAGE_INDEX, &index, 0);
 	cau_status status = written(mcap, error);
 	return status ? status
@@ -179,11 +180,11 @@ static void emit_chunk_index(cli_mcap *mcap, const cli_mcap_chunk *chunk)
 	put(&r, chunk->time_ns, 8);
 	put(&r, chunk->offset, 8);
 	put(&r, chunk->bytes, 8);
-	put(&r, 2 + 8, 4); // message indices by channel, bytes
+	put(&r, 2 + 8, 4); // length of the next map in bytes: one channel (2) and one offset (8)
 	put(&r, CHANNEL_ID, 2);
 	put(&r, chunk->offset + chunk->bytes, 8);
 	put(&r, RECORD_HEAD_BYTES + INDEX_BYTES, 8);
-	put_text(&r, ""); // compression
+	put_text(&r, ""); // not compressed
 	put(&r, content_bytes, 8);
 	put(&r, content_bytes, 8);
 	emit_record(mcap, CHUNK_INDEX, &r, 0);
@@ -199,14 +200,14 @@ static void emit_statistics(cli_mcap *mcap)
 		last_ns = time_ns > last_ns ? time_ns : last_ns;
 	}
 	put(&r, mcap->messages, 8);
-	put(&r, 1, 2);              // schemas
-	put(&r, 1, 4);              // channels
-	put(&r, 0, 4);              // attachments
-	put(&r, 0, 4);              // metadata
-	put(&r, mcap->messages, 4); // chunks
+	put(&r, 1, 2);              // number of schemas
+	put(&r, 1, 4);              // number of channels
+	put(&r, 0, 4);              // number of attachments
+	put(&r, 0, 4);              // number of metadata records
+	put(&r, mcap->messages, 4); // number of chunks
 	put(&r, mcap->messages ? first_ns : 0, 8);
 	put(&r, last_ns, 8);
-	put(&r, 2 + 8, 4); // messages by channel, bytes
+	put(&r, 2 + 8, 4); // length of the next map in bytes: one channel (2) and its message count (8)
 	put(&r, CHANNEL_ID, 2);
 	put(&r, mcap->messages, 8);
 	emit_record(mcap, STATISTICS, &r, 0);
@@ -215,7 +216,7 @@ static void emit_statistics(cli_mcap *mcap)
 static void emit_summary(cli_mcap *mcap)
 {
 	record end = {.count = 0}, footer = {.count = 0};
-	put(&end, 0, 4); // CRC: not told
+	put(&end, 0, 4); // no CRC
 	emit_record(mcap, DATA_END, &end, 0);
 	uint64_t start = mcap->bytes;
 	emit_schema(mcap);
@@ -224,8 +225,8 @@ static void emit_summary(cli_mcap *mcap)
 	for (uint32_t i = 0; i < mcap->messages; i++)
 		emit_chunk_index(mcap, &mcap->chunks[i]);
 	put(&footer, start, 8);
-	put(&footer, 0, 8); // summary offsets: none
-	put(&footer, 0, 4); // CRC: not told
+	put(&footer, 0, 8); // no summary offsets
+	put(&footer, 0, 4); // no CRC
 	emit_record(mcap, FOOTER, &footer, 0);
 	emit(mcap, magic, sizeof magic);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// foxglove.SceneUpdate in JSON Schema as the npm package @foxglove/schemas has it, without the
-// descriptions (10 KB instead of 21). tests/browser/page/mcap.test.ts compares it with the package.
+// foxglove.SceneUpdate in JSON Schema, from the npm package @foxglove/schemas. The descriptions are
+// left out, so it has 10 KB instead of 21. tests/browser/page/mcap.test.ts compares it with the
+// package.
 #include "cautery/mcap.h"
 
 #include <stddef.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// mesh: cautery-mesh under the name that people look for it by. No daemon has a part in it.
+// The command `mesh`: starts the program cautery-mesh, so that users find it. It needs no daemon.
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 enum { WORDS_MAX = 16, PATH_BYTES = 4096 };
 
-// cautery-mesh lies beside this program, or where the shell finds programs.
+// Starts cautery-mesh from the folder of this program, or from the shell's search path.
 static void start(char **words)
 {
 	char path[PATH_BYTES];

@@ -12,8 +12,9 @@
 
 enum { MESH_BYTES_MAX = 1 << 30, KINDS_MAX = 24, MENDS_MAX = 16, REGIONS_MAX = 64 };
 
-// ---- files
-// The other of TetGen's two files. False: this is no such file, or the other one is not there.
+// ---- mesh files
+// Finds the second file of a TetGen pair. Returns false if `file` is not part of a pair, or if the
+// second file does not exist.
 static bool find_partner(const char *file, char *partner, size_t bytes)
 {
 	static const char *const pairs[][2] = {
@@ -72,8 +73,8 @@ bool cli_is_mesh_file(const char *argument)
 	return (stat(argument, &about) == 0 && S_ISREG(about.st_mode)) || !cau_name_is_valid(argument);
 }
 
-// ---- words
-// The words of the wire in `text` as those of the command line.
+// ---- error texts
+// Replaces the names of the protocol in `text` by the names of the command-line options.
 static void use_own_words(char *text, size_t bytes)
 {
 	static const char *const words[][2] = {{"unit_m", "--unit-m"},
@@ -94,7 +95,7 @@ static void use_own_words(char *text, size_t bytes)
 	}
 }
 
-// A reading, with room for its lists.
+// A mesh reading with memory for its lists.
 typedef struct mesh_reading {
 	cau_wire_mesh_reading wire;
 	cau_wire_mesh_kind kinds[KINDS_MAX];
@@ -102,7 +103,8 @@ typedef struct mesh_reading {
 	cau_wire_mesh_region regions[REGIONS_MAX];
 } mesh_reading;
 
-// The file and the reason: the user wrote no params that a path could point into.
+// Fails with the file and the reason. The error's path points into params that the user did not
+// write, so it is removed.
 static cli_exit fail_reading(cli *c, const char *file)
 {
 	c->error.path[0] = 0;
@@ -110,7 +112,7 @@ static cli_exit fail_reading(cli *c, const char *file)
 	return cli_fail(c);
 }
 
-// Asks for the report and prints it. `options`: the user chose by options, which the words name.
+// Requests the report and prints it. `options`: the user gave options, so errors name options.
 static cli_exit read_mesh(cli *c, const char *file, const cau_wire_mesh_read *params, bool options,
                           cau_scene_def *scene)
 {
@@ -137,7 +139,7 @@ static cli_exit read_mesh(cli *c, const char *file, const cau_wire_mesh_read *pa
 	return status ? fail_reading(c, file) : CLI_DONE;
 }
 
-// An option's text, which the server checks. False: it is not given.
+// Copies the text of an option, which the server checks. Returns false if the option is not given.
 static bool take_text(const cli *c, const char *option, char *text, size_t bytes)
 {
 	const char *value = cli_value(c, option);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// move: carries a session from one daemon to another. The two never talk to each other: this is the
-// courier between them. It may be killed anywhere; the same command again ends what it began.
+// The command `move`: carries a session from one daemon to another. The two daemons do not talk to
+// each other: this program is the courier between them. It may be killed at any moment. The same
+// command then completes the move.
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,14 +13,15 @@ enum { MOVES_MOST = 1024, PIECE_FLAGS_AT = 12, PART_ENDS = 1, ENDS = 2, HEAD_BYT
 
 typedef struct courier {
 	cli *c;
-	cau_client *to; // the daemon that is to have it; c->client is the one that has it
+	cau_client *to; // connection to the target daemon; c->client is connected to the source
 	const char *label;
-	cau_wire_move_ref from_ref, to_ref; // the move, as each of them knows the session
+	cau_wire_move_ref from_ref,
+		to_ref; // the move, with the session's id on the source and on the target
 	bool exact;
 	double bytes;
-	bool arrives;     // the other daemon has a piece
-	char receipt[65]; // of the last piece
-	double stood_s;   // when it came to stand still
+	bool arrives;     // the target daemon has at least one piece
+	char receipt[65]; // receipt of the last delivered piece
+	double stood_s;   // time at which the session was suspended
 	char token[CAU_CLIENT_TOKEN_BYTES];
 } courier;
 
@@ -55,7 +57,8 @@ static cli_exit check_label(courier *m, const char *session)
 	return CLI_DONE;
 }
 
-// Its id there: the new label, and the name that is given, or what follows the old label.
+// Makes the session's id on the target daemon: the new label, then --name or the part after the old
+// label.
 static cli_exit name_target(courier *m, const char *session)
 {
 	char text[2 * CAU_NAME_BYTES];
@@ -94,7 +97,7 @@ static cli_exit connect_target(courier *m)
 	if (url)
 		def.url = url;
 	def.session = NULL;
-	def.label = url ? NULL : m->label; // behind a proxy one address leads to all
+	def.label = url ? NULL : m->label; // Behind a proxy, one address leads to all daemons.
 	if (cau_client_create(c->loop, &def, &m->to, &c->error) || cau_client_connect(m->to, &c->error))
 		return fail_to(m);
 	return check_daemon(m, m->to, "--to-url");
@@ -102,7 +105,8 @@ static cli_exit connect_target(courier *m)
 
 // ---- deciding -----------------------------------------------------------------------------------
 
-// It is the other daemon's from here on: without an answer the same command ends it.
+// Gives the target daemon the proof that the session is its own. If no answer comes, the same
+// command completes the move.
 static cli_exit deliver(courier *m, const char *proof)
 {
 	cau_wire_move_accept params = {0};
@@ -129,7 +133,8 @@ static cli_exit tell_moved(courier *m)
 	return CLI_DONE;
 }
 
-// `release`: of the other daemon; NULL: that one is lost.
+// Makes the target remove the pieces of the move. `release` comes from the source. NULL means that
+// the source is lost.
 static cli_exit forget(courier *m, const char *release)
 {
 	cau_wire_move_forget params = {.has_release = release != NULL,
@@ -144,7 +149,7 @@ static cli_exit forget(courier *m, const char *release)
 }
 
 // Asks the source about the outcome of the move, and passes it to the target if the target knows
-// the move. *moved: the session is the target's.
+// the move. *moved: the session now belongs to the target.
 static cli_exit settle(courier *m, bool known_there, bool *moved)
 {
 	cau_wire_move_decision decision = {0};
@@ -157,8 +162,9 @@ static cli_exit settle(courier *m, bool known_there, bool *moved)
 	return known_there ? forget(m, decision.release) : CLI_DONE;
 }
 
-// The unfinished move of this session in the list of `client`'s daemon; its name is "" if there is
-// none. `id` is the session's id on that daemon. If it is "", `other` is the id on the other one.
+// Finds the unfinished move of this session in the list of `client`'s daemon. Its name is "" if
+// there is none. `id` is the session's id on that daemon. If `id` is "", `other` is the session's
+// id on the other daemon.
 static cau_status find_move(courier *m, cau_client *client, const char *id, const char *other,
                             cau_wire_move_entry *found)
 {
@@ -185,8 +191,8 @@ static void take_move(courier *m, const cau_wire_move_entry *found)
 	memcpy(m->from_ref.move, found->move, sizeof m->from_ref.move);
 }
 
-// Ends the move that an earlier courier has left unfinished. If that courier died before the target
-// had a piece, only the source knows the move.
+// Completes the move that an earlier courier left unfinished. If that courier died before the
+// target had a piece, only the source knows the move.
 static cli_exit settle_earlier(courier *m, bool *moved)
 {
 	cau_wire_move_entry found;
@@ -205,7 +211,7 @@ static cli_exit settle_earlier(courier *m, bool *moved)
 	return *found.move ? settle(m, false, moved) : CLI_DONE;
 }
 
-// The source is lost: the target removes what it holds of the session.
+// The source is lost, so the target removes its part of the session.
 static cli_exit give_up(courier *m)
 {
 	cau_wire_move_entry found;
@@ -214,7 +220,7 @@ static cli_exit give_up(courier *m)
 		code = check_daemon(m, m->c->client, "--url");
 	if (code)
 		return code;
-	m->to = m->c->client; // which the caller of this command closes
+	m->to = m->c->client; // The caller of this command closes the connection.
 	if (find_move(m, m->to, "", m->from_ref.session, &found))
 		return cli_fail(m->c);
 	if (!*found.move) {
@@ -339,7 +345,7 @@ static cli_exit move(courier *m)
 		code = hand_over(m);
 	if (!code)
 		return tell_moved(m);
-	cli_exit settled = settle(m, m->arrives, &moved); // perhaps only an answer was lost
+	cli_exit settled = settle(m, m->arrives, &moved); // Perhaps only the answer was lost.
 	return !settled && moved ? tell_moved(m) : code;
 }
 
@@ -347,7 +353,7 @@ static cli_exit run(cli *c)
 {
 	courier m = {.c = c, .label = c->arguments[1], .exact = true};
 	const char *session = c->arguments[0];
-	c->def.follow = false; // each of the two stays where it is
+	c->def.follow = false; // Both connections stay with their own daemon.
 	cli_exit code = check_label(&m, session);
 	if (!code)
 		code = name_target(&m, session);

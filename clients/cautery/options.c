@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command line.
+// Reads the command line and prints help.
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,7 +91,7 @@ static bool take_common(cli *c, int index, const char *value)
 	}
 }
 
-// Finds `name` (of `bytes`) in a table; -1: not there.
+// Finds `name`, of `bytes` bytes, in a table. Returns -1 if it is not there.
 static int find_option(const cli_option *options, int count, const char *name, size_t bytes)
 {
 	for (int i = 0; i < count && options[i].name; i++)
@@ -121,7 +121,7 @@ static void complain_of_option(const cli *c, const char *name, size_t bytes)
 	cli_complain_unknown(c, "option", wrong, names, (size_t)count);
 }
 
-// Reads the option at arguments[*at], moving *at on over its value.
+// Reads the option at arguments[*at], and advances *at past its value.
 static bool read_option(cli *c, char **arguments, int count, int *at)
 {
 	const char *name = arguments[*at] + 2;
@@ -157,7 +157,7 @@ static const cli_command *find_command(const cli *c, const char *name)
 	return NULL;
 }
 
-// Words of other programs and of the protocol for what a command here does.
+// Returns the command for a word that other programs or the protocol use for the same action.
 static const char *usual_name(const char *word)
 {
 	static const char *const others[][2] = {
@@ -191,7 +191,7 @@ static bool take_command(cli *c, const char *word)
 	return false;
 }
 
-// The command whose name has two words, of which this is the second; or NULL.
+// Finds the command whose two words are c->word and `word`. Returns NULL if there is none.
 static const cli_command *find_second(const cli *c, const char *word)
 {
 	char name[64];
@@ -216,7 +216,7 @@ static bool take_word(cli *c, const char *word)
 	return true;
 }
 
-// Those that are the command's own, with their values.
+// Lists the command's own options with their values.
 static void list_options(const cli_command *command, char *text, size_t bytes)
 {
 	size_t used = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ping: how long a request takes there and back.
+// The command `ping`: measures round trips to the server.
 #include <math.h>
 
 #include "cautery/commands.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// record: a stream into a file, as it came or as MCAP.
+// The command `record`: writes a stream to a file, unchanged or as MCAP.
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -10,21 +10,21 @@
 #include "cautery/recording.h"
 #include "cautery/scene_update.h"
 
-static const double scene_s = 0.1; // between two messages of an MCAP file
+static const double scene_s = 0.1; // interval between two messages of an MCAP file
 
 typedef struct recorder {
 	cli *c;
 	cli_recording recording;
-	uint64_t described; // connections whose stream is described in the file
+	uint64_t described; // number of the last connection whose stream description is in the file
 	cau_status status;
-	// as MCAP
+	// only for MCAP
 	bool scenes;
 	cli_mcap mcap;
-	uint64_t start_ns; // since 1970, when `start_s` was
+	uint64_t start_ns; // ns since 1970 at start_s
 	double start_s;
-	uint64_t due;  // of the next message, in scene_s after the start
-	uint64_t told; // frames of the stream when the last message was made
-	char *text;    // of a message
+	uint64_t due;  // number of the next message, in intervals of scene_s since the start
+	uint64_t told; // stream->frames when the last message was written
+	char *text;    // text of one message
 	size_t text_bytes;
 	FILE *text_stream; // writes to `text`
 } recorder;
@@ -33,7 +33,7 @@ static void take_frame(void *user, cau_client *client, cau_client_stream *stream
                        const cau_client_frame *frame)
 {
 	recorder *r = user;
-	// A topology starts a stream, after joining and after joining again.
+	// A stream begins with a topology frame after each join.
 	if (!r->status && frame->header.kind == CAU_FRAME_TOPOLOGY &&
 	    r->described != cau_client_connections(client)) {
 		r->described = cau_client_connections(client);
@@ -68,8 +68,8 @@ static cau_status write_scene(recorder *r, const cau_client_stream *stream, uint
 	              : cli_mcap_message(&r->mcap, time_ns, r->text, r->text_bytes, &r->c->error);
 }
 
-// Every tenth of a second the newest state, if it is another than last time. What a busy machine
-// missed stays out: times are those of the grid, and never wrong by more than one step of it.
+// Writes the newest state every tenth of a second if it has changed. A busy machine may miss some.
+// Times are multiples of scene_s, so a time is wrong by at most scene_s.
 static void take_scene(recorder *r, const cau_client_stream *stream)
 {
 	uint64_t now = (uint64_t)((cau_client_now() - r->start_s) / scene_s);
@@ -112,7 +112,7 @@ static uint64_t bytes_written(const recorder *r)
 }
 
 // ---- the stream --------------------------------------------------------------------------------
-// Until the time is over, somebody says stop, or there is nothing left to record.
+// Records until the time is over, the user stops it, or the stream ends.
 static cli_exit record_for(recorder *r, const cau_client_stream *stream, double seconds)
 {
 	cli *c = r->c;

@@ -98,7 +98,8 @@ cau_status cli_recording_open(cli_recording *recording, const char *name, cau_er
 	return status ? status : cli_recording_read(recording, recording->file, error);
 }
 
-// Reads the record's bytes. A length that lies must not take more memory than twice the file.
+// Reads the record's bytes. The memory grows with the data read, so a false length takes at most
+// twice the size of the file.
 static cau_status read_bytes(cli_recording *recording, uint32_t byte_count, cau_error *error)
 {
 	for (uint32_t done = 0; done < byte_count;) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stream in a file: what the server described and every frame as it came, so that what was seen
-// can be decoded again. Little-endian:
+// A recorded stream: the server's description and every frame as received, so that it can be
+// decoded later. All numbers are little-endian:
 //
-//     8 bytes  "CAUREC01"
-//     records  u32 kind, u32 byte_count, u64 received_us, bytes
+//   8 bytes  "CAUREC01"
+//   records  u32 kind, u32 byte_count, u64 received_us, bytes
 //
-// kind 1: a stream description, the whole JSON-RPC answer to session.join; kind 2: a frame. After a
-// description come topology, key frame and deltas; another description starts anew.
+// Kind 1 is a stream description: the whole JSON-RPC answer to session.join. Kind 2 is a frame.
+// After a description come a topology frame, a key frame and deltas. Another description starts a
+// new sequence.
 #pragma once
 
 #include <stdbool.h>
@@ -20,30 +21,30 @@ typedef enum cli_record_kind { CLI_RECORD_DESCRIPTION = 1, CLI_RECORD_FRAME = 2 
 typedef struct cli_recording {
 	FILE *file;
 	uint64_t frames, bytes;
-	// reading
-	unsigned char *buffer; // of the last record
+	// only for reading
+	unsigned char *buffer; // bytes of the last record
 	uint32_t capacity;
 	uint64_t received_us;
 } cli_recording;
 
-// Errors: CAU_IO.
+// Creates the file. Errors: CAU_IO.
 cau_status cli_recording_create(cli_recording *recording, const char *name, cau_error *error);
 cau_status cli_recording_describe(cli_recording *recording,
                                   const cau_wire_stream_description *description, cau_error *error);
 cau_status cli_recording_frame(cli_recording *recording, double received_s, const void *bytes,
                                size_t byte_count, cau_error *error);
 
-// Errors: CAU_IO, CAU_CORRUPT (no recording).
+// Opens a recording. Errors: CAU_IO, CAU_CORRUPT (not a recording).
 cau_status cli_recording_open(cli_recording *recording, const char *name, cau_error *error);
-// The same from an open file, which cli_recording_close closes, also after an error.
+// Reads a recording from an open file. cli_recording_close closes the file, also after an error.
 cau_status cli_recording_read(cli_recording *recording, FILE *file, cau_error *error);
-// The next record; *kind 0 at the end. Its bytes are recording->buffer. Errors: CAU_CORRUPT (cut
-// short, or of no known kind), CAU_NO_MEMORY.
+// Reads the next record into recording->buffer. *kind is 0 at the end. Errors: CAU_CORRUPT (cut
+// short, or of an unknown kind), CAU_NO_MEMORY.
 cau_status cli_recording_next(cli_recording *recording, uint32_t *kind, uint32_t *byte_count,
                               cau_error *error);
 cau_status cli_recording_read_description(const cli_recording *recording, uint32_t byte_count,
                                           cau_wire_stream_description *description,
                                           cau_error *error);
 
-// Errors: CAU_IO (what was written did not all reach the file). May be called twice.
+// Closes the file. A second call does nothing. Errors: CAU_IO if some bytes did not reach the file.
 cau_status cli_recording_close(cli_recording *recording, cau_error *error);

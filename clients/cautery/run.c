@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// run: a script's commands at their ticks, counted from now.
+// The command `run`: sends a script's commands at their ticks, counted from the present tick.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,23 +13,24 @@
 
 enum {
 	SCRIPT_BYTES_MAX = 1 << 28,
-	LEAD_TICKS = 8,       // commands leave so long before they are due
-	OUTSTANDING_MAX = 64, // requests without answer: as many may wait for later ticks
-	TOLD_MAX = 10,        // refusals told one by one
+	LEAD_TICKS = 8, // Commands are sent this many ticks before they are due.
+	OUTSTANDING_MAX =
+		64, // largest number of unanswered requests; that many commands may wait for later ticks
+	TOLD_MAX = 10, // number of refusals that are printed
 };
 
 typedef struct script_line {
-	cau_command command; // its tick from the start of the script
+	cau_command command; // its tick counts from the start of the script
 	int32_t line;
 } script_line;
 
 typedef struct runner runner;
 
-// A command on its way, so that its answer finds back.
+// A sent command, so that its answer can be matched with its line.
 typedef struct sent {
 	runner *r;
 	int32_t line;
-	uint64_t tick; // wanted
+	uint64_t tick; // tick at which the command should act
 } sent;
 
 struct runner {
@@ -41,7 +42,7 @@ struct runner {
 	uint64_t base_tick, epoch;
 	cli_faces faces;
 	int32_t next, answered, refused, late, watchdog_cuts;
-	bool lost; // the first refusal that was none of the server's ended it
+	bool lost; // The connection was lost, which ended the script.
 };
 
 // ---- script ------------------------------------------------------------------------------------
@@ -88,7 +89,7 @@ static cau_status read_script(runner *r, const char *file)
 }
 
 // ---- driving -----------------------------------------------------------------------------------
-// Tools that the script drives and does not add itself become ours.
+// Takes over the tools that the script drives and does not add itself.
 static cli_exit take_tools(runner *r)
 {
 	for (int32_t i = 0; i < r->count; i++) {
@@ -114,7 +115,7 @@ static void take_answer(void *user, const cau_rpc_message *answer, const cau_err
 		return;
 	}
 	if (cau_client_get_condition(r->c->client) != CAU_CLIENT_READY) {
-		r->lost = true; // told once, at the end
+		r->lost = true; // reported once, at the end
 		return;
 	}
 	if (r->refused++ < TOLD_MAX)
@@ -130,7 +131,7 @@ static bool uses_tool(const runner *r, const char *tool)
 	return false;
 }
 
-// From then on the script's motion goes on without energy: its user must know.
+// Warns that the watchdog turned energy off. The script's motion continues without energy.
 static void take_notification(void *user, cau_client *client, const cau_rpc_message *message)
 {
 	runner *r = user;
@@ -145,7 +146,8 @@ static void take_notification(void *user, cau_client *client, const cau_rpc_mess
 	             (long long)notice.event.tick, notice.event.tool, notice.event.detail);
 }
 
-// Sends what is due within the lead. The script's own sequence is kept, else lines are counted.
+// Sends the commands that are due within LEAD_TICKS. A command without a sequence in the script
+// gets its line number.
 static cau_status send_due(runner *r)
 {
 	uint64_t horizon = r->stream->state->tick + LEAD_TICKS;
@@ -174,7 +176,7 @@ static bool is_over(const runner *r)
 	       r->stream->state->tick >= r->base_tick + r->lines[r->count - 1].command.tick;
 }
 
-// What makes it pointless to go on, in words; NULL: nothing.
+// Returns why the script cannot continue, or NULL.
 static const char *trouble(const runner *r)
 {
 	const cau_stream_state *state = r->stream->state;
@@ -280,14 +282,14 @@ static cli_exit run(cli *c)
 		code = cli_fail_file(c);
 	cli_watch_signals();
 	c->def.user = &r;
-	c->def.follow = false; // a session that moves goes dark: what is left of the script would mean
-	                       // something else
+	c->def.follow =
+		false; // A move turns energy off, so the rest of the script would no longer act as written.
 	c->def.on_notification = take_notification;
 	if (!code)
 		code = cli_connect(c);
 	if (!code)
 		code = join_and_play(&r);
-	if (c->client) // answers still on their way must not find the script gone
+	if (c->client) // An answer that arrives later must not find the script freed.
 		cau_client_close(c->client);
 	cli_faces_finish(&r.faces);
 	free(r.lines);

@@ -7,12 +7,14 @@
 
 #include "cautery/assert.h"
 
-// What stands for an instrument: the stream tells its pose, not its measures.
+// Sizes of the shape that is drawn for an instrument. The stream has the instrument's pose, not its
+// sizes.
 static const double shaft_m = 0.06, shaft_diameter_m = 0.002, tip_diameter_m = 0.0015;
 
 enum { LAYER_COLORS = 4, LAYERS_MAX = 256 };
 
-// By layer: pearly fascia, a pink membrane, fat; others like what lies under them.
+// By layer: pearly fascia, a pink membrane, fat. All other layers have the colour of what lies
+// under the fat.
 static const char *const layer_color[LAYER_COLORS] = {
 	"{\"r\":0.9,\"g\":0.82,\"b\":0.76,\"a\":1}",
 	"{\"r\":0.85,\"g\":0.58,\"b\":0.5,\"a\":1}",
@@ -30,7 +32,7 @@ static void write_time(FILE *out, uint64_t time_ns)
 	        (unsigned long long)(time_ns / 1000000000), (unsigned long long)(time_ns % 1000000000));
 }
 
-// An entity up to its shapes, of which the caller writes those that it has.
+// Writes the beginning of an entity. The caller writes the lists of shapes that it has.
 static void open_entity(FILE *out, const char *id, const cau_stream_state *state, uint64_t time_ns)
 {
 	fputc('{', out);
@@ -58,8 +60,8 @@ static void write_point(FILE *out, const cau_client_stream *stream, int32_t vert
 	        d->origin_m[1] + d->step_m * q[1], d->origin_m[2] + d->step_m * q[2]);
 }
 
-// The points of a layer's drawn faces. `place` (vertex_count): -1, and in the end again, but where
-// the list has the vertex. Returns how many it has.
+// Writes the points of a layer's drawn faces and returns their number. `place` (vertex_count) is -1
+// before the call. Afterwards it has the index in the list, or -1 for vertices that are not listed.
 static int32_t write_points(FILE *out, const cau_client_stream *stream, int layer, int32_t *place)
 {
 	int32_t count = 0;
@@ -121,7 +123,7 @@ static cau_status write_tissue(FILE *out, const cau_client_stream *stream, cau_e
 }
 
 // ---- tools -------------------------------------------------------------------------------------
-// The pose of a point on the shaft's axis, which is the tool's third.
+// Writes the pose of a point on the shaft's axis, which is the tool's third axis.
 static void write_pose(FILE *out, const cau_pose *pose, double along_m)
 {
 	const double *q = pose->rotation, *p = pose->position_m; // w, x, y, z
@@ -157,7 +159,7 @@ cau_status cli_scene_update_write(FILE *out, const cau_client_stream *stream, ui
 	char id[CAU_NAME_BYTES + 8];
 	CAU_ASSERT(state->synced && state->face_mask && stream->has_topology, "%s is incomplete",
 	           stream->description.session);
-	// Everything is told anew: whoever begins to read in the middle has the whole scene.
+	// Each message has the whole scene, so that a reader can begin at any message.
 	fputs("{\"deletions\":[{", out);
 	write_time(out, time_ns);
 	fputs(",\"type\":1,\"id\":\"\"}],\"entities\":[", out);

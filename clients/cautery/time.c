@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// pause, resume, step, speed, reset.
+// The commands `pause`, `resume`, `step`, `speed` and `reset`.
 #include <string.h>
 
 #include "cautery/commands.h"
@@ -51,7 +51,7 @@ static cli_exit run_speed(cli *c)
 	cau_wire_session_speed params = {0};
 	cau_wire_session_summary summary = {0};
 	cli_exit code = CLI_USAGE;
-	// The last argument, whether a session stands before it or not.
+	// SPEED is the last argument; a session may precede it.
 	if (cli_read_number(c, "SPEED", c->arguments[c->argument_count - 1], 0.01, 10, &params.speed))
 		code = cli_connect(c);
 	if (code)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// pin, unpin, force, gravity: what holds and pulls the tissue beside its tools.
+// The commands `pin`, `unpin`, `force` and `gravity`: forces and constraints on the tissue besides
+// its tools.
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,14 +12,14 @@ cli_exit cli_command_session(cli *c, const cau_command *command, const char *don
 	cau_wire_command_result result = {0};
 	if (cau_client_command(c->client, c->session, command, &result, &c->error))
 		return cli_fail(c);
-	if (c->json) // the result of every command is the same
+	if (c->json) // All commands have the same type of result.
 		cli_print_result(c, CAU_METHOD_TOOL_MOVE, &result);
 	else
 		fprintf(c->out, "%s: %s from tick %lld on\n", c->session, done, (long long)result.tick);
 	return CLI_DONE;
 }
 
-// The last arguments, whether a session stands before them or not.
+// Reads the last three arguments. A session may precede them.
 static bool read_vector(cli *c, const char *what, double most, double vector[3])
 {
 	for (int a = 0; a < 3; a++)
@@ -29,7 +30,7 @@ static bool read_vector(cli *c, const char *what, double most, double vector[3])
 }
 
 // ---- which vertices -----------------------------------------------------------------------------
-// Numbers parted by commas. False: it is there and wrong.
+// Reads numbers that commas separate. Returns false if the option's value is wrong.
 static bool read_list(const cli *c, const char *option, int count, double *values)
 {
 	const char *text = cli_value(c, option);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// token: makes one, for a daemon's file of tokens and for whoever is to have it.
+// The command `token`: makes a token for a user and a line for the daemon's file of tokens.
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -30,7 +30,8 @@ static bool make_token(char text[2 * RANDOM_BYTES + 1])
 	return true;
 }
 
-// A new file that nobody else may read: whatever stood there before may be in others' hands.
+// Creates a new file that only the owner can read. An existing file is refused, because other users
+// may have it open.
 static bool write_secret(cli *c, const char *file, const char *text)
 {
 	int descriptor = open(file, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -52,7 +53,7 @@ static bool is_role(const cli *c, const char *word)
 	return false;
 }
 
-// `quota` 0: the line has none.
+// Prints the line for the daemon's file of tokens. `quota` 0 means no quota.
 static void print_line(const cli *c, const char *hash, const char *name, double days, double quota)
 {
 	const char *sessions = cli_value(c, "sessions");
@@ -70,7 +71,7 @@ static void print_line(const cli *c, const char *hash, const char *name, double 
 	fputc('\n', c->out);
 }
 
-// As the daemon reads them; NULL: every session.
+// Checks a list of sessions by the daemon's rules. NULL means all sessions.
 static bool are_sessions(const cli *c, const char *list)
 {
 	bool right = !list || (*list && strlen(list) <= SESSIONS_BYTES_MOST);

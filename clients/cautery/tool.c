@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tool: a few actions with one tool, one after the other.
+// The command `tool`: performs a few actions with one tool, one after the other.
 #include <math.h>
 #include <string.h>
 
@@ -16,9 +16,9 @@ typedef struct hand {
 	cli *c;
 	cau_client_stream *stream;
 	const char *tool;
-	cau_pose pose; // last commanded
+	cau_pose pose; // last commanded pose
 	double jaw;
-	int at; // argument that comes next
+	int at; // index of the next argument
 	int64_t sequence;
 } hand;
 
@@ -66,7 +66,7 @@ static cli_exit send_pose(hand *h, const char *what)
 }
 
 // ---- actions -----------------------------------------------------------------------------------
-// The instrument that --instrument names, in --mode, with --power-w.
+// Reads the instrument from --instrument, --mode and --power-w.
 static bool take_instrument(hand *h, cau_tool_def *tool)
 {
 	cau_error error = {0};
@@ -152,7 +152,7 @@ static cli_exit act_jaw(hand *h)
 	return take_numbers(h, "jaw", 1, &h->jaw) ? send_pose(h, "jaw set") : CLI_USAGE;
 }
 
-// Waits for `seconds`; the connection stays alive meanwhile.
+// Waits for `seconds` and keeps the connection alive.
 static cli_exit wait_for(hand *h, double seconds)
 {
 	cli *c = h->c;
@@ -173,10 +173,10 @@ static cli_exit act_wait(hand *h)
 	return take_numbers(h, "wait", 1, &seconds) ? wait_for(h, seconds) : CLI_USAGE;
 }
 
-// Draws the tip along a straight line at the given speed, a pose every sixtieth of a second.
+// Moves the tip along a straight line at the given speed, with a pose every sixtieth of a second.
 static cli_exit act_line(hand *h)
 {
-	double to[4], from[3], length = 0; // m, and m/s in the fourth
+	double to[4], from[3], length = 0; // to: target in m, then the speed in m/s
 	cli_exit code = CLI_DONE;
 	if (!take_numbers(h, "line", 4, to))
 		return CLI_USAGE;
@@ -207,7 +207,7 @@ static cli_exit switch_energy(hand *h, int32_t on, int32_t ticks)
 	return send(h, &command, on ? "energy on" : "energy off");
 }
 
-// A number behind it is a limit, in ticks.
+// Turns energy on. A number after `on` limits the time, in ticks.
 static cli_exit act_on(hand *h)
 {
 	double ticks = 0;
@@ -252,7 +252,7 @@ static cli_exit act_give(hand *h)
 
 static const struct {
 	const char *word;
-	bool drives; // needs to be the driver
+	bool drives; // the action needs this client to be the driver
 	cli_exit (*act)(hand *h);
 } actions[] = {
 	{"add", false, act_add},    {"remove", false, act_remove},
@@ -300,7 +300,8 @@ static cli_exit run(cli *c)
 	const cau_stream_tool *found = cli_find_tool(h.stream, h.tool);
 	if (found) {
 		h.pose = found->asked_pose;
-		h.jaw = found->grasping ? 1 : found->asked_jaw; // once it lets go it is open
+		// A grasp counts as open jaws, because its release leaves the jaws open.
+		h.jaw = found->grasping ? 1 : found->asked_jaw;
 		h.sequence = (int64_t)found->sequence;
 	}
 	cau_client_keep_alive(c->client, true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// watch: a session, live or from a recording, in text.
+// The command `watch`: prints the state of a session as text, live or from a recording.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "cautery/recording.h"
 #include "cautery/words.h"
 
-// What a line tells.
+// The data that one line of text shows.
 typedef struct view {
 	const cau_stream_state *state;
 	const cli_faces *faces;
@@ -37,7 +37,7 @@ static void write_tool_line(FILE *out, const cau_stream_tool *tool)
 		        tool->slipping ? ", slipping" : "", 100 * tool->jaw, tool->jaw_force_n);
 }
 
-// The newest state in one line, without its end.
+// Writes the newest state as one line, without a line end.
 static void write_line(FILE *out, const view *v)
 {
 	const cau_stream_state *s = v->state;
@@ -202,7 +202,7 @@ typedef struct replay {
 	int32_t face_count;
 	cli_faces faces;
 	uint64_t frames, refused;
-	double shown_s; // simulated, of the last line
+	double shown_s; // simulated time of the last printed line
 } replay;
 
 static cau_status start_replay(replay *r, const cau_wire_stream_description *d, cau_error *error)

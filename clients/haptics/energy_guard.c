@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A force that is held for a period does work force . (way of the device). In the worst case the
-// device is accelerated along the force by it and the hand, and the force is taken back by slew_n a
-// period. energy_guard_need sums that. If the tank has so much in one period, then in the next one
-// it has so much for a force that is slew_n less: so there always is a force that may be given, and
-// the tank is never empty. Any force between that one and the wanted one changes by slew_n at most,
-// as both do; the nearest to the wanted one that the tank pays for is taken.
+// A force F that is held for one period does the work F . d, where d is the motion of the device.
+// In the worst case the force and the hand accelerate the device along F, and the force is then
+// reduced by slew_n a period. energy_guard_need sums the work of this case.
+//
+// The tank has this energy for the present force. So in the next period the tank has the energy for
+// a force that is slew_n less. Therefore some force is always allowed, and the tank is never empty.
+// The guard searches between that reduced force and the wanted force. Every force between them
+// differs by slew_n at most from the last one. The guard takes the force nearest to the wanted one
+// for which the tank has the energy.
 #include "haptics/energy_guard.h"
 
 #include <string.h>
@@ -39,7 +42,7 @@ void energy_guard_account(energy_guard *guard, const double place_m[3])
 	memcpy(guard->place_m, place_m, sizeof guard->place_m);
 }
 
-// Moves a force to within slew_n of the last one.
+// Limits the change of a force from the last one to slew_n.
 static void bound_change(const energy_guard *guard, double force_n[3])
 {
 	double change[3];
@@ -60,7 +63,9 @@ static bool pays(const energy_guard *guard, const double velocity_m_s[3], const 
 
 bool energy_guard_bound(energy_guard *guard, const double velocity_m_s[3], double force_n[3])
 {
-	enum { HALVINGS = 10 }; // to a thousandth of slew_n
+	enum {
+		HALVINGS = 10
+	}; // bisections, to about a thousandth of the interval, which is 2 slew_n at most
 	bool bound = false;
 	bound_change(guard, force_n);
 	if (!pays(guard, velocity_m_s, force_n)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One render: the newest record's linear contact at the device's place, the rest of the jump that
-// the record made, damping of fast motion, fading with the record's age. Then the guard.
+// One render adds the newest record's linear contact at the device's position, the part of the
+// record's jump that is not blended in yet, and damping of fast motion. The sum fades with the
+// record's age. Then the guard limits it.
 #include "cautery/haptics.h"
 
 #include <math.h>
@@ -12,18 +13,19 @@
 #include "haptics/mailbox.h"
 #include "haptics/vector.h"
 
-enum { LATE_PERIODS = 2 }; // from the arrival of a record until a render sees it, and one to spare
+enum { LATE_PERIODS = 2 }; // one period until a render sees an arrived record, and one to spare
 
 struct cau_haptics {
 	cau_haptics_def def;
-	double zero_s; // age of a record at which the wanted force is 0
+	double zero_s; // age of the newest record at which the wanted force is 0
 	mailbox mail;
 	local_contact contact;
 	energy_guard guard;
 	bool begun;
-	double now_s, taken_s; // of the last render; when it took the newest record
-	double jump_n[3];      // the old contact's force less the new one's, when that was taken
-	double slow_m_s[3];    // velocity of the device below damping_hz
+	double now_s, taken_s; // time of the last render; time at which it took the newest record
+	double jump_n[3];   // the old contact's force minus the new contact's force at the time of the
+	                    // last record
+	double slow_m_s[3]; // low-pass velocity of the device, below damping_hz
 	cau_haptics_report report;
 };
 
@@ -44,7 +46,8 @@ cau_haptics_def cau_default_haptics_def(void)
 	};
 }
 
-// Age at which the wanted force is 0, so early that the guard's bound on the change has the rest.
+// Returns the age at which the wanted force is 0. It leaves the guard enough time to reduce the
+// largest force to 0 before CAU_HAPTICS_SILENCE_S.
 static double zero_age(const cau_haptics_def *def)
 {
 	return CAU_HAPTICS_SILENCE_S - LATE_PERIODS * def->period_s -
@@ -115,7 +118,7 @@ void cau_haptics_take(cau_haptics *haptics, const cau_tool_contact *record)
 	mailbox_put(&haptics->mail, record);
 }
 
-// Share of the wanted force that the newest record's age leaves.
+// Returns the share of the wanted force that remains at the newest record's age.
 static double fade(const cau_haptics *haptics)
 {
 	double age = haptics->now_s - haptics->taken_s;
@@ -123,14 +126,15 @@ static double fade(const cau_haptics *haptics)
 	return fmin(fmax(share, 0), 1);
 }
 
-// Share of the last jump that is not blended in yet.
+// Returns the share of the last jump that is not blended in yet.
 static double unblended(const cau_haptics *haptics)
 {
 	double age = haptics->now_s - haptics->taken_s;
 	return age < haptics->def.blend_s ? 1 - age / haptics->def.blend_s : 0;
 }
 
-// The force that the device felt goes on, and the new contact's takes its place by and by.
+// Takes a new record. The jump between the old and the new force is kept and blended out, so the
+// felt force stays continuous.
 static void take_record(cau_haptics *haptics, const cau_tool_contact *record,
                         const double place_m[3])
 {
@@ -144,8 +148,8 @@ static void take_record(cau_haptics *haptics, const cau_tool_contact *record,
 	haptics->taken_s = haptics->now_s;
 }
 
-// force -= damping * velocity, across the contact no more than its friction, and along its normal
-// no more than it pushes: tissue does not pull.
+// Subtracts damping * velocity from the force. Across the contact the damping is limited by
+// friction. Along the normal it is limited by the pressing force, because tissue does not pull.
 static void damp_contact(double force_n[3], const local_force *at, double damping_ns_m,
                          const double fast_m_s[3], const double velocity_m_s[3], double friction)
 {
@@ -187,7 +191,7 @@ static void bound_length(double force_n[3], double most)
 			force_n[i] *= most / length;
 }
 
-// The wanted force, before the guard.
+// Computes the wanted force, before the guard.
 static void want(cau_haptics *haptics, const cau_haptics_device *device, double force_n[3])
 {
 	const double *place = device->pose.position_m, *velocity = device->velocity_m_s;
@@ -202,7 +206,7 @@ static void want(cau_haptics *haptics, const cau_haptics_device *device, double 
 	haptics->report.fading = share < 1 || !haptics->contact.valid;
 }
 
-// Whether device and clock are such that a force can be computed from them.
+// True if the device's state is finite and the clock does not run backwards.
 static bool is_sound(const cau_haptics *haptics, const cau_haptics_device *device, double now_s)
 {
 	return isfinite(now_s) && (!haptics->begun || now_s >= haptics->now_s) &&

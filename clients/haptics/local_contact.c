@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// With C the compliance, n_i, o_i the planes: forces f_i >= 0 with n_i . p - o_i + n_i . C f >= 0,
-// complementary, f = sum n_i f_i. This is the linear force F + K (p_record - p), brought into the
-// cone of the normals by the shortest way in the norm of C. What is cut off is friction as far as
-// Coulomb's law lets it.
+// C is the compliance and n_i, o_i are the planes. The forces f_i >= 0 satisfy n_i . p - o_i + n_i
+// . C f >= 0, complementary, with f = sum n_i f_i. This is the linear force F + K (p_record - p),
+// projected onto the cone of the normals in the norm of C. The part that the projection removes is
+// friction, within Coulomb's law.
 //
-// A tip is round: with more force it touches more tissue, and its contact is stiffer. After Hertz
-// the force goes with the depth to the power 1.5. So the record's stiffness K at its force F means
-// a depth of 1.5 F / K, and not of F / K. Along F the planes get that compliance. Their force is
-// multiplied by the root of its share of F. So the force, its slope at the record, and the place
-// where it ends are those of Hertz.
+// A tip is round: a larger force makes it touch more tissue, and the contact becomes stiffer. By
+// Hertz's law the force grows with the depth to the power 1.5. So the record's stiffness K at its
+// force F means a depth of 1.5 F / K, not F / K. The planes get this compliance along F. Their
+// force is multiplied by the root of its share of F. So the force, its slope at the record, and the
+// position where it becomes 0 follow Hertz's law.
 #include "haptics/local_contact.h"
 
 #include <string.h>
 
 #include "haptics/vector.h"
 
-enum { SWEEPS = 32 };               // of Gauss-Seidel over at most 8 planes, from the last forces
-static const double hertz = 1.5;    // power of the depth
-static const double most_share = 2; // of the record's force; above it, it is no stiffer
-static const double settled = 1e-9; // N; a sweep that changes no force by more is the last
-static const double most_m = 100, most_n = 1e5, most_m_n = 1e3; // of any number in a record
+enum { SWEEPS = 32 }; // Gauss-Seidel sweeps over at most 8 planes, starting from the last forces
+static const double hertz = 1.5;    // exponent of the depth
+static const double most_share = 2; // multiple of the record's force up to which stiffness grows
+static const double settled = 1e-9; // N; iteration ends when no force changes by more
+static const double most_m = 100, most_n = 1e5,
+					most_m_n = 1e3; // largest accepted position, force and compliance
 
 static double least_eigenvalue(const double m[6])
 {
@@ -52,7 +53,7 @@ static void invert(double to[6], const double m[6])
 static bool is_within(const double *values, int count, double most)
 {
 	for (int i = 0; i < count; i++)
-		if (!(fabs(values[i]) <= most)) // nor one that is not a number
+		if (!(fabs(values[i]) <= most)) // also false for a NaN
 			return false;
 	return true;
 }
@@ -84,7 +85,7 @@ const char *local_contact_check(const cau_tool_contact *record)
 	return NULL;
 }
 
-// One sweep. Returns the largest change, N.
+// Performs one Gauss-Seidel sweep. Returns the largest change of a force, N.
 static double sweep(local_contact *contact, const double gap_m[CAU_CONTACT_PLANES])
 {
 	double change = 0;
@@ -99,7 +100,7 @@ static double sweep(local_contact *contact, const double gap_m[CAU_CONTACT_PLANE
 	return change;
 }
 
-// The planes' forces, summed, and the mean speed of the tissue behind them.
+// Sums the planes' forces and computes the mean speed of the tissue behind the planes.
 static void push(local_contact *contact, const double place_m[3], local_force *out)
 {
 	double gap_m[CAU_CONTACT_PLANES], sum = 0;
@@ -127,8 +128,8 @@ static void couple_planes(local_contact *contact)
 		}
 }
 
-// In series with a spring, so that nothing is stiffer than `most`. Planes are moved by what that
-// gives way, so that they push as before at the record's place.
+// Puts a spring in series, so that no direction is stiffer than `most`. The planes are moved by the
+// spring's deflection, so their forces at the record's position stay the same.
 static void bound_stiffness(local_contact *contact, double most)
 {
 	double more = fmax(1 / most - least_eigenvalue(contact->compliance), 0);
@@ -144,8 +145,8 @@ static void bound_stiffness(local_contact *contact, double most)
 	couple_planes(contact);
 }
 
-// Makes the planes half as soft again along the record's force, and no softer across it. They give
-// that force at the record's place all the same.
+// Makes the planes half as soft again along the record's force, and no softer across it. Their
+// force at the record's position stays the same.
 static void round_tip(local_contact *contact)
 {
 	local_force at = {0};
@@ -178,20 +179,20 @@ void local_contact_set(local_contact *contact, const cau_tool_contact *record,
 	contact->friction = record->friction;
 	contact->damping_ns_m = record->damping_ns_m;
 	contact->grasp_n_m = record->grasp_n_m;
-	double pull[3]; // of the grasp, as the record has it
+	double pull[3]; // force of the grasp in the record
 	add_scaled3(pull, record->grasp_anchor_m, -1, contact->place_m);
 	add_scaled3(contact->force_n, record->force_n, -record->grasp_n_m, pull);
 	couple_planes(contact);
 	bound_stiffness(contact, stiffness_max_n_m);
-	if (contact->grasp_n_m > 0) // its spring gives the record's force at its place
+	if (contact->grasp_n_m > 0) // The spring gives the record's force at the record's position.
 		add_scaled3(contact->grasp_anchor_m, contact->place_m,
 		            record->grasp_n_m / contact->grasp_n_m, pull);
 	round_tip(contact);
 	invert(contact->stiffness, contact->compliance);
 }
 
-// What the cone cut off the linear force, within Coulomb's law. In a dimple it is not across the
-// force of the planes: friction on the sides also bears.
+// Adds the part of the linear force that the cone removed, within Coulomb's law. In a dimple this
+// part is not perpendicular to the planes' force, because friction on the sides carries load too.
 static void add_friction(const local_contact *contact, const double place_m[3], local_force *out)
 {
 	double moved[3], pulled[3], linear[3], along[3];
@@ -218,7 +219,7 @@ local_force local_contact_force(local_contact *contact, const double place_m[3])
 		out.normal_n_m = 1 / dot3(out.normal, moved);
 		out.damping_ns_m = contact->damping_ns_m;
 		add_friction(contact, place_m, &out);
-		if (contact->record_n > 0) { // Hertz
+		if (contact->record_n > 0) { // Hertz's law
 			double factor = sqrt(fmin(out.normal_n / contact->record_n, most_share));
 			for (int i = 0; i < 3; i++)
 				out.force_n[i] *= factor;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest record, from one thread to another; neither waits. Three slots: the writer's, the
-// reader's, and the one between, which they exchange.
+// Passes the newest record from one thread to another without waiting. There are three slots: one
+// for the writer, one for the reader, and one between that they exchange.
 #pragma once
 
 #include <stdatomic.h>
@@ -8,13 +8,13 @@
 
 #include "cautery/channels.h"
 
-enum { MAILBOX_FRESH = 4 }; // added to the number of the slot between while it was not read
+enum { MAILBOX_FRESH = 4 }; // added to the number of the slot between while that slot is unread
 
 typedef struct mailbox {
 	cau_tool_contact slot[3];
-	_Atomic unsigned between; // number of its slot, and MAILBOX_FRESH
-	unsigned writing;         // of the writer alone
-	unsigned reading;         // of the reader alone
+	_Atomic unsigned between; // number of the slot between, with MAILBOX_FRESH if it is unread
+	unsigned writing;         // the writer's slot; only the writer uses it
+	unsigned reading;         // the reader's slot; only the reader uses it
 } mailbox;
 
 static inline void mailbox_begin(mailbox *mail)
@@ -24,7 +24,7 @@ static inline void mailbox_begin(mailbox *mail)
 	mail->reading = 2;
 }
 
-// Copies a record in; an older one that was not read is gone.
+// Copies a record into the mailbox. An unread older record is lost.
 static inline void mailbox_put(mailbox *mail, const cau_tool_contact *record)
 {
 	mail->slot[mail->writing] = *record;
@@ -33,8 +33,8 @@ static inline void mailbox_put(mailbox *mail, const cau_tool_contact *record)
 	                ~(unsigned)MAILBOX_FRESH;
 }
 
-// The newest record if it was not read before, else NULL. Its slot is the reader's until the next
-// call.
+// Returns the newest record if it is unread, else NULL. The record belongs to the reader until the
+// next call.
 static inline cau_tool_contact *mailbox_get(mailbox *mail)
 {
 	if (!(atomic_load_explicit(&mail->between, memory_order_relaxed) & MAILBOX_FRESH))

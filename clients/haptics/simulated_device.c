@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A haptic device without hardware, as an example: a simulated hand presses the ball of the scene
-// `fat` into the tissue and holds it there. It is the whole loop of a real device, but for the
-// reading of its place and the setting of its motors, which device_move stands for.
+// An example of a haptic device without hardware. A simulated hand presses the ball of the scene
+// `fat` into the tissue and holds it there. The program has the whole loop of a real device. Only
+// device_move replaces reading the position and setting the motors.
 //
-//     cautery-device [ws://127.0.0.1:8740]
+//   cautery-device [ws://127.0.0.1:8740]
 //
-// makes a session, joins it with the channel tool_contact, renders a thousand times a second for
-// four seconds, reports the force, and removes the session. Where a busy machine makes fewer than
-// 20 ticks a second, each record grows too old before the next one comes, and the force fades.
+// The program creates a session and joins it with the channel tool_contact. It renders a thousand
+// times a second for four seconds, reports the force, and removes the session. On a machine that
+// makes fewer than 20 ticks a second, each record grows too old before the next one arrives, and
+// the force fades.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,13 +18,14 @@
 #include "cautery/defaults.h"
 #include "cautery/haptics.h"
 
-static const char tool_name[] = "ball"; // that the scene has
+static const char tool_name[] = "ball"; // name of the tool in the scene
 static const double period_s = 0.001;
-static const double above_m = 0.004, below_m = -0.001; // where the hand wants the ball: first, then
+static const double above_m = 0.004,
+					below_m = -0.001; // height that the hand wants at first and at the end
 static const double press_s = 1, hold_s = 3, report_every_s = 0.5;
 enum { POSE_PERIODS = 4, LATE_PERIODS = 50 };
 
-// A hand of 50 g with 0.3 N s/m that is pulled by 100 N/m to where it wants to be.
+// The hand: a mass with damping. A spring pulls it to the wanted position.
 static const double mass_kg = 0.05, damping_ns_m = 0.3, stiffness_n_m = 100;
 
 typedef struct program {
@@ -32,13 +34,13 @@ typedef struct program {
 	cau_client_stream *stream;
 	cau_haptics *haptics;
 	char session[CAU_NAME_BYTES];
-	uint64_t sequence, tick; // of our commands; of the last record
+	uint64_t sequence, tick; // sequence of the last command; tick of the last record
 	int record_count;
 	cau_haptics_device device;
-	double least_n, most_n; // along z, in the last second
+	double least_n, most_n; // along z in the last second
 } program;
 
-// One period of the device under a force of its motors.
+// Moves the device for one period under the force of its motors.
 static void device_move(cau_haptics_device *device, const double wanted_m[3],
                         const double force_n[3])
 {
@@ -50,7 +52,7 @@ static void device_move(cau_haptics_device *device, const double wanted_m[3],
 	}
 }
 
-// The tool is commanded to where the device is. Nothing comes back.
+// Commands the tool to the device's position. The server sends no answer.
 static cau_status send_pose(program *p, cau_error *error)
 {
 	cau_command command;
@@ -62,7 +64,7 @@ static cau_status send_pose(program *p, cau_error *error)
 	return cau_client_move(p->client, p->session, &command, error);
 }
 
-// Hands over the record of a tick that has not been seen.
+// Passes the tool's contact record of a new tick to the renderer.
 static void take_record(program *p)
 {
 	const cau_stream_state *state = p->stream->state;
@@ -75,7 +77,7 @@ static void take_record(program *p)
 	p->record_count++;
 }
 
-// One millisecond: a real device reads its place, and sets its motors to the force.
+// One period of 1 ms. A real device would read its position and set its motors to the force here.
 static cau_status serve(program *p, int period, cau_error *error)
 {
 	double now_s = period * period_s, share = fmin(now_s / press_s, 1), force_n[3];
@@ -92,8 +94,8 @@ static cau_status serve(program *p, int period, cau_error *error)
 	return period % POSE_PERIODS ? CAU_OK : send_pose(p, error);
 }
 
-// The periods that are due by the clock. A busy machine may be late: then some follow each other at
-// once, which a real device must not do.
+// Runs the periods that are due by the clock. After a delay on a busy machine some periods follow
+// each other at once, which a real device must not do.
 static cau_status run(program *p, cau_error *error)
 {
 	double start_s = cau_client_now();
@@ -101,7 +103,8 @@ static cau_status run(program *p, cau_error *error)
 	cau_client_keep_alive(p->client, true);
 	while (done < periods) {
 		int due = (int)((cau_client_now() - start_s) / period_s);
-		if (due > done + LATE_PERIODS) { // the clock goes on, the device has lost time
+		// After a long delay the due periods are postponed, so that they do not all follow at once.
+		if (due > done + LATE_PERIODS) {
 			start_s += (due - done) * period_s;
 			continue;
 		}
@@ -156,7 +159,7 @@ static cau_status join_and_take(program *p, cau_error *error)
 {
 	cau_wire_session_join join = {.has_session = true,
 	                              .has_rate_hz = true,
-	                              .rate_hz = 1000, // each tick
+	                              .rate_hz = 1000, // a frame for each tick
 	                              .has_channels = true,
 	                              .channels = CAU_CHANNEL_TOOL_CONTACT};
 	cau_wire_tool_ref take = {.has_session = true, .has_client_sequence = true};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of three, and symmetric matrices xx, yy, zz, xy, xz, yz.
+// Vectors of three numbers. Symmetric matrices are stored as xx, yy, zz, xy, xz, yz.
 #pragma once
 
 #include <math.h>
@@ -15,7 +15,7 @@ static inline double length3(const double a[3])
 	return sqrt(dot3(a, a));
 }
 
-// to = a + scale * b
+// Computes to = a + scale * b.
 static inline void add_scaled3(double to[3], const double a[3], double scale, const double b[3])
 {
 	for (int i = 0; i < 3; i++)
@@ -27,7 +27,7 @@ static inline bool is_finite3(const double a[3])
 	return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]);
 }
 
-// to = m a
+// Computes to = m a.
 static inline void symmetric_times(double to[3], const double m[6], const double a[3])
 {
 	double x = m[0] * a[0] + m[3] * a[1] + m[4] * a[2];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests and their answers; notifications to the server.
+// Sends requests and notifications to the server and receives answers.
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,18 +7,18 @@
 
 enum { FIRST_CAPACITY = 2048 };
 
-// A text of the least size that the writer needs; the caller frees it.
+// A message text, allocated with the size that the writer needs. The caller frees it.
 typedef struct message_text {
 	char *bytes;
 	size_t byte_count;
 } message_text;
 
-typedef struct writing { // what one message is made of
-	int64_t id;          // below 0: a notification
+typedef struct writing { // the content of one message
+	int64_t id;          // negative for a notification
 	cau_method method;
 	const void *params;
-	const cau_rpc_envelope *envelope; // of a command
-	const cau_command *command;       // NULL: not a command
+	const cau_rpc_envelope *envelope; // only for a command
+	const cau_command *command;       // NULL if it is not a command
 } writing;
 
 static cau_status write_once(const writing *w, cau_rpc_buffer *out, cau_error *error)
@@ -31,7 +31,7 @@ static cau_status write_once(const writing *w, cau_rpc_buffer *out, cau_error *e
 	return cau_rpc_write_request(out, w->id, w->method, w->params, error);
 }
 
-// The program says the id that it knows.
+// Replaces the session id that the program knows by the session's present id.
 static cau_status rename_session(const cau_client *client, size_t room_before, message_text *made,
                                  cau_error *error)
 {
@@ -78,7 +78,7 @@ static cau_status write_text(const cau_client *client, const writing *w, size_t 
 }
 
 // ---- sending -----------------------------------------------------------------------------------
-// Whether the same text may go out again on another connection.
+// True if the same text may be sent again on another connection.
 static bool can_resend(cau_method method, const char *sent, size_t bytes)
 {
 	cau_rpc_message message;
@@ -89,7 +89,7 @@ static bool can_resend(cau_method method, const char *sent, size_t bytes)
 	case CAU_METHOD_UPLOAD_END:
 	case CAU_METHOD_SESSION_EXPORT:
 	case CAU_METHOD_SESSION_LOG:
-	case CAU_METHOD_SESSION_JOIN: // joined again anyway
+	case CAU_METHOD_SESSION_JOIN: // the client joins again by itself
 		return false;
 	default:
 		break;
@@ -120,7 +120,8 @@ static cau_status send_request(cau_client *client, const writing *w, cau_client_
 	                                .user = user,
 	                                .byte_count = made.byte_count};
 	pending->resendable = can_resend(w->method, pending->text, pending->byte_count);
-	if (client->condition == CAU_CLIENT_READY && !client->following) // else hello's answer sends it
+	if (client->condition == CAU_CLIENT_READY &&
+	    !client->following) // Otherwise the request is sent after the answer to hello.
 		status = cau_socket_send(client, false, pending->text, pending->byte_count, NULL, 0, error);
 	if (status) {
 		free(pending);
@@ -221,7 +222,7 @@ void cau_calls_answered(cau_client *client, const cau_rpc_message *message)
 	cau_error error = {0};
 	cau_client_pending *pending = cau_pending_take(client, message->id.number);
 	if (!pending)
-		return; // answered before, on an earlier connection
+		return; // already answered on an earlier connection
 	if (message->kind == CAU_RPC_ERROR && cau_follow_answer(client, pending, &message->fault))
 		return;
 	if (message->kind == CAU_RPC_ERROR) {
@@ -268,7 +269,7 @@ void cau_calls_resend(cau_client *client)
 {
 	for (cau_client_pending *p = client->first_pending; p; p = p->next)
 		if (cau_socket_send(client, false, p->text, p->byte_count, NULL, 0, NULL))
-			return; // the outbox is full: what is left goes with the next connection
+			return; // The outbox is full. The remaining requests are sent with the next connection.
 }
 
 const cau_rpc_fault *cau_client_fault(const cau_client *client)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client's life, from being made to its end.
+// Creates, closes and destroys clients.
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ cau_client_def cau_default_client_def(void)
 	                        .timeout_s = 30};
 }
 
-// What goes into the URL as it is.
+// Checks the session and the label, which are written into the URL without escaping.
 static cau_status check_names(const cau_client *client, cau_error *error)
 {
 	if (*client->session && !cau_name_is_valid(client->session))
@@ -121,7 +121,7 @@ void cau_client_close(cau_client *client)
 	double until_s = cau_client_now() + 1e-6 * CAU_CLIENT_CLOSE_WAIT_US;
 	for (double now_s; client->wsi && (now_s = cau_client_now()) < until_s;)
 		cau_loop_wait(client->loop, until_s - now_s);
-	cau_calls_lost(client, true); // whatever the server is up to, nobody waits any more
+	cau_calls_lost(client, true); // No caller waits for answers any more.
 }
 
 void cau_client_drop(cau_client *client)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connection of a client: opening it, greeting, losing it, coming back.
+// Opens a client's connection, says hello, detects its loss and reconnects.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,8 @@
 enum {
 	FIRST_RETRY_US = 100000,
 	LAST_RETRY_US = 2000000,
-	FOLLOWS_MOST = 5, // attempts of a client that does not come back otherwise
+	FOLLOWS_MOST =
+		5, // attempts to follow a session, for a client that does not reconnect otherwise
 };
 
 static void set_condition(cau_client *client, cau_client_condition condition)
@@ -27,8 +28,8 @@ void cau_client_forget_timers(cau_client *client)
 }
 
 // ---- open --------------------------------------------------------------------------------------
-// Five heartbeats go into the silence after which the server cuts energy: on a busy machine some
-// come late, and the server takes some late.
+// Returns the interval of heartbeats. Five heartbeats fit into the silence after which the server
+// turns energy off, because a busy machine may send or receive some of them late.
 static lws_usec_t tick_us(const cau_client *client)
 {
 	const double share = 5, least_us = 10000;
@@ -86,7 +87,7 @@ static void retry(lws_sorted_usec_list_t *timer)
 	cau_client_begin(lws_container_of(timer, cau_client, retry));
 }
 
-// Close codes after which coming back would meet the same again.
+// True for close codes that a new connection would get again.
 static bool is_final(int code)
 {
 	switch (code) {
@@ -117,7 +118,7 @@ void cau_client_lost(cau_client *client, const char *reason)
 		cau_fail(&client->trouble, CAU_IO, NULL, "%s", reason);
 	cau_streams_lost(client);
 	if (again) {
-		// The first way to a daemon that has the session now waits for nothing.
+		// The first attempt to reach the session's new daemon starts at once.
 		bool at_once = client->following && !client->attempts && !client->ways;
 		int before = client->following ? client->attempts + client->ways - 1 : client->attempts;
 		double wait_us = at_once ? 0 : fmin(LAST_RETRY_US, FIRST_RETRY_US * exp2(before));
@@ -130,14 +131,15 @@ void cau_client_lost(cau_client *client, const char *reason)
 }
 
 // ---- opening -----------------------------------------------------------------------------------
-// What an HTTP answer that is no upgrade says: its status, and the reason that the daemon gives in
-// a header, since libwebsockets shows no body of such an answer. False if there was none.
+// Reads an HTTP answer that is not an upgrade: the status, and the daemon's reason. The reason is
+// in a header, because libwebsockets does not give the body of such an answer. Returns false if
+// there was no such answer.
 static bool read_refusal(struct lws *wsi, char *text, size_t bytes)
 {
 	static const char header[] = "cautery-reason:";
 	char reason[200];
 	unsigned status = wsi ? lws_http_client_http_response(wsi) : 0;
-	if (status < 200) // none, or an upgrade
+	if (status < 200) // no answer, or an upgrade
 		return false;
 	if (lws_hdr_custom_copy(wsi, reason, sizeof reason, header, sizeof header - 1) <= 0)
 		snprintf(reason, sizeof reason, "no reason given; is this a cauteryd?");
@@ -162,7 +164,7 @@ void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, 
 static void open_socket(cau_client *client)
 {
 	char host[280], path[16 + CAU_NAME_BYTES];
-	bool bare = strchr(client->url.host, ':') == NULL; // no IPv6 address
+	bool bare = strchr(client->url.host, ':') == NULL; // not an IPv6 address
 	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", client->url.host, client->url.port);
 	const char *name = *client->session ? client->session : client->label;
 	const char *query = *client->session ? "?session=" : *client->label ? "?label=" : "";

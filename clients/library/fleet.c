@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which daemons stand behind an address: one GET of /api/fleet, which the proxy in front of several
-// answers. A daemon alone answers that it is, or 404 if it is older. No token goes along.
+// Asks which daemons are behind an address, with one GET of /api/fleet. The proxy in front of
+// several daemons answers with their labels. A single daemon answers that it is alone; an older one
+// answers 404. The request has no token.
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,8 +9,8 @@
 
 typedef struct question {
 	bool done;
-	unsigned status;     // of HTTP; 0: nothing answered
-	const char *trouble; // why not, for people
+	unsigned status;     // HTTP status, or 0 without an answer
+	const char *trouble; // why there is no answer, for people
 	size_t bytes;
 	char trouble_text[128];
 	char text[CAU_FLEET_JSON_MAX_BYTES];
@@ -26,7 +27,8 @@ static int take(question *q, const char *in, size_t bytes)
 	return 0;
 }
 
-// libwebsockets says that something is there, and calls again from within with what it is.
+// Reads the body. libwebsockets reports that data are available, and calls back from
+// lws_http_client_read with the data.
 static int read_some(struct lws *wsi)
 {
 	char buffer[LWS_PRE + 2048], *at = buffer + LWS_PRE;
@@ -58,7 +60,7 @@ int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *
 		return take(q, in, bytes);
 	case LWS_CALLBACK_COMPLETED_CLIENT_HTTP:
 		q->done = true;
-		return -1; // asked once
+		return -1; // stop after the one request
 	case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
 		note_failure(q, in, in ? strlen(in) : 16);
 		return 0;
@@ -75,7 +77,7 @@ int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *
 static struct lws *ask(cau_loop *loop, const cau_url *url, question *q)
 {
 	char host[280];
-	bool bare = strchr(url->host, ':') == NULL; // no IPv6 address
+	bool bare = strchr(url->host, ':') == NULL; // not an IPv6 address
 	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", url->host, url->port);
 	struct lws_client_connect_info info = {
 		.context = loop->context,
@@ -94,7 +96,8 @@ static struct lws *ask(cau_loop *loop, const cau_url *url, question *q)
 	return lws_client_connect_via_info(&info);
 }
 
-// What libwebsockets still knows of the question goes before it does.
+// Waits for the answer. After a timeout it closes the connection, because libwebsockets still
+// refers to *q.
 static void await_answer(cau_loop *loop, struct lws *wsi, question *q, double timeout_s)
 {
 	double until_s = cau_client_now() + timeout_s;

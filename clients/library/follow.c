@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Following a session that has moved to another daemon: the connection is given up for one to that
-// daemon, where tools are resumed, streams joined again and requests sent again that were answered
-// with `moved`. What the program says of the old id is said of the new one from then on.
+// Follows a session that has moved to another daemon. The client closes its connection and connects
+// to the new daemon. There it resumes its tools, joins its streams again, and resends requests that
+// were answered with `moved`. From then on the old session id means the new id.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,16 +10,17 @@
 enum { PATTERN_BYTES = 16 + CAU_NAME_BYTES };
 
 #define ARRIVES_MOST_S                                                                             \
-	30. // a session that has left is served elsewhere by then, or its courier died
+	30. // longest time until the target daemon serves the session; after that its courier has died
 
-// ---- the id in texts ----------------------------------------------------------------------------
+// ---- session ids in message texts ---------------------------------------------------------------
 
 static size_t member(char text[PATTERN_BYTES], const char *session)
 {
 	return (size_t)snprintf(text, PATTERN_BYTES, "\"session\":\"%s\"", session);
 }
 
-// A quote within a string is written as \", so that only the member itself looks like this.
+// Quotes within a string are written as \", so the pattern matches only the member `session`
+// itself.
 char *cau_follow_text(const char *from, const char *to, const char *text, size_t *bytes)
 {
 	char old[PATTERN_BYTES], new[PATTERN_BYTES];
@@ -59,9 +60,10 @@ static void rename_pending(cau_client *client, const char *from, const char *to)
 	}
 }
 
-// ---- whether ------------------------------------------------------------------------------------
+// ---- whether to follow --------------------------------------------------------------------------
 
-// A connection is to one daemon: with streams of other sessions it stays where it is.
+// True if the client uses only this session. A connection leads to one daemon, so a client with
+// streams of other sessions does not follow.
 static bool is_about(const cau_client *client, const char *session)
 {
 	if (*client->session && strcmp(client->session, session) != 0)
@@ -76,7 +78,8 @@ static bool is_about(const cau_client *client, const char *session)
 	return true;
 }
 
-// The token is not sent in the clear where it was not before.
+// Reads the target's URL. Refuses a URL without TLS if the present one has TLS, because the token
+// would be sent unencrypted.
 static bool read_url(const cau_client *client, const char *text, cau_url *url)
 {
 	*url = client->url;
@@ -87,7 +90,7 @@ static void rename_sessions(cau_client *client, const char *from, const char *to
 {
 	snprintf(client->moved_from, sizeof client->moved_from, "%s", from);
 	snprintf(client->moved_to, sizeof client->moved_to, "%s", to);
-	snprintf(client->session, sizeof client->session, "%s", to); // a proxy goes by it
+	snprintf(client->session, sizeof client->session, "%s", to); // A proxy routes by the session.
 	for (int i = 0; i < CAU_CLIENT_STREAMS_MAX; i++) {
 		cau_client_slot *slot = client->slots[i];
 		if (slot && slot->wanted.has_session && strcmp(slot->wanted.session, from) == 0)
@@ -106,7 +109,7 @@ bool cau_follow(cau_client *client, const char *from, const char *to, const char
 	if (client->following || !client->def.follow || !*to || strcmp(from, to) == 0 ||
 	    !is_about(client, from) || !read_url(client, url, &found))
 		return false;
-	// The program knows the first of its ids only.
+	// The program knows only the first id of a session that moved several times.
 	char first[CAU_NAME_BYTES];
 	snprintf(first, sizeof first, "%s",
 	         strcmp(client->moved_to, from) == 0 ? client->moved_from : from);
@@ -123,7 +126,8 @@ bool cau_follow(cau_client *client, const char *from, const char *to, const char
 	return true;
 }
 
-// Others are answered likewise at once; what is not, is sent again if it may be.
+// Closes the connection once every pending request can be sent again to the new daemon. The old
+// daemon answers all other requests at once, with `moved`.
 void cau_follow_when_answered(cau_client *client)
 {
 	for (const cau_client_pending *p = client->first_pending; p; p = p->next)
@@ -133,8 +137,8 @@ void cau_follow_when_answered(cau_client *client)
 	cau_socket_cut(client);
 }
 
-// The session has left where it was and is not served yet where it goes: that takes a moment. Until
-// it is found, tools are asked for with the token of the daemon that had it.
+// The session has left its old daemon and is not served by the new daemon yet. Until it is found,
+// tools are resumed with the old daemon's resume token.
 static bool goes_again(cau_client *client, const char *session, const cau_rpc_fault *fault)
 {
 	bool arrives = fault->code == CAU_RPC_NOT_HERE && *client->moved_to &&
@@ -155,7 +159,7 @@ void cau_follow_found(cau_client *client)
 		client->kept_resume[0] = 0;
 }
 
-// ---- what tells of it ---------------------------------------------------------------------------
+// ---- what shows that a session has moved --------------------------------------------------------
 
 static void session_of(const cau_client *client, const cau_client_pending *pending,
                        char session[CAU_NAME_BYTES])
@@ -178,7 +182,8 @@ bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const ca
 	if ((!moved && fault->code != CAU_RPC_NOT_HERE) || pending->method == CAU_METHOD_SESSION_JOIN)
 		return false;
 	session_of(client, pending, session);
-	pending->again = pending->resendable = true; // it was refused: it may be sent again
+	pending->again = pending->resendable =
+		true; // The daemon refused the request, so it may be sent again.
 	cau_pending_add(client, pending);
 	if (moved ? cau_follow(client, session, fault->moved_to, fault->url)
 	          : goes_again(client, session, fault))
@@ -187,7 +192,7 @@ bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const ca
 	return false;
 }
 
-// Joined again with all streams: the answer that refused it is nobody's.
+// All streams are joined again, so the refusal of one join needs no further handling.
 bool cau_follow_join(cau_client *client, const char *session, const cau_rpc_fault *fault)
 {
 	if (fault->code == CAU_RPC_MOVED && *fault->moved_to)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames to the newest state; gaps to key frames; acknowledgements.
+// Decodes frames to the newest state, asks for key frames after gaps, and acknowledges frames.
 #include <stdlib.h>
 
 #include "library/internal.h"
 
-// A key frame follows a gap by itself where the server knows of it; after this we ask.
+// Wait before the client asks for a key frame. The server sends one by itself if it knows of the
+// gap.
 static const double patience_s = 0.25;
-static const double ask_again_s = 1.0; // the server sends at most one a second
+static const double ask_again_s = 1.0; // The server sends at most one requested key frame a second.
 
 static cau_client_slot *find_slot(cau_client *client, const cau_frame_header *header)
 {
@@ -32,7 +33,8 @@ static cau_status take_topology(cau_client_slot *slot, const void *bytes, size_t
 	return status;
 }
 
-// A delta that comes too late for what is held, or a key frame that is not needed, is no gap.
+// True if a delta is missing before this frame. A delta older than the present state, or an
+// unneeded key frame, is no gap.
 static bool is_gap(const cau_client_slot *slot, const cau_frame_header *header)
 {
 	const cau_stream_state *state = slot->stream.state;
@@ -74,7 +76,8 @@ void cau_frame_received(cau_client *client, const void *bytes, size_t byte_count
 	frame.status = cau_frame_header_read(bytes, byte_count, &frame.header, NULL);
 	if (!frame.status)
 		slot = find_slot(client, &frame.header);
-	if (!slot) // of a session just left; or no frame, which no stream can be blamed for
+	// The frame is of a session just left, or its header is invalid, so it belongs to no stream.
+	if (!slot)
 		return;
 	if (frame.header.kind == CAU_FRAME_TOPOLOGY)
 		frame.status = take_topology(slot, bytes, byte_count, NULL);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first message on a connection and its answer.
+// Sends hello, the first message on a connection, and reads its answer.
 #include <string.h>
 
 #include "library/internal.h"
@@ -15,7 +15,7 @@ cau_status cau_hello_send(cau_client *client, cau_error *error)
 	snprintf(hello.client, sizeof hello.client, "%s", client->name);
 	hello.has_token = *client->token;
 	memcpy(hello.token, client->token, sizeof client->token);
-	// Coming back keeps the identity that the stored answers belong to.
+	// A reconnecting client keeps its identity, because the stored answers belong to that identity.
 	const char *id = again ? client->server.client_id : client->client_id;
 	hello.has_client_id = *id;
 	snprintf(hello.client_id, sizeof hello.client_id, "%s", id);

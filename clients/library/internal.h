@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the files of the client library share.
+// Declarations for the files of the client library.
 #pragma once
 
 #include <libwebsockets.h>
@@ -9,10 +9,10 @@
 #include "library/url.h"
 
 enum {
-	CAU_CLIENT_TEXT_MAX = 64 << 20,  // of a text message from the server
-	CAU_CLIENT_BINARY_MAX = 1 << 30, // of a frame or chunk
+	CAU_CLIENT_TEXT_MAX = 64 << 20,  // bytes in a text message from the server
+	CAU_CLIENT_BINARY_MAX = 1 << 30, // bytes in a frame or chunk
 	CAU_CLIENT_TICK_US =
-		100000, // at most between heartbeats, acknowledgements, calls for key frames
+		100000, // largest interval between heartbeats, acknowledgements and requests for key frames
 	CAU_CLIENT_CLOSE_WAIT_US = 1000000,
 };
 
@@ -21,35 +21,35 @@ struct cau_loop {
 	lws_sorted_usec_list_t wake; // ends a wait
 };
 
-// A request without answer yet.
+// A request that has no answer yet.
 typedef struct cau_client_pending {
 	struct cau_client_pending *next;
 	int64_t id;
 	cau_method method;
-	cau_client_answer *answer; // NULL: nobody waits any more
+	cau_client_answer *answer; // NULL if no caller waits any more
 	void *user;
 	bool resendable;
-	bool again; // answered with `moved`: it goes to the other daemon
+	bool again; // answered with `moved`, so it will be sent to the new daemon
 	size_t byte_count;
 	char text[];
 } cau_client_pending;
 
 typedef struct cau_client_slot {
-	cau_client_stream stream; // what the caller sees
+	cau_client_stream stream; // visible to the caller
 	cau_client *client;
 	cau_wire_session_join wanted;
-	void *storage; // of the decoder
+	void *storage; // memory of the decoder
 	cau_frame_decoder *decoder;
-	double gap_s;       // since when a key frame is missing; 0: none is
-	double key_asked_s; // when one was last asked for
+	double gap_s;       // time since which a key frame is missing, or 0
+	double key_asked_s; // time of the last request for a key frame
 	uint64_t acknowledged;
-	cau_client_answer *answer; // of the caller's join
+	cau_client_answer *answer; // callback of the caller's join
 	void *user;
 } cau_client_slot;
 
-// A file that comes in chunks.
+// A file that arrives in chunks.
 typedef struct cau_client_incoming {
-	int64_t transfer; // 0: the answer is still out
+	int64_t transfer; // 0 until the answer has come
 	unsigned char *bytes;
 	size_t byte_count, received;
 	bool broken;
@@ -57,61 +57,62 @@ typedef struct cau_client_incoming {
 
 struct cau_client {
 	cau_loop *loop;
-	cau_client_def def; // its strings point at what follows
+	cau_client_def def; // its strings point at the arrays below
 	char session[CAU_NAME_BYTES], label[CAU_NAME_BYTES], token[513], name[65], client_id[65];
 	cau_url url;
 	struct lws *wsi;
 	cau_client_condition condition;
-	bool closing; // our own wish
+	bool closing; // closed by this program
 	int close_code;
 	char close_reason[128];
 	cau_error trouble;
 	cau_rpc_fault fault;
 	cau_outbox outbox;
-	unsigned char *message; // the one that is being received
+	unsigned char *message; // the message that is being received
 	size_t message_bytes, message_capacity;
 	cau_client_pending *first_pending, *last_pending;
 	int64_t last_id, last_sequence;
 	cau_wire_hello_result server;
 	uint64_t connections;
-	int attempts;    // to connect, since the last hello
+	int attempts;    // number of attempts to connect since the last hello
 	bool keep_alive; // see cau_client_keep_alive
-	bool following;  // on the way to the daemon that has the session now
-	int ways;        // that it has gone for that, to where the session has not arrived yet
+	bool following;  // connecting to the session's new daemon
+	int ways;        // number of attempts that found the session not yet served by the new daemon
 	double arrives_until_s;
-	char kept_resume[65]; // of the daemon that had it, until the session is found; "": found
-	char moved_from[CAU_NAME_BYTES], moved_to[CAU_NAME_BYTES]; // the id that the program knows, and
-	                                                           // what it is now; "": none moved
+	char kept_resume[65]; // resume token of the old daemon until the session is found, then ""
+	char moved_from[CAU_NAME_BYTES],
+		moved_to[CAU_NAME_BYTES]; // the id that the program knows, and the present id; "" if the
+	                              // session has not moved
 	lws_sorted_usec_list_t tick, retry, deadline;
 	cau_client_slot *slots[CAU_CLIENT_STREAMS_MAX];
 	cau_client_incoming *incoming; // one at a time
 };
 
 // fleet.c
-#define CAU_FLEET_PROTOCOL "cautery-fleet" // of the loop; nothing on the wire has this name
+#define CAU_FLEET_PROTOCOL "cautery-fleet" // libwebsockets needs this name; it is never sent
 int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes);
 
 // send.c
-void cau_socket_cut(cau_client *client); // by and by; ends in cau_client_lost
+void cau_socket_cut(
+	cau_client *client); // closes the connection soon; cau_client_lost is called then
 cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,
                            const void *body, size_t body_bytes, cau_error *error);
 
 // connection.c
 void cau_client_begin(cau_client *client);
 void cau_client_forget_timers(cau_client *client);
-void cau_client_beat(cau_client *client); // a heartbeat with the clock of this machine
+void cau_client_beat(cau_client *client); // sends a heartbeat with this machine's clock
 void cau_client_opened(cau_client *client);
 void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes);
 void cau_client_lost(cau_client *client, const char *reason);
-void cau_client_refused(cau_client *client, const cau_error *error); // closes for good
+void cau_client_refused(cau_client *client, const cau_error *error); // closes without reconnecting
 void cau_client_greeted(cau_client *client);
 
 // wait.c
 bool cau_client_wait_for(cau_client *client, const bool *done, double until_s);
-// Until a request of `user` is answered, `timeout_s` at most; what costs the server much (building,
-// going back, files) takes the time it takes there, and is waited for while heartbeats are
-// answered.
+// Waits for the answer to a request of `user`, `timeout_s` at most. Expensive requests (building,
+// rewinding, files) may take longer while the server answers heartbeats.
 cau_status cau_client_await(cau_client *client, cau_method method, const bool *done,
                             const void *user, cau_error *error);
 
@@ -123,24 +124,28 @@ cau_status cau_hello_answered(cau_client *client, const cau_rpc_message *message
 void cau_text_received(cau_client *client, const char *text, size_t bytes);
 
 // pending.c
-void cau_pending_add(cau_client *client, cau_client_pending *pending); // at the end
-// The request of this id, which is the caller's then; NULL: there is none.
+void cau_pending_add(cau_client *client, cau_client_pending *pending); // appends to the list
+// Removes and returns the request with this id, for the caller to free. Returns NULL if there is
+// none.
 cau_client_pending *cau_pending_take(cau_client *client, int64_t id);
 
 // calls.c
 void cau_calls_answered(cau_client *client, const cau_rpc_message *message);
-void cau_calls_lost(cau_client *client, bool all); // fails those that cannot be sent again
+void cau_calls_lost(cau_client *client,
+                    bool all); // fails the requests that cannot be sent again, or all
 void cau_calls_resend(cau_client *client);
 void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error);
 
 // follow.c
-// The text with another id of the session, malloc'ed; NULL where it does not name it.
+// Returns the text with the session id replaced, allocated with malloc. Returns NULL if the text
+// does not name `from`.
 char *cau_follow_text(const char *from, const char *to, const char *text, size_t *bytes);
-// Goes after a session. False: this client does not.
+// Starts to follow a session. Returns false if this client does not follow it.
 bool cau_follow(cau_client *client, const char *from, const char *to, const char *url);
 void cau_follow_when_answered(cau_client *client);
 void cau_follow_found(cau_client *client); // the daemon has answered about the session
-// Takes the request back that was answered so. False: the program is told.
+// Keeps a request that was answered with `moved` to send it again. Returns false if the program
+// must get the error.
 bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const cau_rpc_fault *fault);
 bool cau_follow_join(cau_client *client, const char *session, const cau_rpc_fault *fault);
 void cau_follow_change(cau_client *client, const cau_wire_session_changed *changed);

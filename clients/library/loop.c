@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time, and waiting in the event loop that socket.c makes.
+// The clock, and waiting in the event loop that socket.c creates.
 #include <stdlib.h>
 #include <time.h>
 
@@ -22,7 +22,7 @@ void cau_loop_destroy(cau_loop *loop)
 
 static void woken(lws_sorted_usec_list_t *wake)
 {
-	(void)wake; // that the wait ended is all there is to it
+	(void)wake; // The timer's only purpose is to end the wait.
 }
 
 void cau_loop_wait(cau_loop *loop, double seconds)

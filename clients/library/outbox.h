@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that wait to be written to the socket, first in first out.
+// A queue of messages that wait to be written to the socket.
 #pragma once
 
 #include <stdbool.h>
@@ -7,7 +7,9 @@
 
 #include "cautery/status.h"
 
-enum { CAU_OUTBOX_BYTES_MAX = 8 << 20 }; // beyond it messages are refused with CAU_LIMIT
+enum {
+	CAU_OUTBOX_BYTES_MAX = 8 << 20
+}; // A message that would exceed this is refused with CAU_LIMIT.
 
 typedef struct cau_outbox_message {
 	struct cau_outbox_message *next;
@@ -21,9 +23,9 @@ typedef struct cau_outbox {
 	size_t byte_count;
 } cau_outbox;
 
-// Appends a copy of head and body, joined. Errors: CAU_LIMIT, CAU_NO_MEMORY.
+// Appends a message, a copy of head followed by body. Errors: CAU_LIMIT, CAU_NO_MEMORY.
 cau_status cau_outbox_add(cau_outbox *outbox, bool binary, const void *head, size_t head_bytes,
                           const void *body, size_t body_bytes, cau_error *error);
-unsigned char *cau_outbox_bytes(cau_outbox_message *message); // after the headroom
-cau_outbox_message *cau_outbox_take(cau_outbox *outbox);      // NULL: empty; the caller frees it
+unsigned char *cau_outbox_bytes(cau_outbox_message *message); // the message after its headroom
+cau_outbox_message *cau_outbox_take(cau_outbox *outbox);      // NULL if empty; the caller frees it
 void cau_outbox_clear(cau_outbox *outbox);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests that have no answer yet, in the order in which they were sent.
+// The list of requests without an answer, in the order in which they were sent.
 #include "library/internal.h"
 
 void cau_pending_add(cau_client *client, cau_client_pending *pending)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts from the server, to those whom they are for.
+// Dispatches text messages from the server.
 #include "library/internal.h"
 
 static void greeted(cau_client *client, const cau_rpc_message *message)
@@ -14,7 +14,7 @@ static void greeted(cau_client *client, const cau_rpc_message *message)
 static void answered(cau_client *client, const cau_rpc_message *message)
 {
 	if (message->id.kind != CAU_RPC_ID_NUMBER)
-		return; // to a message that could not be read, or to nobody
+		return; // an answer to a message that the server could not read, or without an id
 	if (message->id.number == 0 && client->condition == CAU_CLIENT_CONNECTING)
 		greeted(client, message);
 	else
@@ -34,7 +34,7 @@ void cau_text_received(cau_client *client, const char *text, size_t bytes)
 	cau_rpc_message message;
 	cau_rpc_fault fault;
 	if (cau_rpc_read(text, bytes, CAU_CLIENT_TEXT_MAX, &message, &fault))
-		return; // of a later version, perhaps; whoever waits for it times out
+		return; // perhaps a message of a later version; a caller that waits for it times out
 	if (message.kind == CAU_RPC_RESULT || message.kind == CAU_RPC_ERROR)
 		answered(client, &message);
 	else

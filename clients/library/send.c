@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What leaves: messages for the socket, and the end of it.
+// Queues messages for the socket and cuts the connection.
 #include "library/internal.h"
 
 void cau_socket_cut(cau_client *client)

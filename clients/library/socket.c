@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket, as libwebsockets tells of it: messages put together, messages written, and how it
-// ended. The event loop, which libwebsockets wants to know that from, is made here.
+// Handles the events of libwebsockets: assembles received messages, writes queued ones, and reports
+// how a connection ended. It also creates the event loop, because libwebsockets needs this event
+// handler at that time.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,7 +106,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
                     size_t bytes)
 {
 	cau_client *client = user;
-	if (!client) // destroyed, or an event of the context itself
+	if (!client) // a destroyed client, or an event of the context itself
 		return 0;
 	switch (reason) {
 	case LWS_CALLBACK_CLIENT_ESTABLISHED:
@@ -146,7 +147,7 @@ cau_status cau_loop_create(cau_loop **loop, cau_error *error)
 		.gid = -1,
 		.uid = -1,
 	};
-	lws_set_log_level(0, NULL); // troubles are told by cau_error
+	lws_set_log_level(0, NULL); // Failures are reported as cau_error instead.
 	*loop = calloc(1, sizeof **loop);
 	if (*loop)
 		(*loop)->context = lws_create_context(&info);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joining sessions, and joining them again after a lost connection.
+// Joins sessions, and joins them again after a lost connection.
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +35,7 @@ void cau_slot_free(cau_client_slot *slot)
 	free(slot);
 }
 
-// ---- the answer to session.join ----------------------------------------------------------------
+// ---- answer to session.join --------------------------------------------------------------------
 static cau_status make_topology(cau_client_stream *stream, cau_error *error)
 {
 	size_t vertices = (size_t)stream->def.vertex_count, faces = (size_t)stream->def.face_count;
@@ -84,7 +84,7 @@ static cau_status take_description(cau_client_slot *slot, const cau_rpc_message 
 	def->plain = d.has_plain && d.plain;
 	def->stress_step_pa = d.stress_step_pa;
 	slot->stream.ended = false;
-	slot->gap_s = cau_client_now(); // a key frame is awaited
+	slot->gap_s = cau_client_now(); // waits for a key frame
 	status = make_decoder(slot, error);
 	return status ? status : make_topology(&slot->stream, error);
 }
@@ -100,7 +100,7 @@ static void joined(void *user, const cau_rpc_message *answer, const cau_error *e
 		answer = NULL;
 		error = &trouble;
 	}
-	// A lost connection joins again by itself; an answer that refuses ends the stream.
+	// After a lost connection the client joins again by itself. A refusal ends the stream.
 	if (!answer && slot->client->condition != CAU_CLIENT_LOST)
 		slot->stream.ended = true;
 	if (!answer && slot->client->condition == CAU_CLIENT_LOST)
@@ -208,7 +208,7 @@ void cau_streams_lost(cau_client *client)
 {
 	for (int i = 0; i < CAU_CLIENT_STREAMS_MAX; i++)
 		if (client->slots[i])
-			client->slots[i]->gap_s = 0; // asked for anew with the next connection
+			client->slots[i]->gap_s = 0; // the next connection asks for a key frame again
 }
 
 void cau_streams_rejoin(cau_client *client)

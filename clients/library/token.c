@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tokens come from files: on a command line every user of the machine would see them.
+// Reads tokens from files. On a command line every user of the machine could see them.
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

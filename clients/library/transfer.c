@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files to the server and from it, in chunks.
+// Transfers files to and from the server in chunks.
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,10 +7,10 @@
 #include "cautery/sha256.h"
 #include "library/internal.h"
 
-enum { QUEUED_MAX = 1 << 20 }; // an upload keeps no more than this in the outbox
+enum { QUEUED_MAX = 1 << 20 }; // largest number of bytes that an upload keeps in the outbox
 
-// ---- to the server -----------------------------------------------------------------------------
-// Waits until the outbox is down to `most` bytes.
+// ---- upload ------------------------------------------------------------------------------------
+// Waits until the outbox has at most `most` bytes.
 static cau_status wait_for_room(cau_client *client, size_t most, cau_error *error)
 {
 	double until_s = cau_client_now() + client->def.timeout_s;
@@ -80,7 +80,7 @@ cau_status cau_client_discard_upload(cau_client *client, const char *name, cau_e
 	return cau_client_call(client, CAU_METHOD_UPLOAD_DISCARD, &params, NULL, error);
 }
 
-// ---- from the server ---------------------------------------------------------------------------
+// ---- download ----------------------------------------------------------------------------------
 typedef struct downloading {
 	cau_client_incoming incoming;
 	cau_method method;
@@ -89,7 +89,7 @@ typedef struct downloading {
 	cau_error error;
 } downloading;
 
-// Chunks may be right behind the answer: room is made here.
+// Allocates memory for the file. The first chunk may arrive directly after the answer.
 static void announced(void *user, const cau_rpc_message *answer, const cau_error *error)
 {
 	downloading *d = user;
@@ -119,7 +119,7 @@ void cau_chunk_received(cau_client *client, const void *bytes, size_t byte_count
 	cau_client_incoming *incoming = client->incoming;
 	if (!incoming || cau_chunk_read(bytes, byte_count, &chunk, NULL) ||
 	    chunk.transfer != incoming->transfer)
-		return; // of a download given up
+		return; // a chunk of an abandoned download
 	if (chunk.offset != incoming->received ||
 	    chunk.byte_count > incoming->byte_count - incoming->received) {
 		incoming->broken = true;
@@ -129,7 +129,7 @@ void cau_chunk_received(cau_client *client, const void *bytes, size_t byte_count
 	incoming->received += chunk.byte_count;
 }
 
-// Waits for the chunks as long as they keep coming.
+// Waits for the chunks. The timeout starts again with each chunk.
 static cau_status receive(cau_client *client, downloading *d, cau_client_progress *progress,
                           void *user, cau_error *error)
 {

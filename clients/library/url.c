@@ -16,7 +16,8 @@ static cau_status refuse(const char *text, const char *reason, cau_error *error)
 	return cau_fail(error, CAU_BAD_VALUE, "url", "`%.120s`: %s", text, reason);
 }
 
-// Anything else would end up in the request's header as it is.
+// True if the host has only the characters of a host name or address. Other characters would be
+// copied into the header of the request.
 static bool is_host(const char *host, size_t bytes, bool bracketed)
 {
 	static const char taken[] =
@@ -25,7 +26,8 @@ static bool is_host(const char *host, size_t bytes, bool bracketed)
 	return fit >= bytes && (bracketed || !memchr(host, ':', bytes));
 }
 
-// The host's bytes, brackets taken off; *end is what follows it. NULL: none.
+// Finds the host without brackets and sets *bytes to its length. *end is the text after the host.
+// Returns NULL if there is none.
 static const char *find_host(const char *at, size_t *bytes, const char **end)
 {
 	const char *host = at;

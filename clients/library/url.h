@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a daemon is.
+// The address of a daemon.
 #pragma once
 
 #include <stdbool.h>
@@ -12,6 +12,6 @@ typedef struct cau_url {
 	bool tls;
 } cau_url;
 
-// Reads ws://, wss://, http:// or https://, a host or an IPv6 address in brackets, and perhaps a
-// port (8740, with TLS 443) and "/" or "/v1". Errors: CAU_BAD_VALUE.
+// Reads a URL: ws://, wss://, http:// or https://, a host or an IPv6 address in brackets, then
+// optionally a port (default 8740, with TLS 443) and "/" or "/v1". Errors: CAU_BAD_VALUE.
 cau_status cau_url_read(const char *text, cau_url *url, cau_error *error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls that wait for their answer.
+// The calls that wait for an answer.
 #include "library/internal.h"
 
 bool cau_client_wait_for(cau_client *client, const bool *done, double until_s)
@@ -26,7 +26,7 @@ static void take_answer(void *user, const cau_rpc_message *answer, const cau_err
 		cau_rpc_result(answer, w->method, w->result, &w->error);
 }
 
-// Whoever stops waiting must not be answered any more: what he waits with is gone.
+// Removes the callback of the requests of `user`, because `user` is about to go out of scope.
 static void abandon(cau_client *client, const void *user)
 {
 	for (cau_client_pending *p = client->first_pending; p; p = p->next)
@@ -39,7 +39,7 @@ static bool wait_once(cau_client *client, const bool *done)
 	return cau_client_wait_for(client, done, cau_client_now() + client->def.timeout_s);
 }
 
-// Whether the server answers to a heartbeat.
+// True if the server answers a heartbeat.
 static bool is_heard(cau_client *client)
 {
 	waiting w = {.method = CAU_METHOD_HEARTBEAT};
@@ -50,7 +50,8 @@ static bool is_heard(cau_client *client)
 	return answered && !w.error.status;
 }
 
-// A join is answered once its session is built, which takes a minute beside other programs.
+// True if the answer may take long. A join is answered when its session is built, which can take a
+// minute on a busy machine.
 static bool takes_long(cau_method method)
 {
 	return cau_method_describe(method)->cost != CAU_COST_CHEAP || method == CAU_METHOD_SESSION_JOIN;
@@ -91,7 +92,7 @@ cau_status cau_client_call(cau_client *client, cau_method method, const void *pa
 cau_status cau_client_command(cau_client *client, const char *session, const cau_command *command,
                               cau_wire_command_result *result, cau_error *error)
 {
-	// Commands share one result; any command's method reads it.
+	// All commands share one type of result, so the method of any command reads it.
 	waiting w = {.method = CAU_METHOD_TOOL_MOVE, .result = result};
 	client->fault.code = 0;
 	cau_status status = cau_client_send_command(client, session, command, take_answer, &w, error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drivers: the scene's own cut, over and over, as motion; now and then as requests, whose
-// acknowledgement the log must bear out.
+// Drivers repeat the scene's own cut as tool moves. Most moves are notifications. Every half second
+// one is a request, and the log must have each acknowledged request.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +9,11 @@
 #include "cautery/defaults.h"
 #include "load/fleet.h"
 
-// Not a multiple of the tick, so that commands meet it at every phase.
+// The interval is not a multiple of the tick, so commands arrive at every phase of the tick.
 static const double move_every_s = 0.0173;
 static const double request_every_s = 0.5;
 
-// Along the cut and back, after the dwell.
+// Computes the position at `time_s`: along the cut and back, after the dwell.
 static void place(const cau_cut_def *cut, double time_s, double position_m[3])
 {
 	double length_m = 0;
@@ -83,7 +83,7 @@ void load_note_command(load_session *session, double decoded_s)
 		if (strcmp(state->tools[i].name, session->tool) == 0)
 			applied = (int64_t)state->tools[i].sequence;
 	if (applied > driver->sequence)
-		return; // from before this run
+		return; // a command of an earlier run
 	int64_t oldest = driver->sequence - LOAD_OPEN_COMMANDS + 1;
 	for (int64_t s = driver->shown + 1; s <= applied; s++)
 		if (fleet->measuring && s >= oldest)
@@ -93,7 +93,7 @@ void load_note_command(load_session *session, double decoded_s)
 		driver->shown = applied;
 }
 
-// ---- what the log has --------------------------------------------------------------------------
+// ---- compare with the log ----------------------------------------------------------------------
 static int ascending(const void *a, const void *b)
 {
 	int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;

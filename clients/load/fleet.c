@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 static const double slow_reads_s = 0.05, slow_pauses_s = 0.95;
-static const double settle_s = 5.0; // longest wait for slow readers to be in step again
+static const double settle_s = 5.0; // longest wait until slow readers have caught up
 
-// ---- making ------------------------------------------------------------------------------------
+// ---- setting up --------------------------------------------------------------------------------
 static cau_status connect_viewer(load_fleet *fleet, load_session *session, load_viewer *viewer)
 {
 	cau_client_def def = cau_default_client_def();
@@ -20,7 +20,7 @@ static cau_status connect_viewer(load_fleet *fleet, load_session *session, load_
 	def.token = fleet->options->token;
 	def.name = drives ? "cautery-load driver" : "cautery-load viewer";
 	def.role = drives ? -1 : CAU_ROLE_VIEW;
-	def.reconnect = !drives; // a driver that is lost ends the measurement
+	def.reconnect = !drives; // the loss of a driver ends the measurement
 	def.on_frame = load_take_frame;
 	def.user = viewer;
 	cau_status status = cau_client_create(fleet->loop, &def, &viewer->client, &fleet->error);
@@ -35,7 +35,7 @@ static cau_status join(load_fleet *fleet, load_viewer *viewer)
 	return cau_client_join(viewer->client, &params, &viewer->stream, &fleet->error);
 }
 
-// Without a cut in the scene there is nothing that a driver could do.
+// Takes the driver's motion from the scene's cut. A scene without a cut is an error.
 static cau_status take_motion(load_session *session, const cau_scene_def *scene, cau_error *error)
 {
 	if (!scene->cut.present)
@@ -152,7 +152,7 @@ static cau_status drive_all(load_fleet *fleet, double now_s, double *next_s)
 	for (int32_t s = 0; !status && s < fleet->options->sessions; s++) {
 		load_session *session = &fleet->sessions[s];
 		const cau_client *driver = session->viewers[0].client;
-		if (cau_client_follows(driver)) // its session has moved
+		if (cau_client_follows(driver)) // the driver's session has moved
 			continue;
 		if (cau_client_get_condition(driver) != CAU_CLIENT_READY) {
 			fleet->error = *cau_client_trouble(driver);
@@ -193,7 +193,7 @@ static int64_t count_behind(const load_fleet *fleet)
 	for (int32_t s = 0; s < fleet->options->sessions; s++) {
 		const load_session *session = &fleet->sessions[s];
 		uint64_t tick = session->viewers[0].stream->state->tick;
-		uint64_t slack = 30; // half a second of ticks: frames are on their way
+		uint64_t slack = 30; // Half a second of ticks, because frames are still on their way.
 		for (int32_t v = 1; v < fleet->options->viewers; v++)
 			behind += !in_step(&session->viewers[v], tick > slack ? tick - slack : 0);
 	}

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a frame adds to the figures.
+// Adds a received frame to the measurements.
 #include <string.h>
 
 #include "load/fleet.h"
 
-static const double recovery_s = 2.0; // a key frame must have come by then
+static const double recovery_s = 2.0; // longest time until a key frame must follow a gap
 
 static uint32_t read_u32(const unsigned char *at)
 {
 	return at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-// Payload bytes of the positions section of a frame that was decoded; 0: it has none.
+// Returns the bytes of the positions section of a decoded frame, or 0 if the frame has none.
 static uint32_t position_bytes(const cau_client_frame *frame)
 {
 	const unsigned char *bytes = frame->bytes;

@@ -18,7 +18,7 @@ static const char metric[] = "\ncautery_resident_bytes ";
 
 enum { CPU_FIELDS = 8 }; // user nice system idle iowait irq softirq steal
 
-// The first line of /proc/stat: `cpu` and at least so many numbers.
+// Reads the first line of /proc/stat: `cpu` and at least CPU_FIELDS numbers.
 static bool read_fields(const char *line, double field[CPU_FIELDS])
 {
 	const char *at = line + 3;
@@ -82,7 +82,7 @@ static int open_socket(const cau_url *url)
 	return descriptor;
 }
 
-// Everything that the peer sends until it closes, with a zero behind; the caller frees it.
+// Reads all data until the peer closes, and appends a zero byte. The caller frees the result.
 static char *read_all(int descriptor)
 {
 	char *text = malloc(PAGE_BYTES_MAX + 1);

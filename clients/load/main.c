@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery-load: scripted clients against a running daemon.
+// cautery-load: puts a load of scripted clients on a running daemon.
 #include <math.h>
 
 #include "load/machine.h"
@@ -12,7 +12,7 @@ static void on_signal(int signal_number)
 	interrupted = signal_number;
 }
 
-// The first signal ends the window, the second one the program.
+// The first signal ends the measured window, the second the program.
 static void catch_signals(void)
 {
 	struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
@@ -31,7 +31,7 @@ static double daemon_memory(load_fleet *fleet)
 	return bytes;
 }
 
-// The window itself: everything in it runs; what it cost is taken from before and after.
+// Measures while all clients run. Processor time is the difference between before and after.
 static cau_status measure(load_fleet *fleet, load_result *result)
 {
 	load_cpu before = load_cpu_read();

@@ -5,7 +5,7 @@
 
 #include "cautery/json_writer.h"
 
-// A session whose frames have stopped for longer than this is charged for the silence.
+// If a session's frames stop for longer than this, its realtime factor counts the silence.
 static const double silence_s = 0.25;
 
 double load_realtime_factor(const load_session *session, double end_s)
@@ -59,7 +59,7 @@ void load_report_text(FILE *out, load_fleet *fleet, const load_result *r)
 	fprintf(out, "daemon memory for each viewer   %.0f KiB\n", r->rss_per_viewer / 1024);
 }
 
-// JSON has no NAN: what is not known is null.
+// Writes null for an unknown value, because JSON has no NAN.
 static void write_number(cau_json_writer *w, const char *key, double value)
 {
 	if (isfinite(value))

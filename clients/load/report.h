@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures of a run.
+// The results of a run.
 #pragma once
 
 #include "load/fleet.h"
 
 typedef struct load_result {
-	double window_s, end_s; // measured; end on the server's clock
+	double window_s, end_s; // length of the measurement; its end on the server's clock
 	double realtime_factor_min;
-	double steal_pct;      // of this machine's processor time; NAN: unknown
-	double load_cpu_pct;   // of one core, used by this program
-	double rss_per_viewer; // B; NAN: unknown or nobody was added
+	double steal_pct;      // stolen share of this machine's processor time; NAN if unknown
+	double load_cpu_pct;   // processor time of this program, percent of one core
+	double rss_per_viewer; // bytes; NAN if unknown or without added viewers
 	double rss_before, rss_after;
-	int64_t lost_acknowledged; // below 0: the log could not be read
+	int64_t lost_acknowledged; // negative if the log could not be read
 	int64_t acknowledged;
 } load_result;
 

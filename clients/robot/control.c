@@ -7,9 +7,10 @@
 #include <string.h>
 #include <time.h>
 
-#define LEAST_APPROACH_S 0.2 // the server sees energy off before it goes on
-#define ANSWER_S 1.0         // for the server to make us the driver, or energy come on
-#define BACK_OFF_M_S 0.02    // away along the shaft while the force is too high, and back
+#define LEAST_APPROACH_S 0.2 // minimum time, so that the server sees energy off first
+#define ANSWER_S 1.0         // timeout for becoming the driver, or for energy to turn on
+// speed along the shaft, away from the tissue if the force is too high, and later back
+#define BACK_OFF_M_S 0.02
 #define BACK_OFF_MOST_M 0.03
 
 typedef struct control {
@@ -17,11 +18,11 @@ typedef struct control {
 	const robot_options *options;
 	const robot_trajectory *trajectory;
 	robot_report *report;
-	robot_pose first; // where the tool was when it became ours
+	robot_pose first; // pose of the tool when this program became its driver
 	double approach_s;
-	double along_s;                         // on the trajectory
-	double back_off_m;                      // along the shaft
-	double begun_s, driving_s, following_s; // since when; 0: not yet
+	double along_s;                         // time on the trajectory
+	double back_off_m;                      // present retreat along the shaft
+	double begun_s, driving_s, following_s; // start times; 0 before the start
 } control;
 
 static robot_pose pose_of(const cautery_ToolState *state)
@@ -57,7 +58,8 @@ static void retreat(robot_pose *pose, double by_m)
 	pose->position_m[2] += by_m * (1 - 2 * (q[1] * q[1] + q[2] * q[2]));
 }
 
-// True if the force lets the tool go on; steps the way back otherwise.
+// Returns true if the force allows the tool to advance. Changes the retreat by one step: longer if
+// the force is too high, else shorter.
 static bool heed_force(control *c, double period_s)
 {
 	const double *f = c->link->force_n;
@@ -72,7 +74,7 @@ static bool heed_force(control *c, double period_s)
 	return !high;
 }
 
-// The pose of this period. *energy: wanted now.
+// Returns the pose of this period. *energy: energy is wanted in this period.
 static robot_pose next_pose(control *c, double now_s, double period_s, bool *energy)
 {
 	robot_pose start = robot_trajectory_at(c->trajectory, 0);
@@ -113,7 +115,7 @@ static bool is_over(const control *c, double now_s)
 	return !options->standby && c->along_s >= robot_trajectory_seconds(c->trajectory);
 }
 
-// The tool is ours: its way begins where it is, energy off.
+// Starts driving. The motion begins at the tool's pose, with energy off.
 static void begin_to_drive(control *c, double now_s)
 {
 	robot_pose start = robot_trajectory_at(c->trajectory, 0);
@@ -147,7 +149,7 @@ void robot_control(robot_link *link, const robot_options *options,
 		report->missed += (uint64_t)missed;
 		due_s += (missed + 1) * period_s;
 	}
-	if (link->has_state) { // the last word: energy off, where it is
+	if (link->has_state) { // The last command turns energy off at the tool's present pose.
 		robot_pose rest = pose_of(&link->state);
 		robot_link_write(link, &rest, false);
 	}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The control loop: to the start, along the trajectory, away from too much force.
+// The control loop: moves to the start, follows the trajectory, and retreats if the force is too
+// high.
 #pragma once
 
 #include "robot/link.h"
@@ -7,16 +8,16 @@
 typedef struct robot_report {
 	double seconds;
 	uint64_t commands;
-	uint64_t missed;        // periods that passed without a command
-	double force_most_n;    // seen
-	double backed_off_m;    // the most
-	bool took_over;         // standby: drove in the end
-	const char *lost;       // why it gave up, or NULL
-	robot_histogram jitter; // how late it woke
+	uint64_t missed;        // number of periods without a command
+	double force_most_n;    // largest force
+	double backed_off_m;    // largest retreat
+	bool took_over;         // in standby, this program became the driver
+	const char *lost;       // why the loop ended early, or NULL
+	robot_histogram jitter; // how late the loop woke
 } robot_report;
 
-// Runs until the trajectory or `seconds` are over, the tool is lost, or *stop is set.
-// Prints `drives` to standard output when the tool becomes its own.
+// Runs until the trajectory or `seconds` are over, the tool is lost, or *stop is set. Prints
+// `drives` to standard output when this program becomes the tool's driver.
 void robot_control(robot_link *link, const robot_options *options,
                    const robot_trajectory *trajectory, const volatile int *stop,
                    robot_report *report);

@@ -25,10 +25,10 @@ double robot_histogram_quantile(const robot_histogram *h, double share)
 	return 0;
 }
 
-// One row for each factor of two, from the first that has samples to the last.
+// Prints one line for each factor of two, from the first with samples to the last.
 void robot_histogram_print(const robot_histogram *h, const char *name, FILE *out)
 {
-	enum { PER_ROW = 7, WIDTH = 50 }; // 1.1^7 is 1.95
+	enum { PER_ROW = 7, WIDTH = 50 }; // PER_ROW bins span a factor of 1.1^7 = 1.95
 	static const char bar[WIDTH + 1] = "##################################################";
 	fprintf(out, "%s: %llu, p50 %.3f ms, p99 %.3f ms, most %.3f ms\n", name,
 	        (unsigned long long)h->count, 1e3 * robot_histogram_quantile(h, 0.5),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times in bins that widen by a tenth each, from 1 us to some 100 s; no allocation.
+// A histogram of times. Each bin is a tenth wider than the previous one, from 1 us to some 100 s.
+// Nothing is allocated.
 #pragma once
 
 #include <stdint.h>
@@ -14,6 +15,6 @@ typedef struct robot_histogram {
 } robot_histogram;
 
 void robot_histogram_add(robot_histogram *histogram, double seconds);
-// The time, s, that `share` of the samples do not exceed: the upper edge of its bin.
+// Returns the time, s, that `share` of the samples do not exceed. It is the upper edge of a bin.
 double robot_histogram_quantile(const robot_histogram *histogram, double share);
 void robot_histogram_print(const robot_histogram *histogram, const char *name, FILE *out);

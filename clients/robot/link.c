@@ -22,7 +22,7 @@ static int64_t wall_ns(void)
 	return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-// The writer declares its deadline, and asserts that it lives by writing only.
+// Opens the writer of commands. It offers a deadline. It proves that it is alive only by writing.
 static dds_entity_t open_writer(robot_link *link, const dds_qos_t *partition, double deadline_s)
 {
 	dds_qos_t *qos = dds_create_qos();
@@ -53,7 +53,7 @@ static dds_entity_t open_reader(robot_link *link, const dds_qos_t *partition)
 	return made;
 }
 
-// rt/SESSION/TOOL/measured_cf, with ROS 2's names and its default QoS.
+// Opens a reader of rt/SESSION/TOOL/measured_cf, with ROS 2's name rules and default QoS.
 static dds_entity_t open_force_reader(robot_link *link)
 {
 	char name[sizeof link->command.session + sizeof link->command.tool + 32];

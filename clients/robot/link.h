@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The robot's side of the wire: a writer of tool commands, readers of tool states and of the force
-// that CRTK's measured_cf tells.
+// The robot's DDS connection: a writer of tool commands, a reader of tool states, and a reader of
+// the force in CRTK's measured_cf.
 #pragma once
 
 #include <dds/dds.h>
@@ -14,20 +14,23 @@ enum { ROBOT_SENT = 8192 };
 
 typedef struct robot_link {
 	dds_entity_t participant, writer, reader, force_reader, waitset;
-	cautery_ToolCommand command; // the last one written
-	cautery_ToolState state;     // the newest
+	cautery_ToolCommand command; // last written command
+	cautery_ToolState state;     // newest state
 	bool has_state;
-	double force_n[3];         // the newest measured_cf; the state's where there is none
-	bool has_force;            // measured_cf has come
-	char name[65];             // as the server calls this writer
-	double sent_s[ROBOT_SENT]; // by sequence number modulo ROBOT_SENT
-	robot_histogram latency;   // from writing the command that a state shows to its coming
+	// force of the newest measured_cf, or of the state before a measured_cf has come
+	double force_n[3];
+	bool has_force;            // a measured_cf has come
+	char name[65];             // the server's name for this writer
+	double sent_s[ROBOT_SENT]; // time of each command, at index sequence % ROBOT_SENT
+	// time from writing a command to the arrival of the state that shows it
+	robot_histogram latency;
 } robot_link;
 
-// False: why is printed on `errors`. robot_link_close in either case.
+// Opens the connection. Returns false after printing the reason on `errors`. Call robot_link_close
+// in either case.
 bool robot_link_open(robot_link *link, const robot_options *options, FILE *errors);
 void robot_link_close(robot_link *link);
-// Waits until the server reads and its first state has come, at most `seconds`.
+// Waits until the server reads and its first state has come, `seconds` at most.
 bool robot_link_wait(robot_link *link, double seconds);
 void robot_link_read(robot_link *link);
 bool robot_link_write(robot_link *link, const robot_pose *pose, bool energy);

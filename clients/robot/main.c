@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery-robot: a robot controller on DDS, to learn from and to test with.
+// cautery-robot: a robot controller on DDS, as an example and for tests.
 #include <signal.h>
 #include <stdlib.h>
 
 #include "robot/control.h"
 
-#define WAIT_S 10 // for the session's topics
+#define WAIT_S 10 // timeout for the session's topics
 
 enum { EXIT_DONE, EXIT_LOST, EXIT_USAGE, EXIT_NO_TOOL };
 
@@ -36,7 +36,7 @@ static void print_json(const robot_report *report, const robot_link *link)
 
 static int drive(const robot_options *options, const robot_trajectory *trajectory)
 {
-	static robot_link link; // some 70 kB
+	static robot_link link; // about 70 kB, too large for the stack
 	robot_report report;
 	if (!robot_link_open(&link, options, stderr)) {
 		robot_link_close(&link);
@@ -48,7 +48,7 @@ static int drive(const robot_options *options, const robot_trajectory *trajector
 		robot_link_close(&link);
 		return EXIT_NO_TOOL;
 	}
-	printf("the name of this client is \"%s\"\n", link.name); // what the server calls it
+	printf("the name of this client is \"%s\"\n", link.name); // the server's name for this writer
 	fflush(stdout);
 	robot_control(&link, options, trajectory, &stop, &report);
 	printf("%.1f s, %llu commands, %llu periods missed; force at most %.2f N\n", report.seconds,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cautery-robot is asked on its command line.
+// The command line of cautery-robot.
 #pragma once
 
 #include <stdbool.h>
@@ -8,18 +8,19 @@
 
 typedef struct robot_options {
 	const char *session, *tool;
-	const char *trajectory; // file, or NULL: the line from `from_m` to `to_m`
+	const char *trajectory; // file, or NULL for the line from `from_m` to `to_m`
 	double from_m[3], to_m[3];
-	double speed_m_s;     // along the line, and on the way to the start
-	double dwell_s;       // at the start of the line
-	double rate_hz;       // of commands
-	double deadline_s;    // declared
-	double force_limit_n; // backs off above; 0: never
-	double seconds;       // ends after this; 0: with the trajectory
+	double speed_m_s;     // along the line, and on the approach to its start
+	double dwell_s;       // wait at the start of the line
+	double rate_hz;       // commands a second
+	double deadline_s;    // deadline that the writer declares
+	double force_limit_n; // force above which the tool retreats; 0 for no limit
+	double seconds;       // time limit; 0 means until the trajectory's end
 	int32_t domain;
 	bool energy, standby, json, help, version;
 } robot_options;
 
-// False: *options is not to be used, and why is printed on `errors`.
+// Reads the command line. Returns false after printing the reason on `errors`; *options is then
+// invalid.
 bool robot_options_read(robot_options *options, int argument_count, char **arguments, FILE *errors);
 void robot_options_help(FILE *out);

@@ -10,7 +10,7 @@ enum { WAYPOINTS_MOST = 1 << 20 };
 static bool append(robot_trajectory *trajectory, const robot_waypoint *waypoint)
 {
 	size_t count = trajectory->count;
-	if ((count & (count - 1)) == 0) { // full at each power of two
+	if ((count & (count - 1)) == 0) { // The array is full at each power of two.
 		size_t capacity = count ? 2 * count : 1;
 		void *grown = capacity > WAYPOINTS_MOST
 		                  ? NULL
@@ -33,7 +33,7 @@ static bool normalise(double rotation[4])
 	return squared > 0.25 && isfinite(squared);
 }
 
-// How many numbers a line begins with, up to `most`.
+// Reads the numbers at the beginning of a line, `most` at most. Returns their count.
 static int read_numbers(const char *line, double *number, int most)
 {
 	int count = 0;
@@ -50,7 +50,7 @@ static int read_numbers(const char *line, double *number, int most)
 
 static bool read_line(robot_waypoint *waypoint, const char *line)
 {
-	enum { MOST = 8 }; // time, position, rotation
+	enum { MOST = 8 }; // a line has time (1), position (3) and rotation (4)
 	double number[MOST] = {0, 0, 0, 0, 1, 0, 0, 0};
 	double *p = waypoint->pose.position_m, *q = waypoint->pose.rotation;
 	*waypoint = (robot_waypoint){0};
@@ -132,7 +132,7 @@ robot_pose robot_pose_between(const robot_pose *a, const robot_pose *b, double s
 		pose.position_m[i] = a->position_m[i] + share * (b->position_m[i] - a->position_m[i]);
 	for (int i = 0; i < 4; i++)
 		dot += a->rotation[i] * b->rotation[i];
-	for (int i = 0; i < 4; i++) // the shorter way round
+	for (int i = 0; i < 4; i++) // interpolate the shorter way round
 		pose.rotation[i] =
 			(1 - share) * a->rotation[i] + (dot < 0 ? -share : share) * b->rotation[i];
 	normalise(pose.rotation);
@@ -141,7 +141,8 @@ robot_pose robot_pose_between(const robot_pose *a, const robot_pose *b, double s
 
 robot_pose robot_trajectory_at(const robot_trajectory *trajectory, double time_s)
 {
-	size_t low = 0, high = trajectory->count - 1; // the last waypoint not after time_s is in there
+	// the last waypoint not after time_s is in this range
+	size_t low = 0, high = trajectory->count - 1;
 	const robot_waypoint *w = trajectory->waypoints;
 	if (time_s >= w[high].time_s)
 		return w[high].pose;

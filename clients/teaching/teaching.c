@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How to write a client of Cautery, in one file. Read it from main() at the bottom upwards.
 //
-// A client talks to cauteryd over one WebSocket. Text messages are JSON-RPC 2.0 in both directions;
-// beside each call below stands what travels for it. Binary messages from the server are frames:
-// which vertices moved, which faces are gone, where the tools are. protocol/README.md is the law;
-// this file only shows the way through it. The client library (cautery/client.h) does the parts
-// that every client needs: the socket, hello, ids, decoding, asking for a key frame after a gap,
-// coming back after a lost connection.
+// A client talks to cauteryd over one WebSocket. Text messages are JSON-RPC 2.0 in both directions.
+// The comment above each call below shows its messages. Binary messages from the server are frames
+// with moved vertices, removed faces and poses of tools. protocol/README.md defines all messages;
+// this file is an introduction. The client library (cautery/client.h) does what every client needs:
+// the socket, hello, ids, decoding, requesting a key frame after a gap, and reconnecting.
 //
 //     cautery-teaching [ws://127.0.0.1:8740]
 //
-// makes a session of the scene `fascia`, a taut sheet pinned at its rim; lowers the hook on it,
-// turns its energy on, waits until heat parts the first edges, draws a cut, and removes the
-// session.
+// The program creates a session of the scene `fascia`, a taut sheet pinned at its rim. It lowers
+// the hook onto the sheet, turns its energy on, and waits until heat parts the first edges. Then it
+// draws a cut and removes the session.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,31 +20,32 @@
 #include "cautery/client.h"
 #include "cautery/defaults.h"
 
-// The cut: where the hook goes down and where it is drawn to, on the sheet at z = 0. SI units.
+// The cut on the sheet at z = 0: where the hook is lowered, and the end of its motion. SI units.
 static const double cut_from_m[3] = {-0.01, 0.0, 0.0};
 static const double cut_to_m[3] = {0.01, 0.0, 0.0};
 static const double cut_speed_m_s = 0.004;
 static const double dwell_s = 3.0; // an edge inside this hook parts after 2.35 s
-static const double wait_s = 0.1;  // at most, for a frame
+static const double wait_s = 0.1;  // longest wait for a frame
 static const double report_every_s = 0.5;
 
-static const char tool_name[] = "hook"; // that the scene has
+static const char tool_name[] = "hook"; // name of the tool in the scene
 
-// What the program holds on to.
+// The state of the program.
 typedef struct lesson {
 	cau_loop *loop;
 	cau_client *client;
 	cau_client_stream *stream;
 	char session[CAU_NAME_BYTES];
 	int64_t faces_at_first;
-	uint64_t sequence; // our own count of commands: frames show the last one applied
+	uint64_t sequence; // counts the commands; frames show the last applied one
 	double report_due_s;
 } lesson;
 
 // ---- watching ----------------------------------------------------------------------------------
 
-// The library decodes every frame into one state, the newest. A position is kept in whole steps of
-// description.step_m, exactly as the server holds it: deltas never drift.
+// Returns the lowest height of a vertex. The library decodes every frame into one state, the
+// newest. A position is a whole number of description.step_m, exactly as the server holds it, so
+// deltas never drift.
 static double deepest_m(const cau_client_stream *stream)
 {
 	const cau_stream_def *def = &stream->def;
@@ -78,8 +78,8 @@ static void report(lesson *l)
 
 // ---- driving -----------------------------------------------------------------------------------
 
-// Poses are sent as notifications: nothing comes back, and if several arrive within a tick the
-// newest counts.
+// Sends a pose as a notification. The server sends no answer. If several poses arrive within a
+// tick, the newest counts.
 //
 //     {"jsonrpc": "2.0", "method": "tool.move", "params": {"session": "d1-lesson", "tool": "hook",
 //      "sequence": 7, "position_m": [0, 0, 0.002], "rotation": [1, 0, 0, 0], "jaw": 0}}
@@ -93,8 +93,9 @@ static cau_status move(lesson *l, const double position_m[3], cau_error *error)
 	return cau_client_move(l->client, l->session, &command, error);
 }
 
-// Energy is a request: it is answered when the command is in the store and will survive a crash.
-// "client_sequence", which the library counts, makes it act once even if it has to be sent twice.
+// Turns energy on or off by a request. The answer comes when the command is in the store and will
+// survive a crash. The library counts "client_sequence". With it, a request that must be sent twice
+// acts only once.
 //
 //     --> {"jsonrpc": "2.0", "id": 4, "method": "tool.energize", "params": {"session": "d1-lesson",
 //          "client_sequence": 3, "tool": "hook", "sequence": 8, "energized": true}}
@@ -113,9 +114,10 @@ static cau_status energize(lesson *l, int32_t on, cau_error *error)
 	return status;
 }
 
-// Goes from one point to another in `seconds` of the tissue's time, a pose for every frame that
-// comes. On a busy server the tissue's time runs behind ours, and a cut by our clock would be too
-// fast to burn. Everything else (frames in, heartbeats out) happens inside cau_loop_wait.
+// Moves from one point to another in `seconds` of simulated time, with one pose for each received
+// frame. On a busy server simulated time is slower than real time. A cut by the real clock would
+// then be too fast to part the tissue. Everything else (frames in, heartbeats out) happens inside
+// cau_loop_wait.
 static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], double seconds,
                        cau_error *error)
 {
@@ -141,7 +143,8 @@ static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], 
 	return CAU_OK;
 }
 
-// A tool has one driver. Nobody drives those of a new session: whoever asks first gets it.
+// Becomes the tool's driver. A tool has one driver. The tools of a new session have none, so the
+// first client that asks becomes the driver.
 //
 //     --> {"jsonrpc": "2.0", "id": 3, "method": "tool.take_over",
 //          "params": {"session": "d1-lesson", "client_sequence": 2, "tool": "hook"}}
@@ -161,8 +164,8 @@ static cau_status cut(lesson *l, cau_error *error)
 	cau_status status = take_tool(l, error);
 	if (status)
 		return status;
-	// The server turns energy off when it hears nothing of a driver for 250 ms. This sends a
-	// heartbeat every 100 ms, for as long as this program does reach cau_loop_wait.
+	// The server turns energy off after 250 ms without a message from the driver. This call sends a
+	// heartbeat every 100 ms, as long as the program keeps calling cau_loop_wait.
 	cau_client_keep_alive(l->client, true);
 	status = draw(l, above_m, cut_from_m, 1.0, error);
 	if (!status)
@@ -178,6 +181,8 @@ static cau_status cut(lesson *l, cau_error *error)
 
 // ---- the session -------------------------------------------------------------------------------
 
+// Creates the session.
+//
 //     --> {"jsonrpc": "2.0", "id": 1, "method": "session.create",
 //          "params": {"client_sequence": 1, "scene": "fascia"}}
 //     <-- {"jsonrpc": "2.0", "id": 1, "result": {"summary": {"session": "d1-fascia-1", ...}, ...}}
@@ -186,7 +191,8 @@ static cau_status create_session(lesson *l, cau_error *error)
 	cau_wire_session_create params = {.has_client_sequence = true, .has_scene = true};
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
 	cau_wire_driver drivers[CAU_MAX_TOOLS];
-	// Lists in an answer go into arrays of the caller; the scene is skipped where there is no room.
+	// Lists in an answer are stored in the caller's arrays. The scene is skipped, because
+	// `definition` is NULL.
 	cau_wire_session_description made = {.layers = {layers, 0, CAU_MAX_LAYERS},
 	                                     .drivers = {drivers, 0, CAU_MAX_TOOLS}};
 	params.client_sequence = cau_client_next_sequence(l->client);
@@ -202,6 +208,8 @@ static cau_status create_session(lesson *l, cau_error *error)
 	return CAU_OK;
 }
 
+// Joins the session and waits for the first key frame.
+//
 //     --> {"jsonrpc": "2.0", "id": 2, "method": "session.join",
 //          "params": {"session": "d1-fascia-1"}}
 //     <-- {"jsonrpc": "2.0", "id": 2, "result": {"session_number": 1, "vertex_count": 3111,
@@ -217,6 +225,8 @@ static cau_status join_session(lesson *l, cau_error *error)
 	return status;
 }
 
+// Removes the session.
+//
 //     --> {"jsonrpc": "2.0", "id": 9, "method": "session.destroy", "params": {...}}
 static cau_status remove_session(lesson *l, cau_error *error)
 {
@@ -226,7 +236,7 @@ static cau_status remove_session(lesson *l, cau_error *error)
 	return cau_client_call(l->client, CAU_METHOD_SESSION_DESTROY, &params, NULL, error);
 }
 
-// The first message is hello; cau_client_connect sends it and waits for the answer.
+// Connects. The first message is hello; cau_client_connect sends it and waits for the answer.
 //
 //     --> {"jsonrpc": "2.0", "id": 0, "method": "hello", "params": {"version": 1,
 //          "client": "cautery-teaching"}}
@@ -262,7 +272,7 @@ int main(int argument_count, char **arguments)
 		status = cut(&l, &error);
 	if (!status)
 		status = remove_session(&l, &error);
-	if (status) // errors carry what went wrong, where, and why
+	if (status) // an error says what is wrong, where, and why
 		fprintf(stderr, "cautery-teaching: %s %s\n", error.path, error.reason);
 	if (l.client)
 		cau_client_close(l.client);

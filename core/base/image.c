@@ -12,12 +12,13 @@
 
 #include "cautery/assert.h"
 
-// A process may have 65,530 mappings by default. Shorter runs stay as they are, and a session adds
-// at most twice as many as the runs it is shown.
+// A process may have 65,530 mappings by default. Runs of equal pages that are shorter than
+// LEAST_RUN_BYTES are not mapped. A session gets at most twice as many mappings as it has mapped
+// runs.
 enum { LEAST_RUN_BYTES = 16 << 10, MOST_RUNS = 64 };
 
 typedef struct image_part {
-	size_t at, page_count; // in `place`
+	size_t at, page_count; // start in `place`, and length
 } image_part;
 
 struct cau_image {
@@ -25,26 +26,27 @@ struct cau_image {
 	uint64_t key;
 	int32_t holders;
 	int file;
-	char *view;          // the whole file, to compare with
-	size_t page;         // bytes: the system's, less than which nothing can be mapped
-	size_t page_count;   // in the file
-	size_t listed_count; // of all parts
-	uint32_t *place;     // (listed_count): where in the file, in pages from 1 on; 0: untouched
+	char *view;          // the whole file, read-only once sealed, for comparison
+	size_t page;         // page size of the system, bytes: the smallest mapping
+	size_t page_count;   // pages in the file
+	size_t listed_count; // pages of all parts
+	uint32_t *place; // (listed_count): page in the file, counted from 1; 0: the page was untouched
 	int32_t part_count;
 	image_part part[CAU_IMAGE_PARTS];
 };
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // guards the list and the holders
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // guards the list and holder counts
 static cau_image *images;
 
-// Whole pages of what was taken; the last one may be a part of a page.
+// Returns the number of whole pages. The allocation may end within a page.
 static size_t pages_of(const cau_image *image, const cau_pages *pages)
 {
 	CAU_ASSERT((uintptr_t)pages->start % image->page == 0, "pages at %p", pages->start);
 	return pages->byte_count / image->page;
 }
 
-// Between arrays there are bytes that no one may touch; these two read them all the same.
+// Between arrays there are bytes that the address sanitizer forbids to read. same_page and
+// copy_pages read them as part of a page.
 __attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b,
                                                               size_t bytes)
 {
@@ -64,8 +66,9 @@ __attribute__((no_sanitize("address"))) static void copy_pages(char *to, const c
 		x[k] = y[k];
 }
 
-// What a mapping may be refused for, their number and the address space, is looked at before the
-// old pages go, and the new ones are charged as the old ones were: it replaces them, or nothing.
+// Maps pages of the image over a session's pages. The system checks the number of mappings and the
+// address space before it removes the old pages. It charges the new pages as it did the old ones.
+// So a failed call leaves the old pages in place.
 static bool map_over(const cau_image *image, size_t first, size_t count, char *start)
 {
 	return mmap(start, count * image->page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED,
@@ -88,7 +91,8 @@ static void destroy(cau_image *image)
 	free(image);
 }
 
-// Where each page goes: those that were touched, one after the other.
+// Assigns a page of the file to each page that was touched, in order. Returns false if there is
+// none, or if they are too many.
 static bool lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 {
 	image->part_count = count < CAU_IMAGE_PARTS ? count : CAU_IMAGE_PARTS;
@@ -111,17 +115,18 @@ static bool lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 	return image->page_count > 0;
 }
 
-// A file in memory that nobody can run: systems may refuse any other (vm.memfd_noexec), and those
-// before Linux 6.3 do not know the flag.
+// Creates a file in memory that cannot be executed. Systems may refuse other files in memory
+// (vm.memfd_noexec). Systems before Linux 6.3 do not know the flag.
 static int make_file(void)
 {
-	enum { NOEXEC_SEAL = 8 }; // MFD_NOEXEC_SEAL, of headers from then on
+	enum { NOEXEC_SEAL = 8 }; // MFD_NOEXEC_SEAL, as defined in headers since Linux 6.3
 	const unsigned flags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
 	int file = memfd_create("cautery-image", flags | NOEXEC_SEAL);
 	return file < 0 && errno == EINVAL ? memfd_create("cautery-image", flags) : file;
 }
 
-// Memory is taken at once: a file that grows as it is written would end the program where it ends.
+// Allocates the file's memory at once. If the file grew with each write and memory ran out, the
+// write would end the program.
 static bool open_file(cau_image *image)
 {
 	image->file = make_file();
@@ -134,7 +139,7 @@ static bool open_file(cau_image *image)
 	return true;
 }
 
-// Where a listed page is in the file, or, of those that are not, NULL.
+// Returns a listed page's address in the view; NULL if the page is not in the file.
 static char *view_of(const cau_image *image, size_t listed)
 {
 	uint32_t place = image->place[listed];
@@ -153,7 +158,7 @@ static void fill(const cau_image *image, const cau_pages *pages)
 	}
 }
 
-// The seal is refused while there is a way to write.
+// Makes the file read-only. The seal is refused while a writable mapping exists.
 static bool seal(cau_image *image)
 {
 	munmap(image->view, bytes_of(image));
@@ -202,9 +207,9 @@ cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, boo
 	pthread_mutex_unlock(&lock);
 	if (image)
 		return image;
-	cau_image *own = make(key, pages, count); // without the lock, as it copies for long
+	cau_image *own = make(key, pages, count); // without the lock, because the copy takes long
 	pthread_mutex_lock(&lock);
-	image = hold(key); // another thread's, made meanwhile
+	image = hold(key); // another thread may have made one meanwhile
 	if (!image && own) {
 		own->holders = 1;
 		own->next = images;
@@ -245,16 +250,16 @@ int32_t cau_image_count(void)
 	return count;
 }
 
-// ---- showing
-// One part of a session, which is shown its equal pages.
+// ---- mapping
+// Work on one session: its equal pages are replaced by the image's.
 typedef struct showing {
 	const cau_image *image;
 	const image_part *part;
 	char *start;
-	uint8_t *touched; // (page_count)
-	bool equal;       // all are
-	int32_t runs;     // of all parts
-	size_t shown;     // pages of all parts
+	uint8_t *touched; // (page_count): pages of the part that were touched
+	bool equal;       // all pages are known to be equal
+	int32_t runs;     // runs mapped so far, in all parts
+	size_t shown;     // pages mapped so far, in all parts
 } showing;
 
 static bool is_equal(const showing *s, size_t k)
@@ -264,8 +269,9 @@ static bool is_equal(const showing *s, size_t k)
 	       (s->equal || same_page(view, s->start + k * s->image->page, s->image->page));
 }
 
-// The next run of equal pages at or after *first: its length, 0 at the end. Pages that lie side by
-// side in a part, and are in the image, do so in its file.
+// Finds the next run of equal pages at or after *first. Sets *first to its start and returns its
+// length; 0 at the end. Pages that are adjacent in a part and in the image are adjacent in its file
+// too.
 static size_t find_run(const showing *s, size_t *first)
 {
 	size_t k = *first, length = 0, least = LEAST_RUN_BYTES / s->image->page;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory that sessions of equal tissue have in common: an image is a copy of one session's pages,
-// in a file in memory that is no longer writable. Private mappings of it replace another session's
-// pages with equal bytes. The first write copies a page for the writer, so no session sees writes
-// of another. The equal pages need not be known beforehand.
+// Memory that sessions of equal tissue share. An image is a copy of one session's pages, in a file
+// in memory that is no longer writable. Private mappings of the file replace another session's
+// pages that have equal bytes. The first write to a page copies the page for its session. So no
+// session sees the writes of another. Which pages are equal need not be known beforehand.
 //
-// Pages that were never touched are in no image, and are not read: the system keeps no memory for
-// them. They are most of a small session's.
+// Pages that were never touched are in no image and are not read, because the system keeps no
+// memory for them. They are most of a small session's pages.
 //
-// Images live in one list for the whole program, and as long as a session holds them. Any thread
-// may call these; who owns the pages calls for them, while nothing else reads or writes them.
+// All images of the program are in one list. An image exists as long as a session holds it. Any
+// thread may call these functions. The owner of the pages calls them, while no other thread reads
+// or writes the pages.
 #pragma once
 
 #include <stdbool.h>
@@ -18,23 +19,23 @@
 #include "base/pages.h"
 
 enum {
-	CAU_IMAGE_PARTS = 512, // pieces of memory of one image; further ones have no part in it
-	CAU_IMAGE_BYTES =
-		256 << 20, // of its pages: there is no image of more, which takes long to copy
+	CAU_IMAGE_PARTS = 512,       // allocations of one image; further ones are not shared
+	CAU_IMAGE_BYTES = 256 << 20, // largest image; a copy of more would take too long
 };
 
 typedef struct cau_image cau_image;
 
-// The image of this key, held once more; if there is none, it is made of these pages, which become
-// the first that are shown. NULL: none was touched, or the system does not allow it, or has no
-// memory for it. Pages of equal place in the list are compared: they should be listed in the same
-// order each time. *made (may be NULL): whether it was made of these pages.
+// Returns the image of this key and holds it once more. If there is none, makes one from these
+// pages. Returns NULL if no page was touched, if the system does not allow images, or if there is
+// no memory. Pages with the same position in the list are compared, so the list should have the
+// same order each time. *made (may be NULL) is set to whether the image was made from these pages.
 cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, bool *made);
-// Maps the image over those of the pages that are equal to it; returns their bytes. `equal`: all
-// are equal, as it was made of them and nothing has written them since. Then none is compared,
-// which takes longer than the rest.
+// Maps the image over the pages that are equal to the image's, and returns their bytes. `equal`:
+// all are known to be equal, because the image was made from them and nothing has written to them
+// since. Then no page is compared, which saves most of the time.
 size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count, bool equal);
-// What was mapped stays so until its pages are given back. The last holder's release ends it.
-void cau_image_release(cau_image *image); // takes NULL
+// Releases one hold. The last release deletes the image. Its mappings stay until their pages are
+// released.
+void cau_image_release(cau_image *image); // accepts NULL
 
-int32_t cau_image_count(void); // of the whole program
+int32_t cau_image_count(void); // images of the whole program

@@ -7,10 +7,10 @@
 
 enum { LEAST_LARGE = 64 << 10 };
 
-// Before each piece; its size keeps a piece aligned as malloc does.
+// Header before each piece. Its size keeps the piece aligned as malloc does.
 typedef struct head {
-	cau_pages pages; // empty: it is malloc's
-	size_t bytes;    // of the piece
+	cau_pages pages; // empty if the piece was allocated by malloc
+	size_t bytes;    // size of the piece
 	size_t unused;
 } head;
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A heap whose large pieces are whole pages, which sessions may share (base/image.h): for libraries
-// that take their memory by functions like malloc's.
+// A heap whose large pieces are whole pages, which sessions may share (base/image.h). For libraries
+// that allocate memory by functions like malloc.
 #pragma once
 
 #include <stddef.h>
 
 #include "base/pages.h"
 
-void *cau_large_malloc(size_t bytes); // NULL without memory
+void *cau_large_malloc(size_t bytes); // NULL if there is no memory
 void *cau_large_calloc(size_t count, size_t size);
 void *cau_large_realloc(void *memory, size_t bytes);
-void cau_large_free(void *memory); // takes NULL
+void cau_large_free(void *memory); // accepts NULL
 
-// The pages that this piece lies in; empty if it is small, or NULL. Borrowed.
+// Returns the pages of this piece, still owned by the heap. Empty if the piece is small or NULL.
 cau_pages cau_large_pages(const void *memory);

@@ -14,7 +14,7 @@
 #include <sanitizer/asan_interface.h>
 #define HIDE(start, bytes) ASAN_POISON_MEMORY_REGION(start, bytes)
 #define SHOW(start, bytes) ASAN_UNPOISON_MEMORY_REGION(start, bytes)
-enum { GAP = 64 }; // between two arrays, so that a step beyond one is seen
+enum { GAP = 64 }; // between two arrays, so that the sanitizer detects accesses beyond an array
 #else
 #define HIDE(start, bytes) ((void)(start), (void)(bytes))
 #define SHOW(start, bytes) ((void)(start), (void)(bytes))
@@ -25,14 +25,14 @@ enum {
 	ALIGNMENT = 64,
 	PAGE = 4096,
 	LEAST_BLOCK = 64 << 10,
-	MOST_BLOCK = 1 << 20, // larger arrays have a block of their own
+	MOST_BLOCK = 1 << 20, // larger arrays get a block of their own
 };
 
-// At the start of its own pages.
+// A block's header, at the start of its pages.
 struct cau_arena_block {
 	struct cau_arena_block *next;
 	cau_pages pages;
-	size_t used; // from the start of the pages
+	size_t used; // bytes used so far, from the start of the pages
 	char padding[ALIGNMENT - sizeof(void *) - sizeof(cau_pages) - sizeof(size_t)];
 };
 
@@ -48,7 +48,8 @@ static struct cau_arena_block *make_block(size_t least)
 	return block;
 }
 
-// Blocks grow with their arena: a large one has few, whose equal pages lie side by side.
+// Returns the size of a new block. Blocks grow with their arena, so that a large arena has few
+// blocks, with long runs of equal pages.
 static size_t next_block_bytes(const cau_arena *arena)
 {
 	size_t bytes = arena->byte_count / 4;
@@ -61,7 +62,7 @@ static bool has_room(const struct cau_arena_block *block, size_t total)
 	return total <= block->pages.byte_count - block->used;
 }
 
-// One that `total` fits into, or a new one.
+// Returns a block with `total` free bytes, or a new block. NULL if there is no memory.
 static struct cau_arena_block *block_for(cau_arena *arena, size_t total)
 {
 	for (struct cau_arena_block *b = arena->blocks; b; b = b->next)

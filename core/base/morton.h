@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places along a Morton curve: what lies together has numbers that lie together.
+// Keys along a Morton curve: points that are close together have keys that are close together.
 #pragma once
 
 #include <stdint.h>
 
 #include "cautery/assert.h"
 
-enum { CAU_MORTON_BITS = 10 }; // of a coordinate
+enum { CAU_MORTON_BITS = 10 }; // bits of each coordinate
 
-static inline uint32_t cau_morton_spread(uint32_t x) // 10 bits to every third
+static inline uint32_t cau_morton_spread(uint32_t x) // moves 10 bits to every third bit
 {
 	CAU_ASSERT(x < 1u << CAU_MORTON_BITS, "%u has more than 10 bits", x);
 	x = (x | x << 16) & 0x030000ffu;
@@ -17,7 +17,7 @@ static inline uint32_t cau_morton_spread(uint32_t x) // 10 bits to every third
 	return (x | x << 2) & 0x09249249u;
 }
 
-// Of a place in the unit cube.
+// The key of a point in the unit cube.
 static inline uint32_t cau_morton(const double place[3])
 {
 	const double most = (1 << CAU_MORTON_BITS) - 1;

@@ -35,8 +35,8 @@ void cau_pages_give_back(cau_pages *pages)
 	*pages = (cau_pages){0};
 }
 
-// Linux has a number for each page of the program. Two of its bits need no privilege [Linux,
-// admin-guide/mm/pagemap].
+// Linux has a 64-bit entry for each page of the program. Two bits of the entry can be read without
+// privilege [Linux, admin-guide/mm/pagemap].
 void cau_pages_touched(const cau_pages *pages, uint8_t *touched)
 {
 	const uint64_t present = 1ULL << 63, swapped = 1ULL << 62;

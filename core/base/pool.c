@@ -10,32 +10,33 @@
 
 #include "cautery/assert.h"
 
-// Loops follow each other within microseconds during a step, so helpers spin for a while before
-// they sleep; between steps they sleep.
+// Loops follow each other within microseconds during a step. So helpers spin for a while before
+// they sleep. Between steps they sleep.
 enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
 
-// On a machine that others use too, a helper may lose its core in the middle of a part, and the
-// caller waits for as long as the scheduler pleases, hundreds of times a step. So after such a wait
-// the caller works alone for a while, twice as long each time that it happens again soon. Parts say
-// how long, some milliseconds at least: they take a few microseconds, while loops take a hundred
-// times longer in a large session than in a small one.
-enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // parts
+// If other programs use the machine, a helper may lose its core in the middle of a part. The caller
+// then waits for as long as the scheduler decides, hundreds of times a step. So after such a wait
+// the caller works alone for a while, and twice as long each time this happens again soon. The time
+// is counted in parts, at least for some milliseconds. A part takes a few microseconds, while a
+// loop takes a hundred times longer in a large session than in a small one.
+enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // all in parts
 
 struct cau_pool {
 	int32_t thread_count;
 	pthread_t threads[MAX_THREADS];
 	void (*part)(void *context, int32_t index);
 	void *context;
-	// One word holds the loop's generation (32 bits) and the parts that nobody has claimed, from
-	// the first (low 16 bits) to behind the last (the next 16): a claim is one exchange, so a late
-	// helper can never take a part of a loop it did not see. `part` and `context` are read only
-	// after a claim, while the loop cannot end. The caller claims from the front and helpers from
-	// the back, so that in loop after loop the same data are in the same core's cache.
+	// One word holds the loop's generation (32 bits) and the range of unclaimed parts: the first
+	// (low 16 bits), and the end (next 16 bits). A claim is one exchange, so a late helper can
+	// never take a part of a loop that it did not see. `part` and `context` are read only after a
+	// claim, while the loop cannot end. The caller claims from the front and helpers from the back.
+	// So in loop after loop the same data are in the same core's cache.
 	_Atomic uint64_t ticket;
 	_Atomic int32_t parts_left;
 	_Atomic int32_t sleepers;
-	int32_t alone, next_alone, calm; // the caller's: parts left to do alone; the next such count;
-	                                 // parts since the last wait
+	// used by the caller only. alone: parts still to run alone. next_alone: the next such count.
+	// calm: parts since the last long wait.
+	int32_t alone, next_alone, calm;
 	atomic_bool stop;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -143,14 +144,14 @@ int32_t cau_pool_thread_count(const cau_pool *pool)
 	return pool->thread_count;
 }
 
-// How often this thread lost its core against its will.
+// Returns how often this thread lost its core involuntarily.
 static long preemptions(void)
 {
 	struct rusage usage;
 	return getrusage(RUSAGE_THREAD, &usage) ? 0 : usage.ru_nivcsw;
 }
 
-// Waits for the parts that helpers hold. Returns whether someone else's work was in the way.
+// Waits for the parts that helpers have claimed. Returns true if another program delayed them.
 static bool wait_long(cau_pool *pool)
 {
 	long before = preemptions();

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A few threads that run the parts of one loop. Parts are numbered, so what a part computes never
-// depends on how many threads there are.
+// A few threads that run the parts of one loop. Parts are numbered, and a part's result never
+// depends on the number of threads.
 #pragma once
 
 #include <stdint.h>
 
 typedef struct cau_pool cau_pool;
 
-enum { CAU_POOL_PARTS = 65535 }; // of one loop, at most
+enum { CAU_POOL_PARTS = 65535 }; // most parts of one loop
 
-// `thread_count` threads run each loop, the caller's among them (so 1 starts none). NULL: no
-// memory.
+// Creates a pool in which `thread_count` threads run each loop. The caller's thread is one of them,
+// so 1 starts no thread. Returns NULL if there is no memory.
 cau_pool *cau_pool_create(int32_t thread_count);
-void cau_pool_destroy(cau_pool *pool); // takes NULL
+void cau_pool_destroy(cau_pool *pool); // accepts NULL
 int32_t cau_pool_thread_count(const cau_pool *pool);
 
-// Runs part(context, i) for every i in [0, part_count), part_count at most CAU_POOL_PARTS, each
-// once, and returns when all are done. Parts are claimed in order; writes of one loop are visible
-// to the next. Allocates nothing.
+// Runs part(context, i) once for every i in [0, part_count), and returns when all parts are done.
+// part_count is at most CAU_POOL_PARTS. Writes of one loop are visible to the next. Allocates no
+// memory.
 void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context, int32_t index),
                   void *context);

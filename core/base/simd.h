@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors of lanes for the element kernels, in GCC and Clang vector extensions. A kernel file is
-// compiled once per precision and instruction set: CAU_SINGLE is 1 or 0, the compiler's flags say
-// the rest. A vector is as wide as the tier's registers, and a batch (CAU_BATCH slots) is a whole
-// number of vectors on every tier, so data are laid out alike.
+// compiled once per precision and instruction set. CAU_SINGLE is 1 or 0; the compiler's flags
+// define the instruction set. A vector is as wide as the tier's registers. A batch (CAU_BATCH
+// slots) is a whole number of vectors on every tier, so the layout of data is the same on all
+// tiers.
 #pragma once
 
 #include <math.h>
@@ -41,7 +42,7 @@ typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alia
 
 #define INLINE static inline __attribute__((always_inline))
 
-// The intrinsic of this tier and precision, where there is one.
+// The intrinsic of this tier and precision, if there is one.
 #if defined(__AVX512F__)
 #define V_PREFIX(name) _mm512_##name
 #define V_INTEGER(a) ((__m512i)(a))
@@ -74,13 +75,13 @@ INLINE void v_store(void *to, int32_t slot, vreal a)
 {
 	*(vreal_memory *)((real *)to + slot) = a;
 }
-// A batch's part of an array, for soon.
+// Prefetches a batch's part of an array.
 INLINE void v_prefetch(const void *array, int32_t slot)
 {
 	__builtin_prefetch((const real *)array + slot);
 }
-// What is read far more often than it is written, and need not be exact: whole steps of a scale
-// that is kept beside it.
+// Narrow numbers: multiples of a scale that is stored separately. For data that are read far more
+// often than written, and need not be exact.
 enum { NARROW_MOST = INT16_MAX };
 typedef int16_t narrow_lanes
 	__attribute__((vector_size(LANES * sizeof(int16_t)), may_alias, aligned(2)));
@@ -95,8 +96,8 @@ INLINE vreal v_load_narrow(const int16_t *from)
 	                               vreal);
 #endif
 }
-// What was loaded before and is needed again is read again after this. Of the twenty arrays of an
-// element the compiler would keep every value on the stack; a read costs less than that write.
+// Makes the compiler read values again that were loaded before. Otherwise it would keep every value
+// of an element's twenty arrays on the stack, and a read costs less than that write.
 INLINE void v_forget(void)
 {
 	__asm__ volatile("" ::: "memory");
@@ -160,8 +161,7 @@ INLINE vreal v_sqrt(vreal a)
 #endif
 }
 
-// Sums in double: lanes are widened, two halves of floats folded to one, and added up at the end by
-// halves.
+// Sums in double. Lanes are widened (two halves of floats are added), and finally summed by halves.
 enum { SUM_LANES = VECTOR_BYTES / sizeof(double) };
 typedef double vsum __attribute__((vector_size(VECTOR_BYTES)));
 INLINE vsum v_widen(vreal a)
@@ -193,7 +193,7 @@ INLINE double v_sum(vreal a)
 typedef struct v3 {
 	vreal x, y, z;
 } v3;
-typedef struct m3 { // columns
+typedef struct m3 { // a 3 x 3 matrix by columns
 	v3 c[3];
 } m3;
 typedef struct sym2 {
@@ -284,13 +284,13 @@ INLINE v3 m3_apply(m3 a, v3 v)
 {
 	return v3_add_scaled(v3_add_scaled(v3_scale(v.x, a.c[0]), v.y, a.c[1]), v.z, a.c[2]);
 }
-// A S, S symmetric
+// A S, for a symmetric S
 INLINE m3 m3_times_sym(m3 a, sym3 s)
 {
 	return (m3){{m3_apply(a, (v3){s.a00, s.a01, s.a02}), m3_apply(a, (v3){s.a01, s.a11, s.a12}),
 	             m3_apply(a, (v3){s.a02, s.a12, s.a22})}};
 }
-// A^T B, symmetric by assumption
+// A^T B, assumed to be symmetric
 INLINE sym3 m3_transpose_times(m3 a, m3 b)
 {
 	return (sym3){v3_dot(a.c[0], b.c[0]), v3_dot(a.c[1], b.c[1]), v3_dot(a.c[2], b.c[2]),
@@ -298,10 +298,10 @@ INLINE sym3 m3_transpose_times(m3 a, m3 b)
 }
 
 // ---- vertices: four reals each (x, y, z, unused)
-// v3_gather reads one vertex of every lane; v3_add_to adds to one of every lane, lane by lane, so
-// that lanes may name the same one. `at` (LANES) says where in `field` each starts, in reals, in
-// sixteen bits or `wide`. In float, four vertices are transposed at a time inside each 128-bit part
-// of a vector: part j of row k is vertex 4 j + k.
+// v3_gather reads one vertex for each lane. v3_add_to adds to one vertex for each lane, lane by
+// lane, so that lanes may have the same vertex. `at` (LANES) is the index in `field` of each lane's
+// vertex, in reals, in sixteen bits or `wide`. In float, four vertices are transposed at a time
+// inside each 128-bit part of a vector. Part j of row k is vertex 4 j + k.
 INLINE int32_t place_of(const void *at, int wide, int lane)
 {
 	return wide ? ((const int32_t *)at)[lane] : ((const uint16_t *)at)[lane];
@@ -334,7 +334,8 @@ INLINE void vertex_row_add(real *field, const void *at, int wide, int k, vreal r
 		_mm_store_ps(vertex, _mm_add_ps(_mm_load_ps(vertex), u.part[j]));
 	}
 }
-// The low (high) halves of each part of a and b, by single reals and by pairs.
+// The low or high halves of each part of a and b, interleaved by single reals (row_) or by pairs
+// (pair_).
 INLINE vreal row_low(vreal a, vreal b)
 {
 	return V_CALL(unpacklo, a, b);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of symmetric 2x2 and 3x3 matrices in double, for work done now and then.
-// 2x2: 00, 11, 01. 3x3: 00, 11, 22, 01, 02, 12.
+// Functions of symmetric 2x2 and 3x3 matrices in double, for code that is not time-critical.
+// Entries of 2x2: 00, 11, 01. Entries of 3x3: 00, 11, 22, 01, 02, 12.
 #pragma once
 
-// Eigenvalues (descending order not promised) and orthonormal eigenvectors (columns of v,
+// Computes eigenvalues (in no particular order) and orthonormal eigenvectors (columns of v,
 // v[row][column]).
 void cau_symmetric_eigen3(const double a[6], double value[3], double v[3][3]);
 
-// A^power through the eigenvalues, each at least `floor`.
+// Computes A^power by the eigenvalues. Each eigenvalue counts as at least `floor`.
 void cau_symmetric_power3(const double a[6], double power, double floor, double out[6]);
 void cau_symmetric_power2(const double a[3], double power, double floor, double out[3]);

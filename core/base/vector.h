@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small vectors, poses and quaternions in double, for work that is not per element.
+// Small vectors, poses and quaternions in double, for code that does not run for each element.
 #pragma once
 
 #include <math.h>
@@ -51,7 +51,7 @@ static inline double cau_length(cau_vec3 a)
 {
 	return sqrt(cau_dot(a, a));
 }
-// a / |a|, or `fallback` where |a| is zero.
+// a / |a|, or `fallback` if |a| is zero.
 static inline cau_vec3 cau_unit_or(cau_vec3 a, cau_vec3 fallback)
 {
 	double length = cau_length(a);
@@ -78,19 +78,22 @@ static inline cau_vec3 cau_pose_to_local(const cau_pose *pose, cau_vec3 world)
 {
 	return cau_rotate_back(pose->rotation, cau_sub(world, cau_vec3_of(pose->position_m)));
 }
-// The pose a fraction s (0 to 1) of the way from a to b: linear in position, nlerp in rotation.
+// True if both poses have the same position.
 static inline bool cau_pose_is_same_place(const cau_pose *a, const cau_pose *b)
 {
 	return a->position_m[0] == b->position_m[0] && a->position_m[1] == b->position_m[1] &&
 	       a->position_m[2] == b->position_m[2];
 }
 
+// True if both poses have the same rotation.
 static inline bool cau_pose_is_same_turn(const cau_pose *a, const cau_pose *b)
 {
 	return a->rotation[0] == b->rotation[0] && a->rotation[1] == b->rotation[1] &&
 	       a->rotation[2] == b->rotation[2] && a->rotation[3] == b->rotation[3];
 }
 
+// Returns the pose at a fraction s (0 to 1) of the way from a to b: linear in position, normalised
+// linear in rotation.
 static inline cau_pose cau_pose_between(const cau_pose *a, const cau_pose *b, double s)
 {
 	CAU_ASSERT(s >= 0 && s <= 1, "a share of %g of the way", s);

@@ -8,12 +8,15 @@
 static const double water_heat_j_kgk = 4186; // specific heat of water
 static const double boiling_j_kg = 2.257e6;  // enthalpy of evaporation at 100 degC
 static const double dry_w_mk = 0.2;          // conductivity of dried tissue
-static const double electric_per_k = 0.0182; // rise of the electric conductivity, bovine liver
+// Rise of the electric conductivity per kelvin, bovine liver.
+static const double electric_per_k = 0.0182;
 static const double gas_j_molk = 8.314462618;
 static const double zero_k = 273.15;
-static const double damage_from_c = 43; // below it constants of burns do not hold
-static const double stable_share = 0.9; // of the longest step that is stable
-static const double cold_k = 0.5;       // such warmth damages no tissue, and no picture shows it
+// Below it, the constants that are known for burns do not hold.
+static const double damage_from_c = 43;
+static const double stable_share = 0.9; // share of the longest stable step that is used
+// At most this far from ambient, tissue is not damaged and no picture shows it.
+static const double cold_k = 0.5;
 
 cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capacity,
                               const cau_bioheat_material *material, int32_t material_count,
@@ -56,7 +59,7 @@ int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t ma
 	return cell;
 }
 
-// ---- properties as they are now
+// ---- present properties of a cell
 
 static const cau_bioheat_material *material_of(const cau_bioheat *bioheat, int32_t cell)
 {
@@ -75,7 +78,8 @@ double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell)
 	return dry_w_mk + (wet - dry_w_mk) * bioheat->water[cell];
 }
 
-// Rises until it boils, and falls with the square of the water that is left (Archie's law).
+// The electric conductivity rises until the cell boils. It falls with the square of the water that
+// is left (Archie's law).
 double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 {
 	double warm = fmin(bioheat->temperature[cell], CAU_BOILING_C) - CAU_BODY_C;
@@ -83,7 +87,7 @@ double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 	return material_of(bioheat, cell)->electric_s_m * (1 + electric_per_k * warm) * wet * wet;
 }
 
-// The dry mass keeps its heat capacity. The water that boils off takes its own along.
+// The dry mass keeps its heat capacity. The water that boils off takes its heat capacity along.
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell)
 {
 	const cau_bioheat_material *material = material_of(bioheat, cell);
@@ -115,7 +119,7 @@ void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 	cau_cells_sever(&bioheat->cells, cell);
 }
 
-// What boils takes its own warmth along with the enthalpy of evaporation.
+// Water that boils off takes its own heat along, besides the enthalpy of evaporation.
 double cau_bioheat_vapour(const cau_bioheat *bioheat)
 {
 	double warmth = water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);
@@ -124,8 +128,8 @@ double cau_bioheat_vapour(const cau_bioheat *bioheat)
 
 // ---- one step
 
-// Conductances of all faces: of both cells the harmonic mean. Each is found once, from the cell on
-// its lesser side. 0 where there is no neighbour.
+// Computes the conductances of all faces from the harmonic mean of both cells' conductivities. Each
+// face is computed once, from the cell on its lower side. A face without a neighbour has 0.
 static void find_faces(cau_bioheat *bioheat)
 {
 	const cau_cells *cells = &bioheat->cells;
@@ -146,8 +150,8 @@ static void find_faces(cau_bioheat *bioheat)
 		}
 }
 
-// Conductance of a cell to gas, through its sides without a neighbour; and with that of all its
-// faces, W/K.
+// Sets open_w_k: the conductance of a cell to gas, through its sides without a neighbour. Returns
+// the sum of open_w_k and the conductances of all faces, W/K.
 static double open_and_faces(cau_bioheat *bioheat, int32_t cell)
 {
 	const cau_cells *cells = &bioheat->cells;
@@ -166,8 +170,8 @@ static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *co
 	return cau_bioheat_conductivity(bioheat, contact->cell) * contact->over_length_m;
 }
 
-// Longest part in which no blade passes the mean temperature of the cells that it touches and of
-// the shaft that cools it.
+// Returns the longest part of a step in which no blade passes the mean temperature of its
+// surroundings: the cells that it touches, and the shaft that cools it.
 static double longest_of_blades_s(const cau_bioheat *bioheat, const cau_blade *blade,
                                   int32_t blade_count)
 {
@@ -184,8 +188,8 @@ static double longest_of_blades_s(const cau_bioheat *bioheat, const cau_blade *b
 	return longest;
 }
 
-// Explicit steps are stable while no cell loses more in a part than what brings it to the mean of
-// its neighbours, and no blade either.
+// Returns the longest part of a step that is stable. Explicit steps are stable while no cell and no
+// blade passes the mean temperature of its neighbours in one part.
 static double longest_part_s(cau_bioheat *bioheat, const cau_blade *blade, int32_t blade_count)
 {
 	double longest = longest_of_blades_s(bioheat, blade, blade_count);
@@ -200,8 +204,8 @@ static double longest_part_s(cau_bioheat *bioheat, const cau_blade *blade, int32
 	return stable_share * longest;
 }
 
-// A cell with water is at 100 degC and has taken up `over_j` beyond. It boils its water, and warms
-// up once it is dry.
+// Boils water of a cell at 100 degC, which has taken up `over_j` more energy. If the cell gets dry,
+// the rest of the energy warms the cell.
 static void boil(cau_bioheat *bioheat, int32_t cell, double over_j)
 {
 	double *wet = &bioheat->water[cell], mass = water_mass(bioheat, cell);
@@ -214,8 +218,8 @@ static void boil(cau_bioheat *bioheat, int32_t cell, double over_j)
 	bioheat->ledger.stored_j += left - sensible;
 }
 
-// Adds energy to a cell, J. It warms the cell to 100 degC, then boils its water, then warms the dry
-// cell. A cell that cools keeps the water that it has left.
+// Adds energy to a cell, J. The energy first warms the cell to 100 degC, then boils its water, then
+// warms the dry cell. A cell that cools keeps its remaining water.
 static void take_energy(cau_bioheat *bioheat, int32_t cell, double energy_j)
 {
 	double capacity = cau_bioheat_capacity(bioheat, cell), *kelvin = &bioheat->temperature[cell];
@@ -244,7 +248,7 @@ static void find_flows(cau_bioheat *bioheat)
 
 static double perfusion_w(const cau_bioheat *bioheat, int32_t cell)
 {
-	if (bioheat->damage[cell] >= 1) // its vessels have closed
+	if (bioheat->damage[cell] >= 1) // the cell's blood vessels have closed
 		return 0;
 	return material_of(bioheat, cell)->perfusion_w_m3k * cau_cells_volume(&bioheat->cells, cell) *
 	       (bioheat->temperature[cell] - bioheat->ambient_c);
@@ -277,7 +281,8 @@ static void damage_cell(cau_bioheat *bioheat, int32_t cell, double part_s)
 		                 material->damage_energy_j_mol / (gas_j_molk * (kelvin + zero_k)));
 }
 
-// The set power of a cell in a part: it ends when the cell is dry.
+// Returns the energy, J, that a cell takes from its set power in one part. A dry cell takes no
+// more.
 static double power_into(cau_bioheat *bioheat, int32_t cell, double part_s)
 {
 	double energy = bioheat->power_w[cell] * part_s;
@@ -315,7 +320,7 @@ static bool is_cold(const cau_bioheat *bioheat, const cau_blade *blade)
 	return true;
 }
 
-// Sets all cells to ambient. Blood would take minutes to carry the last half degree away.
+// Sets all cells to ambient. Perfusion would take minutes for the last half degree.
 static void forget_rest(cau_bioheat *bioheat)
 {
 	for (int32_t i = 0; i < bioheat->cells.count; i++)

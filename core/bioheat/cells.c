@@ -6,7 +6,8 @@
 
 #include "cautery/assert.h"
 
-enum { BUCKETS_PER_CELL = 2 }; // at least: so a search ends after a few places
+// Least number of buckets per cell, so that a search ends after a few buckets.
+enum { BUCKETS_PER_CELL = 2 };
 
 static int32_t bucket_count_for(int32_t capacity)
 {
@@ -37,8 +38,8 @@ cau_status cau_cells_create(cau_cells *cells, double side_m, int32_t capacity, c
 	return CAU_OK;
 }
 
-// The bucket of a place: its cell's, or the empty one where it would go. Large odd factors spread
-// neighbours.
+// Returns the bucket of a position: that of its cell, or the empty bucket for a new cell. Large odd
+// factors spread neighbours.
 static int32_t bucket_of(const cau_cells *cells, const int32_t place[3])
 {
 	uint32_t hash = (uint32_t)place[0] * 73856093u ^ (uint32_t)place[1] * 19349663u ^
@@ -83,14 +84,15 @@ int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material
 	memcpy(cells->place + 3 * (size_t)cell, place, 3 * sizeof *place);
 	cells->material[cell] = material;
 	cells->fill[cell] = fill;
-	cells->severed[cell] = 0; // a restore may have left the place to it
+	cells->severed[cell] = 0; // a severed cell may have had this index before a restore
 	for (int axis = 0; axis < 3; axis++)
 		cells->pull[cau_cell_axis(cell, axis)] = 1;
 	join(cells, cell);
 	return cell;
 }
 
-// From the newest on: the way to a cell's bucket leads over those of older cells alone.
+// Empties all buckets, the newest cell's first. The search for a cell's bucket passes only buckets
+// of older cells.
 static void empty_buckets(cau_cells *cells)
 {
 	for (int32_t cell = cells->count - 1; cell >= 0; cell--)

@@ -7,10 +7,11 @@
 #include "base/vector.h"
 #include "cautery/assert.h"
 
-// A sheet's current spreads in its plane, where the potential falls with the logarithm of the
-// distance: to the return electrode, about this far away.
+// Approximate distance to the return electrode. The current of a sheet spreads in its plane, where
+// the potential falls with the logarithm of the distance. So the result depends on this distance.
 static const double return_m = 0.03;
-// Dry tissue conducts this share of its first conductivity. With 0 the matrix would be singular.
+// Dry tissue conducts this share of its initial conductivity. If it were 0, the matrix would be
+// singular.
 static const double dry_share = 1e-4;
 
 cau_status cau_current_create(cau_current *current, const cau_bioheat *bioheat, cau_arena *arena,
@@ -66,7 +67,7 @@ static void enter(cau_current *current, int32_t cell, int32_t seed)
 	current->slot[cell] = current->count;
 }
 
-// Lists the cells that are joined with an electrode within reach_m, the nearest first.
+// Lists the cells that are connected to an electrode and within reach_m of it, the nearest first.
 static void find_region(cau_current *current, const cau_cells *cells, double reach_m)
 {
 	for (int32_t i = 0; i < current->count; i++)
@@ -92,9 +93,9 @@ static double conductivity(const cau_bioheat *bioheat, int32_t cell)
 	return fmax(cau_bioheat_electric(bioheat, cell), dry_share * wet);
 }
 
-// Conductance through a face of the region's border to 0 V, S. Beyond the border the potential is
-// taken to fall as around a point at `middle`: with 1/r in a solid, with ln(return_m / r) in a
-// sheet.
+// Returns the conductance to 0 V through a face at the border of the region, S. Beyond the border
+// the potential is assumed to fall as around a point at `middle`: as 1/r in a solid, as ln(return_m
+// / r) in a sheet.
 static double far_conductance(const cau_bioheat *bioheat, int32_t cell, int side, cau_vec3 middle)
 {
 	const cau_cells *cells = &bioheat->cells;
@@ -179,7 +180,7 @@ static double dot(const double *a, const double *b, int32_t count)
 	return sum;
 }
 
-// x from its present values on; stops as cau_current_solve says.
+// Iterates from the present values of x. Stops as described at cau_current_solve.
 static void iterate(cau_current *current, const cau_cells *cells, double *x, double tolerance,
                     int32_t most)
 {
@@ -211,7 +212,8 @@ static void iterate(cau_current *current, const cau_cells *cells, double *x, dou
 
 // ---- results
 
-// The heat of a face is divided between its two cells. The heat of a contact goes to its cell.
+// Returns the heat of a cell at 1 V. The heat of a face is divided between its two cells. The heat
+// of a contact goes to the contact's cell.
 static double heat_at_1v(const cau_current *current, const cau_cells *cells, int32_t i)
 {
 	const double *x = current->vector[0];
@@ -227,7 +229,8 @@ static double heat_at_1v(const cau_current *current, const cau_cells *cells, int
 	return heat;
 }
 
-// The conductance is the heat at 1 V: so heat and power agree whatever the iteration has left.
+// Computes conductance and returned current. The conductance is the heat at 1 V, so heat and power
+// agree at any residual.
 static void read_currents(cau_current *current, const cau_cells *cells)
 {
 	const double *x = current->vector[0];
@@ -254,12 +257,11 @@ void cau_current_solve(cau_current *current, const cau_bioheat *bioheat, double 
 	double *x = current->vector[0];
 	for (int32_t i = 0; i < current->count; i++) {
 		if (!(current->diagonal_s[i] > 0))
-			current->diagonal_s[i] = 1; // joined with nothing: it stays at 0 V
+			current->diagonal_s[i] = 1; // a cell without connections stays at 0 V
 		x[i] = current->potential[current->cell[i]];
 	}
 	iterate(current, &bioheat->cells, x, tolerance, most);
-	for (int32_t i = 0; i < current->count;
-	     i++) // the potential is greatest and least at electrodes
+	for (int32_t i = 0; i < current->count; i++) // the extreme potentials are at electrodes
 		current->potential[current->cell[i]] = x[i] = fmax(fmin(x[i], 1), 0);
 	read_currents(current, &bioheat->cells);
 }

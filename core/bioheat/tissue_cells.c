@@ -9,11 +9,11 @@
 #include "bioheat/living_tissue.h"
 #include "cautery/assert.h"
 
-// A cell outside of its element is farther from it than at rest by this factor at most. Tools miss
-// cells that stretch carries farther away.
+// A cell outside its element is at most this many times farther from it than at rest. Tools miss
+// cells that stretching moves farther away.
 static const double stretch_most = 2;
 
-static const double surface_w_m2k = 20; // still gas, with radiation
+static const double surface_w_m2k = 20; // to still gas, with radiation
 
 // ---- elements
 
@@ -143,8 +143,8 @@ cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissu
 	return status;
 }
 
-// Tissue of another element joins a cell. It has ambient temperature and mixes with the cell's. A
-// cell that has lost water is not filled further.
+// Adds tissue of another element to a cell. This tissue has ambient temperature and mixes with the
+// cell's tissue. A cell that has lost water gets no more tissue.
 static void fill_further(cau_bioheat *bioheat, int32_t cell, float share)
 {
 	if (bioheat->cells.severed[cell] || bioheat->water[cell] < 1)
@@ -229,7 +229,7 @@ bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element)
 	return true;
 }
 
-// ---- where they are
+// ---- positions of cells
 
 cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const double *position)
 {
@@ -259,22 +259,23 @@ void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, cons
 	*radius_m += stretch_most * (double)cells->beyond_m[element];
 }
 
-// F takes an edge at rest to the edge in the world, so row `axis` of F^-1 is the sum of the rest
-// edges' entries times the rows of the inverse in the world. Its square is the entry of F^-1 F^-T.
+// F maps an edge at rest to the edge in the world. So row `axis` of F^-1 is a sum over the edges:
+// an entry of the rest edge times the row of the inverse in the world. The square of this row is
+// the entry of F^-1 F^-T.
 void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position)
 {
 	cau_corners corners = corners_of(cells->tissue, cells->owner[cell]);
 	cau_vec3 first, rest[3], edge[3], across[3];
 	cau_corners_edges(&corners, cells->tissue->rest, &first, rest);
 	cau_corners_edges(&corners, position, &first, edge);
-	if (corners.count == 3) // a sheet keeps its volume: what it gains in area it loses in thickness
+	if (corners.count == 3) // a sheet keeps its volume, so more area means less thickness
 		edge[2] = cau_scale(cau_length(cau_cross(rest[0], rest[1])) /
 		                        cau_length(cau_cross(edge[0], edge[1])),
 		                    edge[2]);
 	double before = cau_dot(rest[0], cau_cross(rest[1], rest[2]));
 	double ratio = cau_edges_invert(edge, across) / before;
 	if (!(ratio > 0) || !isfinite(ratio))
-		return; // inside out or flat: the last value stays
+		return; // inverted or flat: the last value stays
 	for (int axis = 0; axis < 3; axis++) {
 		cau_vec3 row = {0};
 		for (int i = 0; i < 3; i++) {
@@ -287,9 +288,10 @@ void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const doubl
 	}
 }
 
-// ---- what holds together
+// ---- connections within an element
 
-// Lists the cells whose middles are in the element. A sheet's may be up to half a cell outside.
+// Lists the cells whose middles are in the element. A cell of a sheet may be up to half a cell
+// outside.
 static int32_t list_members(cau_tissue_cells *cells, const cau_element_shape *shape)
 {
 	const cau_cells *grid = &cells->bioheat.cells;
@@ -305,7 +307,7 @@ static int32_t list_members(cau_tissue_cells *cells, const cau_element_shape *sh
 	return count;
 }
 
-// Returns a new stamp. It marks the members that are joined with cell `from`.
+// Marks the members that are connected to cell `from` with a new stamp, and returns that stamp.
 static int32_t mark_joined(cau_tissue_cells *cells, int32_t count, int32_t from)
 {
 	int32_t members = ++cells->last_stamp, joined = ++cells->last_stamp, done = 0, found = 0;
@@ -334,7 +336,8 @@ static int32_t cell_at(const cau_cells *grid, cau_vec3 rest)
 	return cau_cells_find(grid, place);
 }
 
-// The cell of an element's corner: between the corner and the element's middle. -1: it is gone.
+// Returns the cell of an element's corner, between the corner and the element's middle. Returns -1
+// if that cell is gone.
 static int32_t corner_cell(const cau_tissue_cells *cells, const cau_element_shape *shape,
                            int corner)
 {
@@ -392,7 +395,7 @@ static bool lives(const cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIMIT
 	return alive[primitive][index];
 }
 
-// Stamps the cells of elements that are gone. Returns whether there are any.
+// Stamps the cells whose elements are gone. Returns whether there are any.
 static bool stamp_orphans(cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIMITIVE_KINDS],
                           int32_t stamp)
 {
@@ -413,8 +416,8 @@ static bool stamp_orphans(cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIM
 	return any;
 }
 
-// Gives a cell to the element of its first neighbour whose element is there. Returns whether there
-// is one.
+// Gives a cell to the element of its first neighbour whose element still exists. Returns whether
+// there is one.
 static bool follow_neighbour(cau_tissue_cells *cells, int32_t cell, int32_t orphan)
 {
 	for (int side = 0; side < CAU_CELL_SIDES; side++) {
@@ -427,7 +430,8 @@ static bool follow_neighbour(cau_tissue_cells *cells, int32_t cell, int32_t orph
 	return false;
 }
 
-// Cells beside tissue that is there come first, then their neighbours, and so on.
+// Gives cells to the elements of their neighbours: first the cells next to existing tissue, then
+// their neighbours, and so on.
 static void spread(cau_tissue_cells *cells, int32_t orphan, int32_t given, int32_t found)
 {
 	for (int32_t done = 0; done < found; done++)
@@ -498,7 +502,7 @@ double cau_tissue_cells_temperature(const cau_tissue_cells *cells, int32_t verte
 	const double *rest = cells->tissue->rest + 3 * (size_t)vertex;
 	double sum = 0;
 	int count = 0;
-	for (int corner = 0; corner < 8; corner++) { // the eight cells around it
+	for (int corner = 0; corner < 8; corner++) { // the eight cells around the vertex
 		const int32_t place[] = {(int32_t)floor(rest[0] / grid->side_m + (corner & 1) - 0.5),
 		                         (int32_t)floor(rest[1] / grid->side_m + (corner >> 1 & 1) - 0.5),
 		                         (int32_t)floor(rest[2] / grid->side_m + (corner >> 2) - 0.5)};

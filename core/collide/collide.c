@@ -5,13 +5,16 @@
 
 #include "cautery/assert.h"
 
-// Pairs that there is room for: so many a vertex of the tissue, and some more.
+// Capacity in pairs: PAIRS_OF_VERTEX for each vertex of the tissue, and PAIRS_BESIDES for small
+// tissue. It bounds memory: if the list is full, the search keeps only the pairs that this step
+// needs (find.c).
 enum { PAIRS_OF_VERTEX = 8, PAIRS_BESIDES = 4096 };
 
-// A pair is as stiff as gravity asks for (a vertex on a face has a dozen pairs, which it presses
-// together by a tenth of a millimetre), and a tenth as stiff as what its elements hold a vertex
-// with: what they press with is then met well before a pair's distance is used up. Of the layers as
-// the scene has them, whatever is cut: nothing of it is to be kept in snapshots.
+// Contact stiffness of a vertex: of_inertia times mass over step squared, plus of_elements times
+// the stiffness of its elements. The first part carries gravity. A vertex on a face has a dozen
+// pairs, and its weight presses them together by a tenth of a millimetre. The second part meets the
+// forces of the elements well before a pair's distance is used up. Both are computed from the
+// layers as the scene defines them, whatever is cut, so snapshots do not contain them.
 static const double of_inertia = 2, of_elements = 0.1;
 
 static void find_stiffness(cau_collide *collide, double step_s)
@@ -103,7 +106,7 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 	return made;
 }
 
-// Boxes side by side: every block begins a group of its own.
+// Makes the groups of boxes (lanes.h). Each block begins a new group.
 static bool make_lanes(cau_collide *collide, cau_arena *arena)
 {
 	const cau_tissue *tissue = collide->tissue;

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tissue against tissue: the drawn surface keeps a thickness from itself, and never crosses itself.
 //
-// Pairs are a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
-// thickness h has an energy that is part of eq. 4 (energy.c): with d its distance,
+// A pair is a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
+// thickness h has an energy, which is part of eq. 4 (energy.c). For the distance d the energy is
 //
 //     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d),
 //
-// continuous with its slope and curvature [offset geometric contact, Chen et al. 2025]. Below a
-// hundredth of h the force grows linearly, so that it is finite where tissue was crossed before.
-// Friction opposes the motion since the tick's start, with the force that the pair had then.
+// The energy is continuous, with its slope and curvature [offset geometric contact, Chen et al.
+// 2025]. Below 0.002 h the force grows linearly, so the force is finite even where tissue
+// crossed tissue before. Friction opposes the motion since the tick's start, with the pair's force
+// at that time.
 //
 // No step crosses (filter.c). A plane separates a pair before and after every move. Corners move
-// straight, so it separates them all the way. A corner that would pass the plane is moved back to
-// its side, and stopped where that is not enough.
+// along straight lines, so the plane separates the pair during the whole move. A corner that would
+// pass the plane is moved back to its side. If that is not enough, the corner is stopped.
 //
-// Pairs are valid (find.c) for all positions at which no vertex is farther than its `reach_m` from
-// its `anchor`, from tick to tick. Positions beyond need another search. Neither the touching pairs
-// nor the order in which their forces are added depends on that, so no snapshot contains it.
+// Pairs are valid (find.c) while no vertex is farther than its `reach_m` from its `anchor`, from
+// tick to tick. Positions beyond need another search. Neither the touching pairs nor the order of
+// their forces depends on when pairs were searched, so no snapshot contains the pairs.
 #pragma once
 
 #include <stdatomic.h>
@@ -26,7 +27,7 @@
 #include "collide/lanes.h"
 #include "collide/surface.h"
 
-enum { CAU_COLLIDE_SLICE = 2048 }; // pairs of a kind that a block may have
+enum { CAU_COLLIDE_SLICE = 2048 }; // most pairs of each kind in one block
 // The longest filtered step, m, unless the thickness is longer. It limits how far pairs are
 // searched.
 static const double cau_collide_most_step_m = 1e-3;
@@ -34,12 +35,12 @@ static const double cau_collide_most_step_m = 1e-3;
 typedef struct cau_collide_pair {
 	cau_gap_kind kind;
 	int32_t vertex[4];  // corners
-	double thickness_m; // less than the surface's where the pair is nearer at rest
+	double thickness_m; // m; less than the surface's thickness if the pair is nearer at rest
 	double stiffness;   // k, N/m
-	cau_vec3 plane;     // unit: a direction that separated the parts when they were last measured
-	double slope;       // dE/dd of the last evaluation, N; 0: apart
-	double curvature;   // d2E/dd2 of the last evaluation, N/m
-	double weight[4];   // of the corners in the gap, of the last evaluation
+	cau_vec3 plane;     // unit direction that separated the parts at the last measurement
+	double slope;       // dE/dd at the last evaluation, N; 0: the parts are apart
+	double curvature;   // d2E/dd2 at the last evaluation, N/m
+	double weight[4];   // weights of the corners in the gap, at the last evaluation
 	cau_vec3 normal;
 } cau_collide_pair;
 
@@ -48,9 +49,9 @@ typedef struct cau_collide_grip {
 	int32_t vertex[4];
 	double weight[4];
 	cau_vec3 normal;
-	double most_n;    // friction times the force that presses
-	double stiffness; // N/m, until it slides
-	double present;   // N/m: force by way of the last evaluation
+	double most_n;    // largest friction force: friction coefficient times pressing force
+	double stiffness; // N/m, until the pair slides
+	double present;   // N/m: force over slip, at the last evaluation
 } cau_collide_grip;
 
 typedef struct cau_collide_box {
@@ -58,18 +59,18 @@ typedef struct cau_collide_box {
 } cau_collide_box;
 
 typedef struct cau_collide_found { // a pair as find.c lists it
-	int32_t first, second;         // vertex and face, or edges, of the tissue
+	int32_t first, second;         // indices in the tissue: vertex and face, or two edges
 	double thickness_m, stiffness;
 } cau_collide_found;
 
-typedef struct cau_collide_slice { // of a block: what it found, and whether that was all
-	int32_t count[2];              // by cau_gap_kind
+typedef struct cau_collide_slice { // the pairs that one block found
+	int32_t count[2];              // pairs of each cau_gap_kind
 	bool full;
 } cau_collide_slice;
 
-// For which motion pairs must be valid: for a position; also for the step from there, with all by
-// which pushed corners may be moved beyond it; or, within the capacity, for the steps of a tick
-// that begins.
+// The motion for which pairs must be valid. PLACE: one position. STEP: also the wanted step from
+// there, and the distance by which pushed corners may be moved beyond their step. TICK: also the
+// steps of a tick that begins, as far as the capacity allows.
 typedef enum cau_collide_need {
 	CAU_COLLIDE_PLACE,
 	CAU_COLLIDE_STEP,
@@ -79,171 +80,192 @@ typedef enum cau_collide_need {
 typedef struct cau_collide {
 	const cau_tissue *tissue;
 	double thickness_m, friction;
-	const uint8_t *fixed; // (n): borrowed; vertices that no step moves
+	const uint8_t *fixed; // (n), n vertices; borrowed: 1 at vertices that no step moves
 	// (n): vertices excluded from contact in this tick: held by jaws, inverted, diverged. They are
 	// in no pair, and no filter moves them.
 	uint8_t *exempt;
-	// What joins parts while it lives: triangles, tetrahedra, links; borrowed, NULL: all do.
+	// Elements that join parts while they are alive: triangles, tetrahedra, links. Borrowed. NULL:
+	// all are alive.
 	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
-	double *stiffness; // N/m, (n): of a vertex
-	double *longest_m; // (n): of its edges at rest
+	double *stiffness; // N/m, (n): contact stiffness of each vertex
+	double *longest_m; // m, (n): longest edge of each vertex, at rest
 	cau_surface surface;
-	// Where the pairs are valid.
+	// Range in which the pairs are valid: no vertex is farther than its reach from its anchor. If
+	// `found` is false, no pairs are known.
 	bool found;
-	double *anchor;  // m, (n x 3)
-	double *reach_m; // (n)
-	bool ahead;      // they are where the filter let the last step lead
-	double *seen;    // m, (n x 3): where pairs were measured last, and
-	double *apart_m; // (most_pairs): how far apart they were there at least
-	double slack_m;  // what is left there of every vertex's reach, at least
-	double away_m;   // how far any vertex is from there where we are, at most
+	double *anchor;  // m, (n x 3): position around which the pairs of each vertex are known
+	double *reach_m; // m, (n): radius around the anchor
+	bool ahead;      // pairs are known to be valid at the positions of the next evaluation
+	double *seen;    // m, (n x 3): positions at which pairs were last measured
+	double *apart_m; // m, (most_pairs): lower bound of each pair's distance at `seen`
+	double slack_m;  // m: smallest remaining reach of any vertex at `seen`
+	double away_m;   // m: upper bound of any vertex's distance from `seen` to its present position
 	int32_t pair_count, most_pairs;
 	cau_collide_pair *pair; // (most_pairs)
 	int32_t grip_count;
 	cau_collide_grip *grip; // (most_pairs)
-	const double *start;    // m, (n x 3): where the tick began
-	// Of the last evaluation.
-	double energy_j;        // of pairs, without friction
+	const double *start;    // m, (n x 3): positions at the tick's start
+	// Results of the last evaluation.
+	double energy_j;        // energy of the pairs, without friction
 	int32_t touching_count; // pairs nearer than their thickness
-	double steepest;        // their curvature over their stiffness, at most
-	uint64_t touching_hash; // of which are pressed
+	double steepest;        // largest ratio of curvature to stiffness of a touching pair
+	uint64_t touching_hash; // hash of the pairs that are nearer than half of their thickness
 	int32_t loaded_count;
-	uint8_t *is_loaded; // (n)
-	int32_t *loaded;    // (n): vertices that have a gradient
-	double *gradient;   // N, (n x 3): of those, else 0
-	double *probe;      // m, (n x 3): for cau_collide_apply, and
-	double *answer;     // N, what comes of it, both where loaded
-	// Of the last filter, and of the tick.
-	double kept_share;            // filter.c: of its distance, a pair keeps at least
-	bool held_back, out_of_reach; // it shortened; because the pairs are known for no further
+	uint8_t *is_loaded; // (n): 1 at vertices that have a gradient
+	int32_t *loaded;    // (n): the loaded_count vertices that have a gradient
+	double *gradient;   // N, (n x 3): gradient of the energy; 0 at all other vertices
+	double *probe;      // m, (n x 3): input of cau_collide_apply, at loaded vertices
+	double *answer;     // N, (n x 3): result of cau_collide_apply, at loaded vertices
+	// State of the last filter, and counts of the tick.
+	double kept_share; // least share of its distance that a pair keeps in a step (filter.c)
+	// The last filter changed the step; it did so because pairs are not known farther.
+	bool held_back, out_of_reach;
 	int32_t held_back_count, search_count;
 	int32_t cut_short_count; // times that pairs exceeded the capacity, so that steps were shortened
-	double *step;            // m, (n x 3): for filter
+	double *step;            // m, (n x 3): the step to be filtered
 	double start_energy_j;
-	// find.c: what is known
-	cau_collide_box *face_box, *edge_box, *vertex_box; // of the tissue's, where they are drawn
-	cau_collide_box *block_box[3], *fresh_box[3]; // faces, edges, vertices of a block; those fresh
-	cau_collide_slice *slice;                     // (blocks)
-	cau_collide_found *list[2];                   // by kind, (blocks x CAU_COLLIDE_SLICE)
-	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];   // as they were when it was found
-	uint8_t *exempt_before; // `exempt` when it was found, or as the last tick ended; all: unknown
-	// The parts' boxes side by side, in the order in which blocks list them; each block begins a
-	// group. And which of a group are fresh, a bit each, where the block is touched.
+	// ---- find.c: result of the last search
+
+	// Boxes of the tissue's drawn faces, edges, vertices.
+	cau_collide_box *face_box, *edge_box, *vertex_box;
+	// Boxes of a block's faces, edges, vertices: of all, and of the fresh ones.
+	cau_collide_box *block_box[3], *fresh_box[3];
+	cau_collide_slice *slice;                   // (blocks)
+	cau_collide_found *list[2];                 // by kind, (blocks x CAU_COLLIDE_SLICE)
+	uint8_t *alive_before[CAU_PRIMITIVE_KINDS]; // elements that were alive at the last search
+	// `exempt` at the last search or at the end of the last tick; all 1: unknown
+	uint8_t *exempt_before;
+	// Boxes of the parts in groups of eight, in the order in which blocks list the parts. Each
+	// block begins a new group. `fresh_lane` has one bit for each part of a group: the part is
+	// fresh. It is valid in touched blocks only.
 	cau_collide_lanes *lane[3];
 	uint8_t *fresh_lane[3];
-	int32_t *lane_first[3]; // (blocks + 1): the lists' as they were when that was laid out
-	// and scratch
+	// (blocks + 1): begin of each block's list when the groups were laid out
+	int32_t *lane_first[3];
+	// ---- find.c: scratch
+
 	int32_t touched_count, *touched;              // blocks with a fresh part
-	cau_collide_lanes *block_lane, *touched_lane; // all faces of blocks; fresh ones of `touched`
-	uint8_t *is_touched;                          // (blocks)
-	cau_collide_box *place_box;                   // (blocks): crossed.c, of a block where it is
-	bool may_give_up;                             // the result of a failed search is not used
-	atomic_bool fails;                            // and it surely does
-	atomic_int listed_count;                      // pairs of the blocks that are done
-	// filter.c: scratch
-	bool *stopped;   // (most_pairs)
-	double *wanted;  // m, (n x 3): the step before it was changed
-	double *room_m;  // (n): where pushed
-	uint8_t *pushed; // (n): corners of pairs that came near; none but while a step is filtered
+	cau_collide_lanes *block_lane, *touched_lane; // boxes of all faces of each block; boxes of the
+	                                              // fresh faces of `touched` blocks
+	uint8_t *is_touched;                          // (blocks): 1 if the block is in `touched`
+	cau_collide_box *place_box; // (blocks): crossed.c: boxes at the present positions
+	bool may_give_up;  // the search may stop early, as the result of a failed search is not used
+	atomic_bool fails; // the search has failed: the pairs exceed the capacity
+	atomic_int listed_count; // pairs that finished blocks have listed
+	// ---- filter.c: scratch
+
+	bool *stopped;   // (most_pairs): the pair has been stopped in this step
+	double *wanted;  // m, (n x 3): the step before the filter changed it
+	double *room_m;  // m, (n): how far a pushed vertex may move
+	uint8_t *pushed; // (n): 1 at corners of pairs that came near; all 0 between calls
 	bool pushes_more;
-	int32_t unclear_count, *unclear; // (most_pairs)
+	// (most_pairs): pairs that cau_collide_foresee could not decide.
+	int32_t unclear_count, *unclear;
 } cau_collide;
 
-// The caller sets `fixed` and `start`, for good.
+// Creates the tissue contact of one tissue. The caller then sets `fixed` and `start` once.
 cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
                               double friction, double step_s, cau_arena *arena, cau_error *error);
 
 // Length of the longest filtered step, m.
 double cau_collide_most_step(const cau_collide *collide);
 
-// Begins a tick at positions x (m, n x 3). Before it the caller has listed the drawn surface,
-// filled `exempt`, and set `cut_short_count` to 1 if an exclusion is to be reported, else 0.
-// Searches pairs for steps as long as `collide->step`. Measures the energy at x and takes the
-// grips.
+// Begins a tick at positions x (m, n x 3). Before the call, list the drawn surface and fill
+// `exempt`. Set `cut_short_count` to 1 if an exclusion is to be reported, else to 0. The function
+// searches pairs for steps as long as `collide->step`, measures the energy at x, and makes a grip
+// of each touching pair.
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 
-// Energy at x, J, friction's included; the gradient is kept.
+// Returns the energy at x, J, with friction. Stores its gradient in `gradient`.
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x);
 
-// Finds the pairs for x (m, n x 3) and for any motion of `count` vertices by at most way_m. False:
-// they exceed the capacity. Not while a step is filtered.
+// Finds the pairs for x (m, n x 3) and for any motion of `count` vertices by at most way_m. Returns
+// false if there are more pairs than the capacity. Must not be called while a step is filtered.
 bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
                           const int32_t *vertex, int32_t count, double way_m);
 
-// Energy of one pair at x, J, its slope (N) and its curvature (N/m). All are 0 where the pair is
-// apart; then *gap may be left as it is.
+// Returns the energy of one pair at x, J, with its slope (N) and curvature (N/m). If the pair is
+// apart, all three are 0 and *gap may be left unchanged.
 double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
                          double *slope, double *curvature);
-// Energy of one grip at x, J. Its force is -*present (N/m) times *slip (m).
+// Returns the energy of one grip at x, J. The grip's force is -*present (N/m) times *slip (m).
 double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip, const double *x,
                         cau_vec3 *slip, double *present);
 
-// answer = K probe over the loaded vertices. K is the Hessian of the energy of the last evaluation,
-// without its negative part.
+// Computes answer = K probe over the loaded vertices. K is the Hessian of the energy of the last
+// evaluation, without its negative part.
 void cau_collide_apply(cau_collide *collide);
 
-// Call before a tick begins in which an excluded vertex takes part in contact again. Excludes also
-// the vertices that cross at x.
+// Excludes also the vertices that cross at x from contact. Call this before a tick in which an
+// excluded vertex takes part in contact again.
 void cau_collide_exempt_crossed(cau_collide *collide, const double *x);
+// Whether a vertex that was excluded in the last tick takes part in contact again.
 bool cau_collide_touches_again(const cau_collide *collide);
-// Marks the crossings of the next tick as unknown. The second marks the pairs as unknown too.
+// Marks the crossings of the next tick as unknown.
 void cau_collide_forget_crossed(cau_collide *collide);
+// Marks the crossings of the next tick, and all pairs, as unknown.
 void cau_collide_forget(cau_collide *collide);
 
-// Excludes a vertex from contact for the rest of the tick. The energy of its pairs is gone at the
-// next evaluation.
+// Excludes a vertex from contact for the rest of the tick. Its pairs have no energy from the next
+// evaluation on.
 void cau_collide_let_go(cau_collide *collide, int32_t vertex);
 
-// Makes x the present positions. Otherwise these are the positions of the last evaluation, or those
-// to which the last filter led.
+// Makes x the present positions. Without this call the present positions are those of the last
+// evaluation, or those to which the last filter led.
 void cau_collide_stand(cau_collide *collide, const double *x);
 
-// Changes `collide->step` (m, n x 3), a wanted step from the present positions x, so that no pair
-// crosses on the way. With `guess` also so that no pair comes nearer than the thickness. Returns
-// whether it changed the step.
+// Changes `collide->step` (m, n x 3), the wanted step from the present positions x, so that no pair
+// crosses during the step. With `guess`, no pair comes nearer than its thickness either. Returns
+// whether the step was changed.
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess);
 
-// Measures how far pairs are apart at the present positions x, for the steps near it.
+// Measures the distances of all pairs at the present positions x. Steps from near x use these
+// distances.
 void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
 
-// A quick filter for the steps of an iteration, most of which are short; it does not visit all
-// vertices. Whether a step of at most `longest_m` from the present positions surely keeps every
-// vertex within its reach. If so, fill `collide->step` only at the corners of the `unclear` pairs.
-// cau_collide_lets_pass then returns whether the step may be taken unchanged. If either returns
-// false, call cau_collide_filter.
+// A quick check for the steps of an iteration, most of which are short. The check does not visit
+// all vertices. Returns true if a step of at most `longest_m` from the present positions surely
+// keeps every vertex within its reach. Then fill `collide->step` only at the corners of the
+// `unclear` pairs, and call cau_collide_lets_pass. That function returns true if the step may be
+// taken unchanged. If either function returns false, call cau_collide_filter.
 bool cau_collide_foresee(cau_collide *collide, double longest_m);
 bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest_m);
 
-// ---- between the files of this room
+// ---- shared by the files of core/collide, private to this folder
 
-// find.c: searches the pairs of the vertices in `surface.changed`. False if they exceed the
-// capacity.
+// find.c: searches the pairs of the vertices in `surface.changed`. Returns false if the pairs
+// exceed the capacity.
 bool cau_collide_search(cau_collide *collide, cau_pool *pool);
 // order.c: sorts pairs by their parts; no two pairs have the same parts.
 void cau_collide_sort(cau_collide_found *found, int32_t count);
-void cau_collide_gather(cau_collide *collide); // the pairs, up to the capacity
-// pair.c: whether corners may come nearer than their thickness by any allowed motion. If so, *found
-// gets the pair's thickness and stiffness.
+// order.c: lists the pairs that all blocks found, up to the capacity.
+void cau_collide_gather(cau_collide *collide);
+// pair.c: true if the parts may come nearer than their thickness while each corner stays within its
+// reach. If so, *found gets the pair's thickness and stiffness.
 bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
                            cau_collide_found *found);
 // reach.c: finds the pairs for x and for the motion `need`.
 void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need);
 // Whether the pairs are valid for x and for the motion `need`.
 bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need);
-// Whether they are for what is pushed, where they are for the step.
+// Whether the pairs are valid for x and for the steps of pushed vertices.
 bool cau_collide_covers_pushed(const cau_collide *collide, const double *x);
-// What is left of every vertex's reach at x, m, at least.
+// Returns the smallest remaining reach of any vertex at x, m.
 double cau_collide_slack(const cau_collide *collide, const double *x);
-// How far a filtered step may lead, m, where `collide->step` is wanted.
+// Returns how far a filtered step may move the vertex, m, if `collide->step` is the wanted step.
 double cau_collide_room(const cau_collide *collide, int32_t vertex);
-double cau_collide_most_room(const cau_collide *collide, double step_m); // of a step so long
-// What died since is looked at again; and, crossed.c, what is exempt now or is so no longer.
+// Returns how far a filtered step may move any vertex whose wanted step has the length step_m, m.
+double cau_collide_most_room(const cau_collide *collide, double step_m);
+// Marks the corners of elements that died since the last call as changed, so that their pairs are
+// searched again.
 void cau_collide_forget_dead(cau_collide *collide);
+// crossed.c: marks the vertices as changed whose `exempt` differs from that at the last call.
 void cau_collide_note_exempt(cau_collide *collide);
 
-// energy.c: how far any vertex is from where pairs were measured last, m, at most.
+// energy.c: returns the largest distance of any vertex from where pairs were last measured, m.
 double cau_collide_away(const cau_collide *collide, const double *x);
-// Whether a pair is at least this far apart wherever vertices have been.
+// Whether a pair is at least `by_m` apart while no vertex is more than `away_m` from where pairs
+// were last measured.
 static inline bool cau_collide_is_far(const cau_collide *collide, int32_t pair, double away_m,
                                       double by_m)
 {

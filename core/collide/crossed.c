@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What crosses already. Where jaws hold tissue, or it is thrown or inside out, it touches nothing
-// and may come to lie in other tissue; then no plane tells which side it is from, and pairs would
-// keep it there. So edges that pierce faces are looked for, exactly, wherever something is to touch
-// again, and their corners stay exempt until they have found their way out.
+// Finds tissue that already crosses tissue. Vertices that jaws hold, that diverged or that are
+// inverted are excluded from contact. They may come to lie in other tissue. Then no plane shows
+// from which side they came, and pairs would keep them there. So before vertices take part in
+// contact again, edges that pierce faces are searched exactly. The corners of these edges and faces
+// stay exempt until they cross no longer.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -32,7 +33,7 @@ static bool meets(const cau_collide_box *a, const cau_collide_box *b)
 	       (b->least[1] <= a->most[1]) & (a->least[2] <= b->most[2]) & (b->least[2] <= a->most[2]);
 }
 
-// Six times the volume of a tetrahedron.
+// Returns six times the volume of a tetrahedron.
 static double volume(cau_vec3 a, cau_vec3 b, cau_vec3 c, cau_vec3 d)
 {
 	return cau_dot(cau_sub(b, a), cau_cross(cau_sub(c, a), cau_sub(d, a)));
@@ -79,7 +80,8 @@ static void list_near(const cau_surface_parts *parts, int32_t block, const int32
 	}
 }
 
-// Exempts the corners of the first block's edges and the second's faces that cross.
+// Finds edges of the block `of_edges` that pierce faces of the block `of_faces`. Exempts the
+// corners of both.
 static void look_at(cau_collide *collide, const double *x, int32_t of_edges, int32_t of_faces)
 {
 	const cau_surface *surface = &collide->surface;
@@ -125,7 +127,7 @@ void cau_collide_exempt_crossed(cau_collide *collide, const double *x)
 				look_at(collide, x, a, b);
 }
 
-// ---- what touches nothing from tick to tick
+// ---- changes of the excluded vertices from tick to tick
 
 void cau_collide_note_exempt(cau_collide *collide)
 {

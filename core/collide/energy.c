@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What touching pairs add to eq. 4, and its gradient. Pairs are measured in shares, each on its
-// own; energies and forces are added up in the pairs' order.
+// Energy of touching pairs, a part of eq. 4, and its gradient. Pairs are measured in parallel, in
+// shares of SHARE pairs. Energies and forces are added in the order of the pairs.
 #include <math.h>
 #include <string.h>
 
@@ -8,8 +8,8 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double soft_share = 0.002; // of the thickness, below which the force grows linearly
-enum { SHARE = 256 };                   // pairs
+static const double soft_share = 0.002; // share of the thickness: below it, force grows linearly
+enum { SHARE = 256 };                   // pairs in one share of the work
 
 static double potential(double stiffness, double thickness, double distance, double *slope,
                         double *curvature)
@@ -29,8 +29,8 @@ static double potential(double stiffness, double thickness, double distance, dou
 	return scale * (0.5 + log(half / at)) + force * in + *curvature * in * in / 2;
 }
 
-// A direction that keeps the parts further apart than the thickness spares the search for the
-// nearest places: by more than rounding, so the result is the same without such a direction.
+// If a known direction separates the parts by more than the thickness, the nearest points are not
+// searched. This factor exceeds all rounding, so the result is the same without that shortcut.
 static const double surely = 1 + 1e-9;
 
 double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
@@ -78,7 +78,7 @@ static int32_t share_count(const cau_collide *collide)
 	return (collide->pair_count + SHARE - 1) / SHARE;
 }
 
-// The place behind a share's last pair.
+// Returns the index after the last pair of a share.
 static int32_t end_of(const cau_collide *collide, int32_t share)
 {
 	CAU_ASSERT_INDEX(share, share_count(collide));
@@ -120,8 +120,8 @@ static void unload(cau_collide *collide)
 	collide->loaded_count = 0;
 }
 
-// Elastic up to the most that friction bears, and of that force beyond. The force is `present`
-// times the slip.
+// The energy of friction is elastic up to the largest friction force, and has that constant force
+// beyond. The force is `present` times the slip.
 double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip, const double *x,
                         cau_vec3 *slip, double *present)
 {
@@ -158,7 +158,7 @@ static double distance_of(const cau_collide_pair *pair, const double *x)
 	return cau_length(way);
 }
 
-// In the pairs' order.
+// Adds the energy and forces of all pairs, in the pairs' order.
 static void add_pairs(cau_collide *collide, const double *x)
 {
 	collide->energy_j = 0;
@@ -182,7 +182,7 @@ static void add_pairs(cau_collide *collide, const double *x)
 	}
 }
 
-// ---- how far pairs are apart where the tick began, which spares most of them a look
+// ---- distances of pairs at the tick's start, which spare most pairs a later measurement
 
 static void see_part(void *context, int32_t share)
 {
@@ -266,16 +266,17 @@ bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
 	if (!all) {
 		cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
 		cau_collide_see(collide, pool, x);
-		cau_collide_evaluate(collide, pool, x); // the pairs are others: cau_collide_apply
+		cau_collide_evaluate(collide, pool, x); // cau_collide_apply needs values of the new pairs
 		all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
-		collide->cut_short_count = cut_short; // no step is shortened for this
+		collide->cut_short_count = cut_short; // this search shortened no step
 	}
 	for (int32_t i = 0; i < count; i++)
 		collide->pushed[vertex[i]] = 0;
 	return all;
 }
 
-// stiffness * normal (normal . way) and, across the normal, across * the rest of the way
+// Adds the reaction of one pair or grip to `answer`: `stiffness` times the motion along the normal,
+// and `across` times the motion across the normal.
 static void apply(cau_collide *collide, const int32_t vertex[4], const double weight[4],
                   cau_vec3 normal, double stiffness, double across)
 {
@@ -305,7 +306,8 @@ void cau_collide_apply(cau_collide *collide)
 	}
 }
 
-// What presses at the tick's start resists sliding in it.
+// Makes a grip of each pair that presses at the tick's start. The grip resists sliding in this
+// tick.
 static void take_grips(cau_collide *collide)
 {
 	collide->grip_count = 0;

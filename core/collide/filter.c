@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps that cross nothing. Corners move straight, so a pair whose parts a direction separates
-// before and after a step is separated by it all the way. A pair may lose four fifths of its
-// distance in a step: what wants more is first moved back, both parts by what they weigh, and then,
-// where many pairs want different things, shortened to less than half of the distance, corner by
-// corner, which no partner's move can undo [divide and truncate, after Chen et al. 2025].
+// Filters steps so that no tissue crosses tissue. Corners move along straight lines. So a direction
+// that separates the parts of a pair before and after a step separates them during the whole step.
+// A pair may lose at most four fifths of its distance in a step. If a step takes more, both parts
+// are first moved back, the lighter part by more. If many pairs conflict, this may not be enough.
+// Then the step of each corner is shortened to half of the distance that its pair may lose. No
+// motion of the other part can undo that [divide and truncate, after Chen et al. 2025].
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double kept_share = 0.2;    // of its distance, or of the thickness if that is less;
-static const double kept_by_guess = 1;   // by the first guess, which adds no energy so
-static const double least_share = 0.005; // of the thickness: a pair that is so near comes no nearer
-static const double just = 1 - 1e-6;     // of a reach: so that rounding leads nobody beyond
+// Share of its distance, or of the thickness if that is less, that a pair keeps in a step.
+static const double kept_share = 0.2;
+// Share for the first guess, which so adds no contact energy.
+static const double kept_by_guess = 1;
+static const double least_share = 0.005; // share of the thickness: a pair this near comes no nearer
+static const double just = 1 - 1e-6; // share of a reach, so that rounding leads no vertex beyond it
 enum { PASSES = 8 };
 
 typedef struct look {
 	cau_vec3 corner[4], step[4], after[4];
 	cau_vec3 normal;
-	double distance, floor; // before; after the step it may be no less
+	double distance, floor; // distance before the step; least distance allowed after it
 } look;
 
 static void see(const cau_collide *collide, const cau_collide_pair *pair, const double *x, look *l)
@@ -32,7 +35,7 @@ static void see(const cau_collide *collide, const cau_collide_pair *pair, const 
 	}
 }
 
-// How much the pair may lose of its distance at most, whichever way it lies.
+// Returns the most that the step can take from the pair's distance, in any direction.
 static double most_closing(const cau_collide_pair *pair, const look *l)
 {
 	int firsts = cau_gap_first(pair->kind);
@@ -45,7 +48,8 @@ static double most_closing(const cau_collide_pair *pair, const look *l)
 	return sqrt(most2);
 }
 
-// Whether the pair comes too near on the way; then the plane between its parts is measured.
+// Whether the pair comes too near during the step. Measures the plane between its parts unless the
+// known plane suffices.
 static bool comes_near(const cau_collide *collide, cau_collide_pair *pair, const double *x, look *l)
 {
 	see(collide, pair, x, l);
@@ -55,13 +59,13 @@ static bool comes_near(const cau_collide *collide, cau_collide_pair *pair, const
 	if (cau_gap_along(pair->kind, l->corner, pair->plane) - most_closing(pair, l) >= clear)
 		return false;
 	cau_gap gap = cau_gap_between(pair->kind, l->corner);
-	if (!(gap.distance > 0)) // crossed before: nothing tells the sides
+	if (!(gap.distance > 0)) // crossed before: no plane separates the sides
 		return false;
 	pair->plane = l->normal = gap.normal;
 	l->distance = gap.distance;
 	l->floor = fmax(collide->kept_share * fmin(gap.distance, pair->thickness_m),
 	                fmin(least_share * pair->thickness_m, gap.distance));
-	// what is told of the same numbers twice may differ by rounding
+	// the margin covers rounding, by which two evaluations of one distance may differ
 	return cau_gap_along(pair->kind, l->after, gap.normal) < l->floor - 1e-9 * l->distance;
 }
 
@@ -88,7 +92,8 @@ static bool shorten(cau_collide *collide, int32_t vertex, double most)
 	return true;
 }
 
-// Moves a corner that is known to be pushed; else has it noted for the next time.
+// Moves a corner that is marked as pushed. Any other corner is only marked, and the filter repeats
+// with it.
 static void move_corner(cau_collide *collide, int32_t vertex, double by, cau_vec3 normal)
 {
 	double *step = collide->step + 3 * (size_t)vertex;
@@ -103,8 +108,8 @@ static void move_corner(cau_collide *collide, int32_t vertex, double by, cau_vec
 	shorten(collide, vertex, collide->room_m[vertex]);
 }
 
-// Moves both parts back along the plane's normal until they keep their distance, as far as corners
-// have room: what they might meet beyond need not be known.
+// Moves both parts back along the plane's normal until they keep their distance. A corner moves at
+// most by its room_m, because pairs beyond that are not known.
 static void part(cau_collide *collide, const cau_collide_pair *pair, const look *l)
 {
 	int firsts = cau_gap_first(pair->kind);
@@ -129,10 +134,10 @@ static void part(cau_collide *collide, const cau_collide_pair *pair, const look 
 	}
 }
 
-// ---- what always holds
+// ---- shortening, which alone prevents every crossing
 
-// Corners go no further than half of what their pair may lose: that stays enough, whatever other
-// pairs shorten.
+// Shortens the steps of a pair's corners to half of the distance that the pair may lose. This stays
+// enough, whatever other pairs shorten.
 static void stop(cau_collide *collide, const cau_collide_pair *pair, const look *l)
 {
 	double most = fmax((l->distance - l->floor) / 2, 0);
@@ -140,7 +145,7 @@ static void stop(cau_collide *collide, const cau_collide_pair *pair, const look 
 		shorten(collide, pair->vertex[i], most);
 }
 
-// Whether a pair stays clear of its partner whatever its corners do within their room.
+// Whether a pair keeps its distance for all motions of its corners within away_m.
 static bool is_clear(const cau_collide *collide, int32_t pair)
 {
 	return cau_collide_is_far(collide, pair, collide->away_m,
@@ -164,8 +169,8 @@ static void stop_pairs(cau_collide *collide, const double *x)
 	}
 }
 
-// No step is longer than the most, whatever is known; where pairs found no room, than that allows.
-// Returns whether one was; *longest is how long they are then.
+// Shortens each step to the longest allowed step or, if `by_reach`, to its vertex's reach. Returns
+// whether a step was shortened. *longest is the longest step afterwards.
 static bool limit(cau_collide *collide, bool by_reach, double *longest)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
@@ -183,7 +188,8 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 	return shortened;
 }
 
-// Finds the pairs. Returns whether steps had to be shortened for want of room.
+// Finds the pairs for the step. Returns whether steps had to be shortened because the pairs exceed
+// the capacity.
 static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	int32_t before = collide->cut_short_count;
@@ -193,7 +199,7 @@ static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 	return collide->cut_short_count > before && limit(collide, true, &longest);
 }
 
-// Where pairs found no room, a corner has what its reach allows.
+// Sets room_m of the pushed corners. If the pairs exceed the capacity, the reach is the limit.
 static void take_room(cau_collide *collide)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
@@ -204,7 +210,7 @@ static void take_room(cau_collide *collide)
 	}
 }
 
-// Moves back what comes too near, after which steps may be as long as their room.
+// Moves back pairs that come too near. Afterwards each step may be as long as its vertex's room_m.
 static void part_pairs(cau_collide *collide, const double *x)
 {
 	look l;
@@ -222,7 +228,7 @@ static void part_pairs(cau_collide *collide, const double *x)
 	}
 }
 
-// Notes the corners of pairs that come near. Returns whether any does.
+// Marks the corners of pairs that come near as pushed. Returns whether there are any.
 static bool note_pushed(cau_collide *collide, const double *x)
 {
 	look l;
@@ -238,9 +244,10 @@ static bool note_pushed(cau_collide *collide, const double *x)
 	return any;
 }
 
-// What is pushed may be moved farther than it wanted, and pairs have to be known for that: where
-// others turn out to be pushed besides, it begins again with the step as it was wanted. Returns
-// whether steps had to be shortened for want of room.
+// Moves back pairs that come too near. A pushed corner may move farther than it wanted, so pairs
+// must be known for that motion. If further corners turn out to be pushed, the function starts
+// again from the wanted step. Returns whether steps had to be shortened because the pairs exceed
+// the capacity.
 static bool part_known_pairs(cau_collide *collide, cau_pool *pool, const double *x, double longest)
 {
 	size_t n = (size_t)collide->tissue->vertex_count, bytes = 3 * n * sizeof(double);
@@ -261,13 +268,13 @@ static bool part_known_pairs(cau_collide *collide, cau_pool *pool, const double 
 	return shortened;
 }
 
-// Whether no step from where we are leads out of what is known.
+// Whether any step of at most `longest` from the present positions stays where pairs are known.
 static bool is_within(const cau_collide *collide, double longest)
 {
 	return collide->found && collide->slack_m - collide->away_m >= longest;
 }
 
-// Where the step leads, in numbers that may be rounded to single precision.
+// Ends a filter. The positions after the step may be rounded to single precision.
 static void end(cau_collide *collide, bool changed)
 {
 	const double rounding = 1 + 1e-6;

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Broad phase: which pairs may come nearer than their thickness while each vertex stays within its
-// reach of where it was anchored. Boxes of parts, grown by what their corners may move, are held
-// against boxes of blocks and then against each other.
+// Broad phase. Finds the pairs that may come nearer than their thickness while each vertex stays
+// within its reach of its anchor. The box of a part is grown by the reach of its corners. Boxes of
+// parts are compared with boxes of blocks, then with each other.
 //
-// Pairs live on. A part with a corner that was anchored anew, that lost a joint, or whose face is
-// drawn or hidden now (surface->changed) is fresh: its pairs are dropped and looked for again, all
-// other pairs are kept. Pairs are ordered by their parts alone, so which pairs touch, and in what
-// order, does not depend on when they were found.
+// Pairs are kept from tick to tick. surface->changed marks vertices that have a new anchor, that
+// lost a joining element, or whose face is newly drawn or hidden. A part with such a corner is
+// fresh: its pairs are dropped and searched again. All other pairs are kept. Pairs are sorted by
+// their parts alone. So which pairs touch, and in what order, does not depend on when they were
+// found.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-// ---- parts of a block, by what they are
+// ---- parts of a block: faces, edges and vertices
 enum { FACES, EDGES, VERTICES };
 
 typedef struct parts {
 	const cau_surface_parts *list;
 	cau_collide_box *box;
-	const int32_t *corner; // NULL: of itself
+	const int32_t *corner; // NULL: the part is its own corner
 	int corners;
 } parts;
 
@@ -90,7 +91,8 @@ static bool meets(const cau_collide_box *a, const cau_collide_box *b, double by_
 	       (a->least[2] - by_m <= b->most[2]) & (b->least[2] - by_m <= a->most[2]);
 }
 
-// Boxes of a block's fresh parts, of all these, and of all that it has.
+// Computes the boxes of a block's fresh parts, the box of all fresh parts, and the box of all
+// parts.
 static void box_part(void *context, int32_t index)
 {
 	cau_collide *collide = context;
@@ -112,7 +114,7 @@ static void box_part(void *context, int32_t index)
 	}
 }
 
-// ---- boxes side by side
+// ---- boxes in groups of eight (lanes.h)
 
 static int32_t first_group(const parts *p, int32_t block)
 {
@@ -157,8 +159,8 @@ static void lay_block(void *context, int32_t block)
 		lay(collide, what, block);
 }
 
-// Whether blocks begin elsewhere than when they were laid out. (Where they do not, a block that
-// lists anything else than before is touched.)
+// Whether any block's list begins at another index than when the groups were laid out. If not, only
+// touched blocks list other parts than before.
 static bool begin_elsewhere(cau_collide *collide)
 {
 	bool elsewhere = false;
@@ -195,8 +197,9 @@ static void lay_out(cau_collide *collide, cau_pool *pool)
 
 // ---- pairs
 
-// A search that finds no room is made again for less, of everything (reach.c), and nothing of it is
-// used: unless it was for no reach at all.
+// Whether this search may stop as soon as it fails. A search that exceeds the capacity is repeated
+// with a smaller reach of all vertices (reach.c), and its pairs are not used. But a search with no
+// reach at all is the last one: its pairs are used.
 static bool may_give_up(const cau_collide *collide)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
@@ -222,7 +225,7 @@ static void list(cau_collide *collide, int32_t block, cau_gap_kind kind, cau_col
 	collide->list[kind][(size_t)block * CAU_COLLIDE_SLICE + (size_t)slice->count[kind]++] = found;
 }
 
-// Parts of a block that are near another's, with their boxes.
+// Parts of a block that are near another block, with their boxes.
 typedef struct near_parts {
 	int32_t count, item[3 * CAU_SURFACE_FACES];
 	cau_collide_lanes lane[3 * CAU_SURFACE_FACES / CAU_LANES + 1];
@@ -260,8 +263,9 @@ static bool list_near(const cau_collide *collide, int what, int32_t block, wante
 	return near->count > 0;
 }
 
-// Two blocks of which the first's parts of one kind are held against the second's of another: those
-// that are fresh against all, or the others against those of the second that are fresh.
+// Near parts of two blocks, one kind of part of each block. Fresh parts of the first block are
+// compared with all parts of the second block. Other parts of the first block are compared only
+// with fresh parts of the second block.
 typedef struct meeting {
 	near_parts own, others;
 } meeting;
@@ -286,8 +290,8 @@ static bool shares_corner(const int32_t *a, int a_count, const int32_t *b, int b
 	return shares;
 }
 
-// Of those whose boxes meet as floats: that they do in double is asked last, as it is seldom not
-// so.
+// Lists a vertex and a face as a pair if they may touch. Their boxes meet in single precision. The
+// test in double precision comes last, because it seldom fails.
 static void look_at_vertex(cau_collide *collide, int32_t block, int32_t v, int32_t face)
 {
 	cau_collide_found found = {v, face, 0, 0};
@@ -326,7 +330,8 @@ static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other,
 	}
 }
 
-// The edge of the lower block first, within a block the lower edge; each pair once.
+// Lists pairs of edges, each pair once. First comes the edge of the block with the lower index or,
+// within a block, the edge with the lower index.
 static void look_at_edges(cau_collide *collide, int32_t block, int32_t other, bool fresh)
 {
 	parts edges = parts_of(collide, EDGES);
@@ -373,9 +378,9 @@ static void look_at_others(cau_collide *collide, int32_t block)
 			look_at(collide, block, collide->touched[k + __builtin_ctz(met)], false);
 }
 
-// ---- what a block keeps
+// ---- pairs that a block keeps
 
-// Takes out what it had of parts that are fresh.
+// Removes the block's pairs that have a fresh part.
 static void keep(cau_collide *collide, int32_t block)
 {
 	cau_collide_slice *slice = &collide->slice[block];
@@ -417,7 +422,7 @@ static void search_part(void *context, int32_t block)
 		collide->fails = true;
 }
 
-// Blocks that list a fresh part.
+// Lists the blocks that have a fresh face.
 static void list_touched(cau_collide *collide)
 {
 	parts faces = parts_of(collide, FACES);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// After C. Ericson, Real-Time Collision Detection (2005), 5.1.5 and 5.1.9.
+// Distances between parts of surfaces, after C. Ericson, Real-Time Collision Detection (2005),
+// 5.1.5 and 5.1.9.
 #include "collide/gap.h"
 
 #include <math.h>
@@ -17,7 +18,8 @@ static double within_unit(double a)
 	return a < 0 ? 0 : a > 1 ? 1 : a;
 }
 
-// Where the face of corners 1 to 3 is nearest to corner 0: shares of its corners.
+// Finds the point on the face of corners 1 to 3 that is nearest to corner 0. `b` is the share of
+// each corner in it.
 static void nearest_on_face(const cau_vec3 *corner, double b[3])
 {
 	cau_vec3 ab = cau_sub(corner[2], corner[1]), ac = cau_sub(corner[3], corner[1]);
@@ -51,14 +53,15 @@ static void nearest_on_face(const cau_vec3 *corner, double b[3])
 	b[0] = 1 - b[1] - b[2];
 }
 
-// Where the edges are nearest: shares of their second ends.
+// Finds the nearest points of the two edges. `s` is the position of the point along the first edge,
+// 0 to 1, and `t` that along the second edge.
 static void nearest_on_edges(const cau_vec3 *corner, double *s, double *t)
 {
 	cau_vec3 d1 = cau_sub(corner[1], corner[0]), d2 = cau_sub(corner[3], corner[2]);
 	cau_vec3 r = cau_sub(corner[0], corner[2]);
 	double a = cau_dot(d1, d1), e = cau_dot(d2, d2), f = cau_dot(d2, r);
 	double c = cau_dot(d1, r), b = cau_dot(d1, d2), cross = a * e - b * b;
-	const double parallel = 1e-12; // square of the sine below which edges have no nearest place
+	const double parallel = 1e-12; // square of the sine below which edges count as parallel
 	if (!(a > 0) || !(e > 0)) {
 		*s = a > 0 ? within_unit(-c / a) : 0;
 		*t = e > 0 ? within_unit(f / e) : 0;
@@ -72,7 +75,7 @@ static void nearest_on_edges(const cau_vec3 *corner, double *s, double *t)
 	}
 }
 
-// From the second part's nearest place to the first's.
+// Returns the vector from the second part's nearest point to the first part's.
 static cau_vec3 nearest(cau_gap_kind kind, const cau_vec3 *corner, double weight[4])
 {
 	CAU_ASSERT(kind == CAU_GAP_VERTEX_FACE || kind == CAU_GAP_EDGE_EDGE, "a gap of kind %d", kind);

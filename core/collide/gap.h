@@ -5,31 +5,32 @@
 #include "base/vector.h"
 
 typedef enum cau_gap_kind {
-	CAU_GAP_VERTEX_FACE, // corner 0 against the face of 1, 2 and 3
-	CAU_GAP_EDGE_EDGE,   // the edge of 0 and 1 against that of 2 and 3
+	CAU_GAP_VERTEX_FACE, // corner 0 and the face of corners 1, 2 and 3
+	CAU_GAP_EDGE_EDGE,   // the edge of corners 0 and 1, and the edge of corners 2 and 3
 } cau_gap_kind;
 
-// The shortest way between the two parts: sum of weight[i] x_i = distance * normal. Weights of a
-// part sum to 1, those of the other to -1. The planes across the normal at its ends have the parts
-// on their outer sides, as both are convex.
+// The shortest line between the two parts: the sum of weight[i] x_i is distance * normal. The
+// weights of the first part sum to 1, those of the second part to -1. Each end of the line has a
+// plane across the normal. Both parts are on the outer sides of these planes, because they are
+// convex.
 typedef struct cau_gap {
 	double distance;  // m
-	double weight[4]; // by corner
-	cau_vec3 normal;  // unit, towards the part of corner 0; 0 where the parts meet
+	double weight[4]; // weight of each corner
+	cau_vec3 normal;  // unit vector towards the part of corner 0; 0 if the parts meet
 } cau_gap;
 
-// `corner`: four.
+// Returns the shortest line between the parts. `corner` has four items.
 cau_gap cau_gap_between(cau_gap_kind kind, const cau_vec3 *corner);
-double cau_gap_distance(cau_gap_kind kind, const cau_vec3 *corner); // of it alone, m
+double cau_gap_distance(cau_gap_kind kind, const cau_vec3 *corner); // returns only the distance, m
 
-// How many of the corners are the first part's.
+// Number of corners that belong to the first part.
 static inline int cau_gap_first(cau_gap_kind kind)
 {
 	return kind == CAU_GAP_VERTEX_FACE ? 1 : 2;
 }
 
-// How far the parts are apart along a unit direction: of the first's corners the least, less the
-// most of the second's, m. Never more than the distance.
+// Returns how far the parts are apart along a unit direction, m: the least of the first part's
+// corners less the greatest of the second part's corners. This is never more than the distance.
 static inline double cau_gap_along(cau_gap_kind kind, const cau_vec3 *corner, cau_vec3 direction)
 {
 	double along[4];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boxes side by side, eight to a group, so that one box is tested against eight at a time. They are
-// floats. Rounding keeps order: boxes that meet in double still meet. The caller sorts out in
-// double the pairs that meet only in float.
+// Boxes in groups of eight, so that one box is tested against eight boxes at a time. Boxes are
+// stored as floats. Rounding keeps order, so boxes that meet in double precision also meet as
+// floats. The caller tests in double precision which of the found boxes really meet.
 #pragma once
 
 #include <stdint.h>
@@ -11,12 +11,13 @@
 
 enum { CAU_LANES = 8, CAU_LANE_QUAD = 4 };
 
-// `least` is less the thickness that pairs are known for: with it, boxes that only come near meet.
+// A group of eight boxes. `least` is less by the contact thickness, so that boxes also meet that
+// only come near.
 typedef struct cau_collide_lanes {
 	_Alignas(sizeof(float[CAU_LANE_QUAD])) float least[3][CAU_LANES], most[3][CAU_LANES];
 } cau_collide_lanes;
 
-// One box against groups of them.
+// One box that is tested against groups.
 typedef float cau_lane_quad __attribute__((vector_size(CAU_LANE_QUAD * sizeof(float)), may_alias));
 typedef int32_t cau_lane_mask
 	__attribute__((vector_size(CAU_LANE_QUAD * sizeof(float)), may_alias));
@@ -24,7 +25,7 @@ typedef struct cau_collide_asking {
 	cau_lane_quad least[3], most[3];
 } cau_collide_asking;
 
-// What is beyond all measure is at a bound of it, so that it is a float.
+// Limits a value to +-1e30, so that it fits into a float.
 static inline float cau_lane_float(double value)
 {
 	const double most = 1e30;
@@ -41,7 +42,7 @@ static inline void cau_lanes_put(cau_collide_lanes *to, int lane, const double l
 	}
 }
 
-// Lanes from `lane` on meet nothing.
+// Sets the lanes from `lane` on to boxes that meet no other box.
 static inline void cau_lanes_close(cau_collide_lanes *to, int lane)
 {
 	const float nowhere = 2e30f;
@@ -93,7 +94,7 @@ static inline uint32_t cau_lanes_meet_quad(const cau_collide_lanes *group, int q
 	return cau_lane_bits(met);
 }
 
-// Which of a group it meets, a bit each.
+// Returns which boxes of the group meet the box, one bit for each.
 static inline uint32_t cau_lanes_meet(const cau_collide_lanes *group,
                                       const cau_collide_asking *asking)
 {

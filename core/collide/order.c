@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What blocks found is put in order by its parts, and made the pairs.
+// Sorts the pairs that blocks found by their parts, and makes the list of pairs.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-enum { FEW = 64 }; // found, below which sorting by digits does not pay
+enum { FEW = 64 }; // number of pairs below which sorting by digits is slower
 
 static bool is_before(const cau_collide_found *a, const cau_collide_found *b)
 {
 	return a->first != b->first ? a->first < b->first : a->second < b->second;
 }
 
-// A few [Shell 1959; gaps of Ciura 2001].
+// Sorts a few pairs [Shell 1959; gaps of Ciura 2001].
 static void sort_few(cau_collide_found *found, int32_t count)
 {
 	static const int32_t gaps[] = {23, 10, 4, 1};
@@ -26,7 +26,7 @@ static void sort_few(cau_collide_found *found, int32_t count)
 		}
 }
 
-// ---- many: by one byte of their parts after the other, the least first
+// ---- many pairs: radix sort by bytes of their parts, the least significant byte first
 enum { DIGITS = 2 * sizeof(int32_t), RADIX = 256 };
 
 static int digit_of(const cau_collide_found *found, int digit)
@@ -35,7 +35,7 @@ static int digit_of(const cau_collide_found *found, int digit)
 	return part >> (8 * (digit % (DIGITS / 2))) & (RADIX - 1);
 }
 
-// False where all have the same digit, so that none has to be moved.
+// Returns false if all pairs have the same digit, so that none has to be moved.
 static bool sort_by_digit(const cau_collide_found *from, cau_collide_found *to, int32_t count,
                           int digit)
 {
@@ -86,7 +86,7 @@ void cau_collide_gather(cau_collide *collide)
 					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
 				if (collide->pair_count == collide->most_pairs)
 					return;
-				collide->apart_m[collide->pair_count] = 0; // not known
+				collide->apart_m[collide->pair_count] = 0; // not measured yet
 				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
 				pair->kind = (cau_gap_kind)kind;
 				pair->thickness_m = found->thickness_m;

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a pair is, and whether its parts may come near each other: asked of all whose boxes meet
-// (find.c), so what is cheap and tells most comes first.
+// Decides which parts form a pair, and whether they may come near each other. All parts whose boxes
+// meet are tested (find.c). So cheap tests that exclude most pairs come first.
 #include <math.h>
 
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-// A pair keeps at most so much of the distance that it has at rest: neighbours, between which the
-// surface itself may be drawn together, less than others.
+// A pair's thickness is at most this share of its distance at rest. Neighbours, between which the
+// surface itself may contract, have the smaller share.
 static const double near_share = 0.1, far_share = 0.5;
-static const double least_thickness = 0.002; // of the surface's: below, a pair is left out
-// Rounding of a distance: more than any.
+// Share of the surface's thickness; a pair of less thickness is left out.
+static const double least_thickness = 0.002;
+// A factor that exceeds any rounding of a distance.
 static const double surely = 1 + 1e-6;
 
-// Of one kind at a time, which the compiler knows then.
+// Each kind of pair is compiled by itself, with the kind as a constant.
 #define INLINE static inline __attribute__((always_inline))
 
 static double lesser(double a, double b)
@@ -45,7 +46,8 @@ static bool may_be_joined(const cau_collide *collide, int32_t v, int32_t w)
 	return cau_dot(way, way) <= most * most;
 }
 
-// How much of its distance at rest a pair keeps: by what joins its parts and is alive.
+// Returns the share of its distance at rest that the pair keeps: near_share if a live element joins
+// its parts, else far_share.
 static double share_of(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4])
 {
 	int firsts = cau_gap_first(kind);
@@ -61,7 +63,8 @@ static double share_of(const cau_collide *collide, cau_gap_kind kind, const int3
 	return far_share;
 }
 
-// Along the line between the parts' middles, which tells most: whether they are no farther apart.
+// Whether the parts may be no farther apart than `most`. Measures only along the line between their
+// middles, which excludes most pairs.
 INLINE bool is_within(cau_gap_kind kind, const cau_vec3 corner[4], double most)
 {
 	int firsts = cau_gap_first(kind);
@@ -73,8 +76,8 @@ INLINE bool is_within(cau_gap_kind kind, const cau_vec3 corner[4], double most)
 	return !(cau_gap_along(kind, corner, way) > most * cau_length(way));
 }
 
-// The pair's thickness, or 0 where it is less than `least`. What joins the parts is looked for only
-// where it matters.
+// Returns the pair's thickness, or 0 if it is less than `least`. Elements that join the parts are
+// searched only if they matter.
 static double thickness_of(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
                            double least)
 {

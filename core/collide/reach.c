@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For which places the pairs are known: each vertex within its reach of where it was anchored. One
-// that has left it is anchored anew, with those that have used up some of theirs, and what they
-// belong to is looked for again (find.c).
+// Positions for which the pairs are known: each vertex within its reach of its anchor. A vertex
+// that has left its reach gets a new anchor. So does each vertex that has used up a part of its
+// reach. Pairs of these vertices are searched again (find.c).
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double least_room = 0.4;   // of the thickness: where no step is asked for
-static const double room_of_step = 1.5; // what others push is moved farther than it wanted
-static const double room_of_tick = 0.1; // of the thickness: for the steps of an iteration
-static const double ahead = 0.3;        // of the thickness, beyond that: for the ticks to come
-static const double used_up = 0.6;      // of that: then anchored anew with those beyond it
+// Share of the thickness: a pushed vertex may always move this far.
+static const double least_room = 0.4;
+static const double room_of_step = 1.5; // share of its step: a pushed vertex may move this far
+// Share of the thickness: extra reach for the steps of an iteration.
+static const double room_of_tick = 0.1;
+static const double ahead = 0.3;   // share of the thickness: extra reach for later ticks
+static const double used_up = 0.6; // share of the reach: vertices beyond it get new anchors
 enum { TRIES = 12 };
 
 double cau_collide_most_room(const cau_collide *collide, double step_m)
@@ -27,7 +29,7 @@ double cau_collide_most_step(const cau_collide *collide)
 	                                                      : cau_collide_most_step_m;
 }
 
-// A vertex's step once it is no longer than it may be.
+// Returns a vertex's step, shortened to the longest allowed step.
 static cau_vec3 step_of(const cau_collide *collide, int32_t vertex)
 {
 	cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)vertex);
@@ -40,8 +42,8 @@ double cau_collide_room(const cau_collide *collide, int32_t vertex)
 	return cau_collide_most_room(collide, cau_length(step_of(collide, vertex)));
 }
 
-// What has to be known of a vertex at x: all places that are no farther than `reach_m` from
-// `middle`. Of a step these are the ball about its way; what is pushed may go any way.
+// Positions for which a vertex's pairs must be known: those within `reach_m` of `middle`. For a
+// step this is the ball around its line. A pushed vertex may move in any direction.
 typedef struct ball {
 	cau_vec3 middle;
 	double reach_m;
@@ -59,7 +61,7 @@ static ball needed(const cau_collide *collide, const double *x, cau_collide_need
 	return (ball){cau_add(at, half), besides + cau_length(half)};
 }
 
-// Whether what is needed of a vertex is within a share of its reach.
+// Whether all positions that are needed of a vertex are within a share of its reach.
 static bool is_enough(const cau_collide *collide, const double *x, cau_collide_need need, int32_t v,
                       double share)
 {
@@ -73,7 +75,7 @@ static bool is_enough(const cau_collide *collide, const double *x, cau_collide_n
 
 static void anchor(cau_collide *collide, int32_t v, cau_vec3 middle, double reach_m)
 {
-	const double rounding = 1 + 1e-5; // so that all that is needed is within, by any rounding
+	const double rounding = 1 + 1e-5; // all needed positions are within reach despite rounding
 	cau_vec3_to(middle, collide->anchor + 3 * (size_t)v);
 	collide->reach_m[v] = rounding * reach_m;
 	collide->surface.changed[v] = 1;
@@ -97,8 +99,8 @@ static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_ne
 	}
 }
 
-// Only what has to be known, or a share of it. Who knows of more has all of this, so nobody who
-// finds that there is no room for it would have had any.
+// Searches only the pairs that the step needs, or with a share of that reach. A search with a
+// longer reach would find all of these pairs too. So it cannot succeed where this search fails.
 static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
                          cau_collide_need need, double share)
 {
@@ -108,7 +110,7 @@ static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
 		ball b = needed(collide, x, need, v);
-		if (share < 1) { // no step leads farther from x then (filter.c)
+		if (share < 1) { // no step leads farther from x in this case (filter.c)
 			double way = collide->pushed[v] ? b.reach_m : cau_length(step_of(collide, v));
 			b = (ball){cau_vec3_of(x + 3 * (size_t)v), share * way};
 		}
@@ -133,7 +135,8 @@ void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau
 	for (int tries = 0; tries < TRIES && need != CAU_COLLIDE_PLACE; tries++)
 		if (search_least(collide, pool, x, need, share /= 2))
 			return;
-	collide->found = search_least(collide, pool, x, need, 0); // else not even what touches has room
+	// if false, even the touching pairs exceed the capacity
+	collide->found = search_least(collide, pool, x, need, 0);
 }
 
 bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need)
@@ -175,7 +178,7 @@ double cau_collide_slack(const cau_collide *collide, const double *x)
 	return least;
 }
 
-// ---- what has died
+// ---- elements that have died
 
 void cau_collide_forget_dead(cau_collide *collide)
 {

@@ -21,7 +21,7 @@ static int compare(const void *a, const void *b)
 	return (x->face > y->face) - (x->face < y->face);
 }
 
-// Along a Morton curve through the faces' middles at rest.
+// Orders the faces along a Morton curve through their middles at rest.
 static void order_faces(const cau_tissue *tissue, keyed *key, int32_t *order)
 {
 	double least[3] = {1e300, 1e300, 1e300}, most = 0;
@@ -44,7 +44,7 @@ static void order_faces(const cau_tissue *tissue, keyed *key, int32_t *order)
 		order[f] = key[f].face;
 }
 
-// Whether a face is drawn while nothing is cut.
+// Whether a face is drawn before anything is cut.
 static bool is_outside(const cau_face_table *faces, int32_t face)
 {
 	const int32_t *owner = faces->owner + 2 * (size_t)face;
@@ -164,7 +164,7 @@ static void list_block(cau_surface *surface, const uint32_t *face_mask, int32_t 
 	surface->vertices.first[block + 1] = surface->vertices.count;
 }
 
-// The lists' places so far become those before; -1 for all.
+// Makes the present blocks of edges or vertices the former ones, and sets the present ones to -1.
 static void turn_over(int32_t *block[2], int32_t count)
 {
 	int32_t *before = block[0];
@@ -173,7 +173,8 @@ static void turn_over(int32_t *block[2], int32_t count)
 	memset(block[0], 0xff, (size_t)count * sizeof(int32_t));
 }
 
-// Edges and vertices that are listed by another block, or by none, or were.
+// Marks the corners of edges and vertices that are now listed by another block than before, or by
+// none, or were listed by none.
 static void compare_places(cau_surface *surface)
 {
 	int32_t *const *edge = surface->edge_block, *const *vertex = surface->vertex_block;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The diagonal system of the paper as printed (eq. 5-7): constraints are projected in positions,
-// with unit masses, and pulled to with weight omega_m = w |G|^2 / (vertices of m).
+// The diagonal system of the paper as printed (eq. 5-7). Constraints are projected in positions,
+// with unit masses. Constraint m pulls to its projection with the weight omega_m = w |G|^2 /
+// (vertices of m).
 //
-// A residual R in F moves positions along R G^T; the position step that ends C = |R| to first order
-// is |R|^2 / |R G^T|^2 (R G^T). Weighted with omega_m this is the F-space gradient w R G^T times
-// the scale below, so one kernel serves both systems. For a single constraint it is eq. 13 and 17
-// exactly.
+// A residual R in F moves positions along R G^T. The position step that makes C = |R| zero to first
+// order is |R|^2 / |R G^T|^2 (R G^T). Weighted with omega_m, this step is the gradient w R G^T of
+// the F-space system times the scale below. So one kernel serves both systems. For a single
+// constraint the step is exactly that of eq. 13 and 17.
 #pragma once
 
 #include "base/simd.h"
 
-// Guards: where R vanishes the scale is finite and multiplies zero.
+// Returns |G|^2 / vertices x |R|^2 / |R G^T|^2; 0 where R vanishes.
 INLINE vreal diagonal_scale(vreal r2, vreal rg2, vreal g2_per_vertex)
 {
 	return v_select(rg2 > v_set(REAL_TINY), g2_per_vertex * r2 / v_max(rg2, v_set(REAL_TINY)),
@@ -26,7 +27,7 @@ INLINE vreal diagonal_scale_sheet(const v3 r[2], const vreal m[4], vreal g2_per_
 	                      v3_dot(a, a) + v3_dot(b, b) + v3_dot(c, c), g2_per_vertex);
 }
 
-// m: row-major D_m^-1; vertex i + 1 gets R (row i of D_m^-1)^T.
+// `m` is D_m^-1, row-major. Vertex i + 1 gets R (row i of D_m^-1)^T.
 INLINE vreal diagonal_scale_fat(m3 r, const vreal m[9], vreal g2_per_vertex)
 {
 	v3 sum = v3_zero();

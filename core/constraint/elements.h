@@ -5,15 +5,15 @@
 // has weight 0 and vertex 0. Arrays marked `real` are float or double, as the session's precision
 // says. A removed element keeps its slot with weight 0.
 //
-// Triangles and tetrahedra come in pairs that share an edge or a face (pairs.h): one in a batch of
-// even number, its partner in the same lane of the next. They have their vertices in one order, the
-// apex last; D_m is made of that order.
+// Triangles and tetrahedra are handled in pairs that share an edge or a face (pairs.h). One is in a
+// batch with an even number, its partner in the same lane of the next batch. Both list their shared
+// vertices in the same order, and the apex last. D_m follows this order.
 //
-// The local step is done in shares of consecutive slots. A share has a record for each vertex of
-// its elements, four reals (x, y, z, 0), in which it adds the gradients of their energies (N) up,
-// slot by slot; vertices then sum their records, in share order. Before that it copies the
-// vertices' displacements, in the order of its records, onto the stack. So the sums do not depend
-// on who runs which share, what a share reads and writes again and again stays in the nearest
+// The local step is divided into shares of consecutive slots. A share has a record for each vertex
+// of its elements: four reals (x, y, z, 0). The share first copies its vertices' displacements, in
+// the order of its records, onto the stack. It then adds the gradients of the elements' energies
+// (N) to the records, slot by slot. Afterwards each vertex sums its records in share order. So the
+// sums do not depend on the threads that run the shares. The data of a share stay in the nearest
 // cache, and an element names its vertices in sixteen bits.
 #pragma once
 
@@ -25,53 +25,56 @@
 enum {
 	CAU_BATCH = 16, // slots in a batch of every set: a multiple of the lanes of each precision
 	CAU_SHARE = 16 * CAU_BATCH,            // slots in a share of the local step, at most
-	CAU_SHARE_RECORDS = 1 + 4 * CAU_SHARE, // its records, at most: the first is padding's
+	CAU_SHARE_RECORDS = 1 + 4 * CAU_SHARE, // most records of a share; the first is for padding
 	CAU_MAX_GROUPS = CAU_MAX_LAYERS * CAU_MAX_MATERIALS,
 };
 
-// A triangle is slack where its stiffness along some direction is less than this share of the one
-// that A has of it. Sheets that are cut or hang free have such triangles, taut ones have none:
-// measured on fascia, a tenth misses tabs along a cut, and four tenths take in sheets that A
-// serves.
+// A triangle is slack if its stiffness along some direction is less than this share of A's
+// stiffness. Sheets that are cut or hang free have such triangles, taut sheets have none. Measured
+// on fascia: with 0.1, tabs along a cut are missed; with 0.4, sheets are included for which A is
+// good enough.
 static const double CAU_SLACK = 0.25;
 
-// One law over a range of slots.
+// A range of slots with one law.
 typedef struct cau_sheet_group {
 	int32_t first_slot, slot_count, layer, material;
-	int limit, projection;                 // CAU_LIMIT_*, CAU_PROJECTION_*
-	double stretch_min[2], stretch_max[2]; // RANGE: sqrt(k_aa)
+	int limit, projection;                 // values CAU_LIMIT_* and CAU_PROJECTION_*
+	double stretch_min[2], stretch_max[2]; // for RANGE: limits of sqrt(k_aa)
 	double shear_max;
 	double viscosity_s; // retardation time; 0: none
 } cau_sheet_group;
 
 typedef struct cau_fat_group {
 	int32_t first_slot, slot_count, layer, material;
-	int model;          // CAU_MODEL_*
-	int keeps_rotation; // of the law, in `polar`, even where no limit does
+	int model;          // one of CAU_MODEL_*
+	int keeps_rotation; // 1: the law needs a rotation, which `polar` keeps, even if there is no
+	                    // limit
 	int limit, projection;
 	int plastic;            // 1: `plastic` holds C_p^(-1/2) - I
-	double mu, lambda;      // Pa, of the energy as it is evaluated
-	double stiffness;       // Pa: k of the energy's share of A
-	double limit_stiffness; // Pa
-	double target[6];       // TARGET: T^(1/2) of slots that have none of their own
+	double mu, lambda;      // Pa, of the energy as it is evaluated (cau_law)
+	double stiffness;       // Pa: stiffness k with which the energy counts in A
+	double limit_stiffness; // Pa: stiffness of the strain limit
+	double target[6];       // TARGET: T^(1/2) of slots without a target of their own
 	double stretch_min[3], stretch_max[3];
 	double shear_max;
 	double yield_strain, plastic_strain_max;
-	double viscous_mu, viscous_lambda; // Pa s: of small strain times the retardation time
+	// Pa s: Lame parameters at small strain, times the retardation time
+	double viscous_mu, viscous_lambda;
 } cau_fat_group;
 
 // Fascia and membrane. F = F_0 + [du_1 du_2] D_m'^-1 (eq. 8-10), 3 x 2.
 typedef struct cau_sheet_set {
 	int32_t slot_count, group_count;
 	cau_sheet_group *group;
-	uint16_t *record_at[3]; // (slot_count): 4 x its vertex's record, from the share's first on
+	uint16_t *record_at[3]; // (slot_count): 4 x the vertex's record, counted from the share's first
+	                        // record
 	void *dm_inverse[4];    // real, 1/m: row-major D_m'^-1
 	void *rest[6];          // real: columns of F_0 = F at rest
 	void *weight;           // real, N m: k x area x thickness; 0 once removed
 	void *target[3];        // real: T^(1/2): 00, 11, 01
-	void *polar[6];         // real: Q of the last evaluation, kept where F loses rank
+	void *polar[6];         // real: Q of the last evaluation; used again where F loses rank
 	void *position_scale;   // real, m^2: |G|^2 of the element, for the diagonal system
-	void *strain[3];        // real: R of viscosity: 00, 11, 01; NULL: no layer is viscous
+	void *strain[3]; // real: reference strain R of viscosity: 00, 11, 01; NULL: no layer is viscous
 } cau_sheet_set;
 
 // Fat. F = I + [du_1 du_2 du_3] D_m^-1, world axes.
@@ -79,39 +82,43 @@ typedef struct cau_fat_set {
 	int32_t slot_count, group_count;
 	cau_fat_group *group;
 	uint16_t *record_at[4];
-	void *dm_inverse[9]; // real, 1/m: row-major
-	void *volume;        // real, m^3; 0 once removed
-	// real, N m: limit stiffness x volume where a limit or shrinkage acts, else 0. Kernels read it
-	// only where shrinkage alone acts: a limit of the law's has every slot's volume.
+	void *dm_inverse[9]; // real, 1/m: row-major D_m^-1
+	void *volume;        // real, m^3: volume of the element; 0 once removed
+	// real, N m: limit stiffness x volume if a limit or shrinkage acts, else 0. Kernels read it
+	// only if shrinkage acts and the law has no limit. With a limit, every slot's weight follows
+	// from its volume.
 	void *limit_weight;
 	void *target[6];         // real: T^(1/2): 00, 11, 22, 01, 02, 12
 	void *polar[4];          // real: rotation of the limit, or of corotated fat: w, x, y, z
-	void *plastic[6];        // real: C_p^(-1/2) - I
-	void *plastic_strain[6]; // real: e_p, with C_p = I + 2 e_p
-	uint8_t *limited;  // (slot_count / CAU_BATCH): some slot of the batch has limit_weight > 0
-	uint8_t *targeted; // (slot_count / CAU_BATCH): some slot's target is not its group's
-	uint8_t *flowed;   // (slot_count / CAU_BATCH): some slot has plastic strain
+	void *plastic[6];        // real: C_p^(-1/2) - I, where C_p is the plastic metric
+	void *plastic_strain[6]; // real: plastic strain e_p, with C_p = I + 2 e_p
+	uint8_t *limited;        // (slot_count / CAU_BATCH): a slot of the batch has limit_weight > 0
+	uint8_t *targeted; // (slot_count / CAU_BATCH): a slot of the batch has a target other than its
+	                   // group's
+	uint8_t *flowed;   // (slot_count / CAU_BATCH): a slot of the batch has plastic strain
 	void *position_scale;
-	void *strain[6]; // real: R of viscosity: 00, 11, 22, 01, 02, 12; NULL: no layer is viscous
+	void *strain[6]; // real: reference strain R of viscosity: 00, 11, 22, 01, 02, 12; NULL: no
+	                 // layer is viscous
 } cau_fat_set;
 
-// Trusses (section 5.2, last paragraph).
+// Trusses (section 5.2, last paragraph): elements with two vertices and a rest length.
 typedef struct cau_link_set {
 	int32_t slot_count;
 	uint16_t *record_at[2];
 	void *rest[3];     // real, m: edge vector at rest
-	void *rest_length; // real, m
+	void *rest_length; // real, m: length at rest
 	void *weight;      // real, N/m: E A / L; 0 once removed
 } cau_link_set;
 
-// Bending: e = sum of c_i x_i over the four vertices of two triangles that share an edge.
+// Bending elements, with e = sum of c_i x_i over the four vertices of two triangles that share an
+// edge.
 typedef struct cau_hinge_set {
 	int32_t slot_count;
 	uint16_t *record_at[4];
-	void *coefficient[4]; // real: c_i, sum 0
+	void *coefficient[4]; // real: coefficients c_i, sum 0
 	void *rest[3];        // real, m: e at rest
 	void *rest_length;    // real, m: |e| at rest
-	void *weight;         // real, N/m
+	void *weight;         // real, N/m: bending weight; 0 once removed
 } cau_hinge_set;
 
 typedef struct cau_elements {
@@ -122,11 +129,11 @@ typedef struct cau_elements {
 	cau_hinge_set hinge;
 	void *gradient; // real: the records, (record_count x 4)
 	int32_t record_count;
-	int32_t *record_vertex; // 4 x vertex of each; of padding's, 0
-	double *energy;         // J, of each share
-	double rate_per_s;      // 1/h of viscosity; 0: there is none
-	double *viscous_j; // (shares): what of their energy is viscosity's; NULL: no layer is viscous
-	bool *slack;       // of each share: whether some triangle is slack
+	int32_t *record_vertex; // (record_count): 4 x the record's vertex; 0 for padding
+	double *energy;         // (shares): energy of each share, J
+	double rate_per_s;      // 1/h of viscosity; 0: no viscosity
+	double *viscous_j;      // (shares): viscosity's part of `energy`, J; NULL: no layer is viscous
+	bool *slack;            // (shares): whether a triangle of the share is slack
 } cau_elements;
 
 static inline double cau_real_get(const void *array, bool single, int64_t index)

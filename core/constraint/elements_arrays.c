@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which slot has which element, and arrays by slot.
+// Maps between slots and elements, and arrays by slot.
 #include "cautery/assert.h"
 #include "constraint/elements_internal.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws and weights from the tissue's materials, and what a cut changes.
+// Sets laws and weights from the tissue's materials, and applies removals and shrinkage to the
+// elements.
 #include <math.h>
 #include <string.h>
 
@@ -22,7 +23,8 @@ static void set_sheet_law(cau_sheet_group *group, const cau_sheet_material *mate
 	group->shear_max = material->shear_max;
 }
 
-// Material axes of fat: the fibre direction first, the others completed; rows of the rotation.
+// Finds the material axes of fat as rows of a rotation: first the fibre direction, then two
+// perpendicular directions.
 static void fat_axes(const double fibre[3], double axes[3][3])
 {
 	cau_vec3 a = cau_unit_or(cau_vec3_of(fibre), (cau_vec3){1, 0, 0});
@@ -33,8 +35,8 @@ static void fat_axes(const double fibre[3], double axes[3][3])
 	cau_vec3_to(cau_cross(a, b), axes[2]);
 }
 
-// A symmetric matrix given in the material axes, turned to world axes: R^T S R, written as
-// I + R^T (S - I) R so that I stays exactly I.
+// Turns a symmetric matrix from material axes to world axes: R^T S R. It is computed as I + R^T (S
+// - I) R, so that I stays exactly I.
 static void to_world(const double s[6], double axes[3][3], double out[6])
 {
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -48,7 +50,7 @@ static void to_world(const double s[6], double axes[3][3], double out[6])
 	}
 }
 
-// T^(1/2) in world axes; 0 without a target.
+// Computes T^(1/2) in world axes; 0 without a target.
 static void fat_target_root(const cau_fat_material *material, const double fibre[3], double root[6])
 {
 	double axes[3][3], world[6];
@@ -99,7 +101,8 @@ static void set_sheet_slot(cau_sheet_set *set, bool single, int32_t slot, const 
 	cau_element_map map;
 	cau_tissue_element_map(tissue, CAU_ELEMENT_TRIANGLE, element, &map);
 	double viscosity_s = tissue->layer[tissue->triangle_layer[element]].def.viscosity_s;
-	double weight = map.weight / (1 + viscosity_s / tissue->inertia_s); // A has viscosity's too
+	// map.weight is that of A, which includes viscosity's part
+	double weight = map.weight / (1 + viscosity_s / tissue->inertia_s);
 	cau_real_set(set->weight, single, slot, alive ? weight : 0);
 	if (keep_target)
 		return;

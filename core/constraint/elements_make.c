@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lays the tissue's elements out in slots; links and hinges here, the others in elements_pairs.c.
+// Lays out the tissue's elements in slots: links and hinges here, triangles and tetrahedra in
+// elements_pairs.c.
 #include <math.h>
 #include <string.h>
 
@@ -86,7 +87,8 @@ static cau_status make_hinges(const cau_tissue *tissue, bool single, cau_arena *
 			              tissue->rest[3 * (size_t)map.vertex[0] + (size_t)c];
 			size += span * span;
 		}
-		// What is left of a flat hinge's curvature is rounding: none, so that it rests at rest.
+		// The curvature of a flat hinge at rest is only rounding. It is set to 0, so that the hinge
+		// has no force at rest.
 		bool flat = length < 1e-6 * sqrt(size);
 		for (int c = 0; c < 3; c++)
 			cau_real_set(set->rest[c], single, k, flat ? 0 : rest[c]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles and tetrahedra in their slots, pair by pair (pairs.h).
+// Lays out triangles and tetrahedra in slots, pair by pair (pairs.h).
 #include "cautery/assert.h"
 #include "constraint/elements_internal.h"
 #include "constraint/pairs.h"
@@ -9,7 +9,7 @@ static cau_status no_memory(cau_error *error)
 	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the elements");
 }
 
-// Elements of one layer and material, which get a range of slots.
+// A range of slots for the elements of one layer and material.
 typedef struct group_plan {
 	int32_t layer, material, first_slot, slot_count;
 } group_plan;
@@ -19,9 +19,9 @@ typedef struct pair_maker {
 	cau_elements *elements;
 	cau_element_slots *slots;
 	cau_slot_vertices *vertices;
-	int32_t *partner; // by element
+	int32_t *partner; // partner of each element
 
-	int kind; // of the elements that are being placed, as what follows
+	int kind; // kind of the elements that are being placed; the members below belong to them
 	group_plan group[CAU_MAX_GROUPS];
 	int32_t group_count, slot_count;
 	void (*fill)(const struct pair_maker *maker, int32_t element, int32_t slot, const int *order);
@@ -41,7 +41,7 @@ static int32_t material_of(const cau_tissue *tissue, int kind, int32_t element)
 	                                    : tissue->tetrahedron_material[element];
 }
 
-// In the order of their first elements.
+// Lists the groups in the order of their first elements.
 static void find_groups(pair_maker *maker)
 {
 	maker->group_count = 0;
@@ -57,7 +57,7 @@ static void find_groups(pair_maker *maker)
 	}
 }
 
-// Finds the groups of `kind`, pairs their elements, and says which slots they get.
+// Finds the groups of `kind`, pairs their elements, and assigns a range of slots to each group.
 static cau_status plan_groups(pair_maker *maker, int kind, cau_arena *arena, cau_error *error)
 {
 	maker->kind = kind;
@@ -75,10 +75,10 @@ static cau_status plan_groups(pair_maker *maker, int kind, cau_arena *arena, cau
 	                              maker->slot_count, arena, error);
 }
 
-// Where the first of the k-th pair goes in a group of `slots`; the second is a batch behind it.
-// Neighbours in the mesh follow each other and share vertices: in each whole share they are dealt
-// to the batches in turn, so that the lanes of one batch rarely add to one record, which each would
-// have to wait for.
+// Returns the slot of the k-th pair's first element in a group of `slots`; the second element is
+// one batch later. Neighbours in the mesh follow each other and share vertices. In each whole share
+// they are therefore assigned to the batches in turn. Then the lanes of one batch rarely add to the
+// same record, for which each lane would have to wait.
 static int32_t pair_slot(int32_t k, int32_t slots)
 {
 	enum { PAIRS = CAU_SHARE / 2, BATCHES = PAIRS / CAU_BATCH };
@@ -175,7 +175,7 @@ static cau_status make_fat_arrays(const pair_maker *maker, cau_arena *arena, cau
 		return no_memory(error);
 	for (int32_t s = 0; s < set->slot_count; s++) {
 		cau_real_set(set->polar[0], single, s, 1);
-		for (int i = 0; i < 3; i++) // padding has the identity for a target
+		for (int i = 0; i < 3; i++) // padding has the identity as its target
 			cau_real_set(set->target[i], single, s, 1);
 	}
 	return CAU_OK;

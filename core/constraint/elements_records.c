@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The local step's shares, the records they write, and which records each vertex sums.
+// Makes the shares of the local step, their records, and the list of records that each vertex sums.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -57,7 +57,7 @@ cau_status cau_elements_make_work(const cau_tissue *tissue, cau_elements *elemen
 // ---- records
 typedef struct share_elements {
 	uint16_t *const *record_at;
-	int32_t *const *vertex_at; // vertex, by slot
+	int32_t *const *vertex_at; // vertex of each slot
 	const int32_t *element_at;
 	int vertices;
 } share_elements;
@@ -73,8 +73,9 @@ static share_elements elements_of(const cau_elements *elements, const cau_elemen
 	                        count[kind]};
 }
 
-// Numbers the share's records from `next` on, a vertex each as they come; `last_record` (by vertex)
-// holds the last record that each vertex got. The first belongs to padding and to no vertex.
+// Numbers the share's records from `next` on, one for each vertex in the order of first use.
+// `last_record` (by vertex) is the last record of each vertex. The share's first record is for
+// padding and belongs to no vertex. Returns the next free number.
 static int32_t number_records(const share_elements *share, cau_local_work *work, int32_t next,
                               int32_t *last_record)
 {
@@ -105,14 +106,15 @@ static void name_vertices(const share_elements *share, const cau_local_work *wor
 				4 * share->vertex_at[i][s];
 }
 
-// Lists for each vertex its records: counts first, then cursors, in place.
+// Lists the records of each vertex. `first` holds counts at first, then the next free index of each
+// list.
 static void list_records(const cau_elements *elements, const cau_element_slots *slots,
                          int32_t vertex_count, cau_incidence *incidence)
 {
 	int32_t *place = incidence->first + 1;
 	for (int pass = 0; pass < 2; pass++) {
 		for (int32_t w = 0; w < slots->work_count; w++)
-			for (int32_t k = 1; k < slots->work[w].record_count; k++) { // 0: padding's
+			for (int32_t k = 1; k < slots->work[w].record_count; k++) { // record 0 is for padding
 				int32_t record = slots->work[w].first_record + k;
 				int32_t v = elements->record_vertex[record] / 4;
 				CAU_ASSERT_INDEX(v, vertex_count);

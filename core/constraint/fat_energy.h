@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energies of fat (section 5.2): density Psi (Pa) and first Piola-Kirchhoff
-// stress P = dPsi/dF (Pa) of F = I + H. Written in H so that both are exactly zero at rest.
-// Strain here is (F^T F - I)/2, with the half.
+// Energies of fat (section 5.2). Psi is the energy density (Pa), and P = dPsi/dF is the first
+// Piola-Kirchhoff stress (Pa) at F = I + H. Both are written in H so that they are exactly zero at
+// rest. Strain here is (F^T F - I)/2, with the half.
 //
-// Each law, an entry of CAU_MODEL_TABLE, is one function of this form: it returns P and sets
-// *density to Psi. `polar` is the slot's rotation, which a law that keeps one reads and writes.
+// Each law is an entry of CAU_MODEL_TABLE and one function of this form. The function returns P and
+// sets *density to Psi. `polar` is the slot's rotation. A law that keeps a rotation reads and
+// writes it.
 //
 //     INLINE m3 word_stress(law_terms t, rotation_lanes *polar, vreal *density)
 #pragma once
 
 #include "constraint/polar.h"
 
-// What a law is made of: F and H = F - I, the Lame parameters that its entry asks for, and the
-// stiffness k of its part of A (Pa).
+// Input of a law: F and H = F - I, the Lame parameters as its entry defines them, and the stiffness
+// k with which it counts in A (Pa).
 typedef struct law_terms {
 	m3 f, h;
 	real mu, lambda, stiffness;
@@ -86,7 +87,7 @@ INLINE m3 neohookean_stress(law_terms t, rotation_lanes *polar, vreal *density)
 	cof1.c[2] = v3_sub(cof1.c[2], (v3){h.c[0].z, h.c[1].z, h.c[2].z - trace});
 	vreal q = (real)0.25 * ic3;              // (I_C + 1)/4 - 1
 	vreal growth = (real)0.25 * q / (1 + q); // 1/4 - 1/(I_C + 1)
-	// Psi with its constant left out and its first-order terms, which cancel, taken out by hand.
+	// Psi without its constant. The first-order terms cancel and are left out.
 	*density =
 		mu * ((real)0.375 * m3_dot(h, h) - (real)0.75 * bulge + (real)0.5 * log_remainder(q)) +
 		(real)0.5 * lambda * j1 * j1;
@@ -106,8 +107,9 @@ INLINE m3 corotated_stress(law_terms t, rotation_lanes *polar, vreal *density)
 	return m3_add_scaled(m3_scale(2 * v_set(t.mu), stretch), t.lambda * trace, rotation);
 }
 
-// The printed energy constraint C = Psi (eq. 14-17) projected in F: dF = -Psi P / |P|^2. Its stress
-// in the system is `stiffness` (Pa) times Psi P / |P|^2; 0/0 at rest is guarded relative to that.
+// The printed energy constraint C = Psi (eq. 14-17), projected in F: dF = -Psi P / |P|^2. Its
+// stress in the system is `stiffness` (Pa) times Psi P / |P|^2. At rest this is 0/0, so a small
+// stress is added to the denominator.
 INLINE m3 energy_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
 	m3 p = stvk_stress(t, polar, density);

@@ -25,8 +25,7 @@ INLINE sym3 sym3_load(void *const array[6], int32_t slot)
 	              v_load(array[3], slot), v_load(array[4], slot), v_load(array[5], slot)};
 }
 
-// Stress of the energy (Pa) in F = I + H and its density (Pa). In the diagonal system the stress is
-// scaled to the printed position projection.
+// Returns the stress of the energy (Pa) at F = I + H, and its density (Pa).
 INLINE m3 fat_energy_stress(const cau_fat_group *group, m3 f, m3 h, rotation_lanes *polar,
                             vreal *density)
 {
@@ -38,11 +37,12 @@ INLINE m3 fat_energy_stress(const cau_fat_group *group, m3 f, m3 h, rotation_lan
 		CAU_MODEL_TABLE(X)
 #undef X
 	default:
-		__builtin_unreachable(); // cau_law_of has refused it
+		__builtin_unreachable(); // cau_law_of accepts no other model
 	}
 }
 
-// F_e = F C_p^(-1/2): H_e = Z + H + H Z with Z = C_p^(-1/2) - I, and back.
+// Computes the stress of the elastic part F_e = F C_p^(-1/2), with H_e = Z + H + H Z and Z =
+// C_p^(-1/2) - I, and maps the stress back to F.
 INLINE m3 fat_plastic_energy_stress(const cau_fat_group *group, m3 h, sym3 z, rotation_lanes *polar,
                                     vreal *density)
 {
@@ -54,7 +54,8 @@ INLINE m3 fat_plastic_energy_stress(const cau_fat_group *group, m3 h, sym3 z, ro
 	return m3_add(p, m3_times_sym(p, z));
 }
 
-// R scaled to the printed position projection, for the diagonal system.
+// Returns the scale that turns residual R into the printed position projection, for the diagonal
+// system.
 INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 {
 	vreal m[9];
@@ -63,7 +64,7 @@ INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 	return diagonal_scale_fat(r, m, v_load(set->position_scale, slot));
 }
 
-// Eq. 13 in F. In the diagonal system each constraint has its own step.
+// The residual of eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 root, m3 f,
                                   bool diagonal)
 {
@@ -79,8 +80,8 @@ INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 roo
 	return r;
 }
 
-// Slots that have shrunk, in a group whose law has no target, follow their own; the others (00 = 0)
-// have R = 0.
+// The residual of slots that have shrunk, in a group whose law has no target: they have their own
+// target. Other slots (00 = 0) have R = 0.
 INLINE m3 fat_shrunk_residual(sym3 root, m3 f, rotation_lanes *polar)
 {
 	vmask targeted = root.a00 > v_set(0);
@@ -92,7 +93,7 @@ INLINE m3 fat_shrunk_residual(sym3 root, m3 f, rotation_lanes *polar)
 	return m3_select(~targeted, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
 }
 
-// RANGE. *extra is what the squared distances of the range are beyond |R|^2.
+// The residual of RANGE. *extra is the sum of the squared distances less |R|^2.
 INLINE m3 fat_ranged_residual(const cau_fat_group *group, sym3 root, m3 f, rotation_lanes *polar,
                               vreal *extra)
 {
@@ -104,14 +105,15 @@ INLINE m3 fat_ranged_residual(const cau_fat_group *group, sym3 root, m3 f, rotat
 	return v_any(targeted) ? m3_select(targeted, fat_shrunk_residual(root, f, polar), r) : r;
 }
 
-// Residual of the strain limit (dimensionless); its energy is w/2 (|R|^2 + *extra).
+// Returns the residual of the strain limit (dimensionless). The limit's energy is w/2 (|R|^2 +
+// *extra).
 INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
                              sym3 common, m3 f, rotation_lanes *polar, bool diagonal, vreal *extra)
 {
 	sym3 root = set->targeted[slot / CAU_BATCH] ? sym3_load(set->target, slot) : common;
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED)
 		return fat_linearised_residual(set, slot, root, f, diagonal);
-	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, padding too
+	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, also padding
 		m3 r = fat_target_residual(f, root, polar);
 		return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 	}
@@ -120,8 +122,8 @@ INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group,
 	return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 }
 
-// What both tetrahedra of a pair have: the first vertex of their face, the edges from it to the
-// others.
+// The shared face of a pair of tetrahedra: its first vertex, and the edges from there to the other
+// two vertices.
 typedef struct fat_face {
 	v3 origin, edge[2];
 } fat_face;
@@ -134,7 +136,7 @@ INLINE fat_face fat_face_gather(const cau_fat_set *set, int32_t slot, const real
 	return face;
 }
 
-// H = F - I of the tetrahedron on `face` whose apex is the slot's.
+// Returns H = F - I of the tetrahedron on `face` with the slot's apex.
 INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const fat_face *face,
                                     const real *displacement)
 {
@@ -148,7 +150,8 @@ INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const 
 	return h;
 }
 
-// N m. A limit of the law's acts on every slot; shrinkage alone, on those that have shrunk.
+// The weight of the limit, N m. A law's limit acts on every slot. Without a law's limit, only slots
+// that have shrunk have one.
 INLINE vreal fat_limit_weight(const cau_fat_set *set, const cau_fat_group *group, int32_t slot)
 {
 	if (group->limit == CAU_LIMIT_NONE)
@@ -156,7 +159,8 @@ INLINE vreal fat_limit_weight(const cau_fat_set *set, const cau_fat_group *group
 	return (real)group->limit_stiffness * v_load(set->volume, slot);
 }
 
-// Stress (Pa m^3 = N m) in F = I + H; adds the energies (J). `common`: the group's target.
+// Returns the stress (Pa m^3 = N m) at F = I + H, and adds the energies (J). `common` is the
+// group's target.
 INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, sym3 common,
                      m3 h, bool diagonal, vreal *energy)
 {
@@ -166,7 +170,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	if (limited || group->keeps_rotation)
 		polar = rotation_load(set->polar, slot);
 	vreal density, volume = v_load(set->volume, slot);
-	if (limited) { // first: its rotation needs the most registers
+	if (limited) { // first, because its rotation needs the most registers
 		vreal w = fat_limit_weight(set, group, slot);
 		vreal extra = v_set(0);
 		r = fat_limit_residual(set, group, slot, common, f, &polar, diagonal, &extra);
@@ -190,7 +194,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	return limited ? m3_add_scaled(stress, fat_limit_weight(set, group, slot), r) : stress;
 }
 
-// The gradient on vertex i + 1 of four: stress (N m) times row i of D_m^-1.
+// The gradient at vertex i + 1 of four: stress (N m) times row i of D_m^-1.
 INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, int i)
 {
 	v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);
@@ -199,8 +203,8 @@ INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, i
 	return g;
 }
 
-// One vector of pairs, whose second halves are a batch behind their first: returns the energies (J)
-// and adds the gradient on their five vertices.
+// Handles one vector of pairs; the second tetrahedra are one batch after the first. Returns the
+// energies (J) and adds the gradient at the five vertices of each pair.
 INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
                        sym3 common, const real *displacement, bool diagonal, real *records)
 {
@@ -227,8 +231,7 @@ INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32
 	return energy;
 }
 
-// Asks for what the next pairs are made of: the arrays are more than processors follow by
-// themselves.
+// Prefetches the data of the next pairs. Processors do not prefetch so many arrays by themselves.
 INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int32_t slot)
 {
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
@@ -249,8 +252,8 @@ INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int
 	}
 }
 
-// Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
-// of the share's records, `records` where the gradients on them are added up.
+// Handles slots [first, last) of one group and returns their energy, J. `displacement` is u = x -
+// X, m, by the share's records. The gradients are added to `records`.
 static double fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
                          int32_t last, const real *displacement, real *records, bool diagonal)
 {

@@ -5,7 +5,7 @@
 
 static const int32_t FREE = -2; // not paired yet
 
-enum { MOST_NEIGHBOURS = 12 }; // more, across an edge of many triangles, are not asked
+enum { MOST_NEIGHBOURS = 12 }; // at an edge of many triangles, more neighbours are ignored
 
 static bool in_group(const cau_tissue *tissue, int kind, int32_t e, int32_t layer, int32_t material)
 {
@@ -24,7 +24,8 @@ static int add_free(const int32_t *partner, int32_t element, int32_t *list, int 
 	return count + 1;
 }
 
-// The elements that share a face (tetrahedron) or an edge (triangle) with e and are still free.
+// Lists the elements that share a face (tetrahedra) or an edge (triangles) with e and are not
+// paired yet. Returns their number.
 static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e,
                            int32_t list[MOST_NEIGHBOURS])
 {
@@ -47,7 +48,8 @@ static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *pa
 	return count;
 }
 
-// The free neighbour that has the fewest others to choose from, so that few are left alone.
+// Chooses the free neighbour that has the fewest free neighbours itself, so that few elements
+// remain without a partner.
 static int32_t choose(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e)
 {
 	int32_t near[MOST_NEIGHBOURS], of_near[MOST_NEIGHBOURS], best = -1;
@@ -104,7 +106,8 @@ void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t o
 	const int32_t *a = all + (size_t)vertices * (size_t)first;
 	const int32_t *own = all + (size_t)vertices * (size_t)element;
 	const int32_t *b = other < 0 ? a : all + (size_t)vertices * (size_t)other;
-	int apex = vertices * shared / 2; // what is left of the sum of all places
+	// sum of all indices; less those of the shared vertices it is the apex
+	int apex = vertices * shared / 2;
 	for (int i = 0; i < vertices && found < shared; i++)
 		if (place_of(b, vertices, a[i]) >= 0) {
 			order[found] = place_of(own, vertices, a[i]);

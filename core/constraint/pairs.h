@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles in pairs that share an edge, tetrahedra in pairs that share a face. The local step
-// handles a pair at once: two tetrahedra have five vertices to read and to add to, where by
-// themselves they have eight.
+// Pairs triangles that share an edge, and tetrahedra that share a face. The local step handles a
+// pair together. A pair of tetrahedra has five vertices to read and to add to; two separate
+// tetrahedra have eight.
 #pragma once
 
 #include "tissue/tissue.h"
 
-// For each triangle or tetrahedron of one layer and material its partner there, -1 where none is
-// left, in `partner` (by element); others are left as they are. Returns the number of pairs, those
-// of one counted too.
+// Sets the partner of each triangle or tetrahedron of one layer and material: an element of the
+// same layer and material, or -1 if none is left. `partner` is by element; other elements' entries
+// are unchanged. Returns the number of pairs; an element without a partner counts as one.
 int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int32_t material,
                           int32_t *partner);
 
-// An element's vertices as its pair has them: the shared ones, in the order of `first`'s own, then
-// its apex. `order` (3 or 4) holds places among the element's own vertices; `first` and `other` are
-// the pair, `other` -1 where there is none.
+// Finds the order of an element's vertices in its pair: the shared vertices, in the order of
+// `first`'s own, then the apex. `order` (3 or 4) has indices among the element's own vertices.
+// `first` and `other` are the pair; `other` is -1 if there is no partner.
 void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t other,
                     int32_t element, int *order);

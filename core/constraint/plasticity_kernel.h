@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Once a tick, after the last iteration: inverted tetrahedra are counted and plastic flow takes
-// place (section 5.2). With e' the deviator of the elastic strain E_e =
-// (F_e^T F_e - I)/2 and d = |e'| - gamma_1 > 0, e_p grows by (d / |e'|) e' and is scaled back to
-// gamma_2 if longer.
+// Counts inverted tetrahedra and applies plastic flow (section 5.2), once a tick after the last
+// iteration. Let e' be the deviator of the elastic strain E_e = (F_e^T F_e - I)/2, and d = |e'| -
+// gamma_1. If d > 0, e_p grows by (d / |e'|) e'. If e_p is longer than gamma_2, it is scaled back
+// to gamma_2.
 #pragma once
 
 #include "constraint/fat_kernel.h"
@@ -12,7 +12,7 @@ INLINE vreal sym3_norm(sym3 a)
 	return v_sqrt(v_max(sym3_dot(a, a), v_set(REAL_TINY)));
 }
 
-// e' of H_e = F_e - I.
+// Returns the deviator e' of the strain at H_e = F_e - I.
 INLINE sym3 strain_deviator(m3 he)
 {
 	sym3 e = green_strain(he);
@@ -21,13 +21,13 @@ INLINE sym3 strain_deviator(m3 he)
 	return e;
 }
 
-// Whether any lane of what has not flowed yet, whose H_e is H, does now.
+// True if a lane starts to flow. No lane has flowed before, so H_e = H.
 INLINE bool plastic_begins(const cau_fat_group *group, m3 h)
 {
 	return v_any(sym3_norm(strain_deviator(h)) - (real)group->yield_strain > v_set(0));
 }
 
-// e_p after flow; `flowed` marks the lanes that changed.
+// Returns e_p after flow. `flowed` marks the lanes that changed.
 INLINE sym3 plastic_flow(const cau_fat_group *group, m3 h, sym3 z, sym3 plastic, vmask *flowed)
 {
 	m3 he = m3_add(h, m3_times_sym(h, z));
@@ -46,7 +46,7 @@ INLINE sym3 plastic_flow(const cau_fat_group *group, m3 h, sym3 z, sym3 plastic,
 	              scale * p.a01, scale * p.a02, scale * p.a12};
 }
 
-// I + 2 e_p, bounded so that it stays positive definite.
+// Returns I + 2 e_p. e_p is bounded so that the result stays positive definite.
 INLINE sym3 plastic_metric(sym3 p)
 {
 	vreal size = sym3_norm(p), most = v_set((real)0.45);
@@ -64,7 +64,8 @@ static void sym3_store(void *const array[6], int32_t slot, sym3 a)
 	v_store(array[5], slot, a.a12);
 }
 
-// C_p^(-1/2) - I of what has flowed at two slots, which may be the same.
+// Computes C_p^(-1/2) - I of the slots that have flowed, for two vectors of slots, which may be the
+// same.
 INLINE void plastic_maps(const cau_fat_set *set, const int32_t slot[2])
 {
 	sym3 z[2];
@@ -77,12 +78,14 @@ INLINE void plastic_maps(const cau_fat_set *set, const int32_t slot[2])
 	}
 }
 
-// Slots [first, last) of one group; returns how many live ones are inverted.
+// Handles slots [first, last) of one group. Returns the number of live tetrahedra that are
+// inverted.
 static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *group,
                              int32_t first, int32_t last, const real *displacement)
 {
 	const cau_fat_set *set = &elements->fat;
-	int32_t inverted = 0, waiting[2], wait = 0; // for their maps
+	// slots for which plastic_maps is still to be called
+	int32_t inverted = 0, waiting[2], wait = 0;
 	for (int32_t slot = first; slot < last; slot += LANES) {
 		fat_face face = fat_face_gather(set, slot, displacement);
 		m3 h = fat_displacement_gradient(set, slot, &face, displacement);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polar factor with determinant +1 of 3x3 matrices, by lane, kept as unit quaternions between
-// calls.
+// The polar factor, with determinant +1, of 3x3 matrices, one in each lane. The factors are kept as
+// unit quaternions between calls.
 #pragma once
 
 #include "base/simd.h"
@@ -9,18 +9,19 @@ typedef struct rotation_lanes { // unit quaternion
 	vreal w, x, y, z;
 } rotation_lanes;
 
-// The robust case, one matrix (columns) in double: eigenvectors of A^T A by cyclic Jacobi, the
-// smallest singular direction turned where det A < 0. `q` is replaced by the rotation nearest to A,
-// or kept where two singular values vanish.
+// The robust case, for one matrix (by columns) in double: eigenvectors of A^T A by cyclic Jacobi.
+// If det A < 0, the smallest singular direction is reversed. `q` is replaced by the rotation
+// nearest to A. If two singular values vanish, `q` is unchanged.
 void cau_polar_robust(const double a[9], double q[4]);
 
 enum { POLAR_STEPS = 6 };
 
-// Squares of half turns: below the first a rounding of the rotation hides it; below the second one
-// step leaves less than a rounding, as its error is about 0.4 of the turn's third power.
+// Squares of half turns. Below POLAR_SETTLED, the turn is smaller than the rounding of the
+// rotation. Below POLAR_NEAR, one step is enough: it leaves an error of about 0.4 times the third
+// power of the turn, which is less than rounding.
 #define POLAR_SETTLED (REAL_EPSILON * REAL_EPSILON / 16)
 #define POLAR_NEAR (CAU_SINGLE ? (real)2.5e-6 : (real)2.5e-12)
-// Least determinant of tr S - sym S, relative to the cube of its trace.
+// Least determinant of tr S - sym S, relative to the third power of its trace.
 #define POLAR_LEAST ((real)2.5e-6)
 
 INLINE m3 rotation_matrix(rotation_lanes q)
@@ -33,7 +34,7 @@ INLINE m3 rotation_matrix(rotation_lanes q)
 	             {xz + y * q.w, yz - x * q.w, not_xx - y * q.y}}};
 }
 
-// q (1, h), of length 1 + |h|^2 / 2 at first.
+// q (1, h). The length is 1 + |h|^2 / 2 to second order.
 INLINE rotation_lanes rotation_turn(rotation_lanes q, v3 h)
 {
 	return (rotation_lanes){
@@ -49,7 +50,7 @@ INLINE rotation_lanes rotation_scale(rotation_lanes q, vreal scale)
 	return (rotation_lanes){q.w * scale, q.x * scale, q.y * scale, q.z * scale};
 }
 
-// Lanes that Newton's step cannot serve, one by one.
+// Handles the lanes for which Newton's step is not usable, one by one.
 static __attribute__((noinline)) void polar_lanes(const m3 *a, vmask which, rotation_lanes *q)
 {
 	for (int l = 0; l < LANES; l++) {
@@ -69,8 +70,9 @@ static __attribute__((noinline)) void polar_lanes(const m3 *a, vmask which, rota
 	}
 }
 
-// Half of the turn w that makes S = R^T A symmetric to first order, from (tr S - sym S) w = axial
-// S. `hard` marks the lanes where that matrix is not well positive definite; what they get is void.
+// Returns half of the turn w that makes S = R^T A symmetric to first order: (tr S - sym S) w =
+// axial S. `hard` marks the lanes in which that matrix is not positive definite by a margin. Their
+// result is invalid.
 INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 {
 	vreal s00 = v3_dot(r.c[0], a.c[0]), s11 = v3_dot(r.c[1], a.c[1]), s22 = v3_dot(r.c[2], a.c[2]);
@@ -78,7 +80,7 @@ INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 	vreal s02 = v3_dot(r.c[0], a.c[2]), s20 = v3_dot(r.c[2], a.c[0]);
 	vreal s12 = v3_dot(r.c[1], a.c[2]), s21 = v3_dot(r.c[2], a.c[1]);
 	v3 axial = {s21 - s12, s02 - s20, s10 - s01};
-	// M = 2 (tr S - sym S); t is what its other entries are the negative of
+	// M = 2 (tr S - sym S). Its off-diagonal entries are -t01, -t02 and -t12.
 	vreal m00 = s11 + s22, m11 = s00 + s22, m22 = s00 + s11;
 	m00 += m00, m11 += m11, m22 += m22;
 	vreal t01 = s01 + s10, t02 = s02 + s20, t12 = s12 + s21;
@@ -93,12 +95,13 @@ INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 	            inverse * (c02 * axial.x + c12 * axial.y + c22 * axial.z)};
 }
 
-// As many of Newton's steps as a far turn takes, of which the first is known: its half turn, and
-// where that is void. cau_polar_robust decides where they do not serve.
+// Newton's method for a far turn, in as many steps as needed. `first` is the half turn of the first
+// step, and `is_void` marks the lanes in which it is invalid. Lanes in which Newton's method fails
+// use cau_polar_robust.
 static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, const vmask *is_void,
                                                 rotation_lanes *q)
 {
-	vmask robust = v_set(0) > v_set(1); // none
+	vmask robust = v_set(0) > v_set(1); // no lane yet
 	for (int step = 0; step < POLAR_STEPS; step++) {
 		vmask hard = *is_void;
 		v3 h = *first;
@@ -109,7 +112,7 @@ static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, co
 		rotation_lanes p = rotation_turn(*q, h);
 		*q = rotation_scale(p, 1 / v_sqrt(rotation_norm2(p)));
 		vmask turning = v3_dot(h, h) > v_set(POLAR_NEAR);
-		if (step == POLAR_STEPS - 1) // it started too far away
+		if (step == POLAR_STEPS - 1) // it started too far away to converge
 			robust |= turning;
 		else if (!v_any(turning))
 			break;
@@ -118,9 +121,9 @@ static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, co
 		polar_lanes(a, robust, q);
 }
 
-// Rotation of A from the last one by Newton's method for the largest tr(R^T A), which converges
-// with the third power of the turn; one step mostly serves. `q` holds the last rotation on entry
-// and the new one on return. Exactly kept where S is symmetric to rounding.
+// Finds the rotation of A by Newton's method for the largest tr(R^T A), from the last rotation. The
+// error falls with the third power of the turn, so one step is mostly enough. `q` is the last
+// rotation on entry and the new one on return. If S is symmetric to rounding, `q` is unchanged.
 INLINE m3 polar_rotation(m3 a, rotation_lanes *q)
 {
 	vmask hard;
@@ -134,6 +137,6 @@ INLINE m3 polar_rotation(m3 a, rotation_lanes *q)
 	if (!v_any(turn2 > v_set(POLAR_SETTLED)))
 		return r;
 	rotation_lanes p = rotation_turn(*q, h);
-	*q = rotation_scale(p, (real)1.5 - (real)0.5 * rotation_norm2(p)); // 1/sqrt near one
+	*q = rotation_scale(p, (real)1.5 - (real)0.5 * rotation_norm2(p)); // 1/sqrt, near 1
 	return rotation_matrix(*q);
 }

@@ -8,13 +8,13 @@
 
 INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 {
-	// F^T F - I, from H: exact at rest
+	// F^T F - I, computed from H so that it is exact at rest
 	return (sym2){2 * v3_dot(f0[0], h[0]) + v3_dot(h[0], h[0]),
 	              2 * v3_dot(f0[1], h[1]) + v3_dot(h[1], h[1]),
 	              v3_dot(f0[0], h[1]) + v3_dot(f0[1], h[0]) + v3_dot(h[0], h[1])};
 }
 
-// Eq. 13 in F. In the diagonal system each constraint has its own step.
+// The residual of eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 target_root,
                                                 const vreal dm_inverse[4], vreal g2, bool diagonal)
 {
@@ -30,8 +30,9 @@ INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 t
 	return r;
 }
 
-// Residual R of the triangle's law and twice its energy over w; `polar` is updated. Slots without a
-// target (00 = 0) follow the range, if any. In the diagonal system R is scaled here.
+// Returns the residual R of the triangle's law, and in *squared twice its energy over w. Updates
+// `polar`. Slots without a target (00 = 0) have the range's residual, if there is a range. In the
+// diagonal system R is scaled here.
 INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradient f, sym2 k,
                                      sym2 target_root, sheet_gradient *polar,
                                      const vreal dm_inverse[4], vreal g2, bool diagonal,
@@ -64,7 +65,7 @@ INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradien
 	return r;
 }
 
-// What both triangles of a pair have: their edge's first vertex and the way to its second.
+// The shared edge of a pair of triangles: its first vertex, and the vector to the second.
 typedef struct sheet_edge {
 	v3 origin, along;
 } sheet_edge;
@@ -76,7 +77,7 @@ INLINE sheet_edge sheet_edge_gather(const cau_sheet_set *set, int32_t slot,
 	return (sheet_edge){origin, v3_sub(v3_gather(displacement, set->record_at[1] + slot), origin)};
 }
 
-// H = F - F_0 of the triangle on `edge` whose apex is the slot's.
+// Returns H = F - F_0 of the triangle on `edge` with the slot's apex.
 INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int32_t slot,
                                                   const sheet_edge *edge, const real *displacement)
 {
@@ -88,7 +89,7 @@ INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int3
 	return h;
 }
 
-// w R in F = F_0 + H (N m); adds twice the energy (J).
+// Returns w R at F = F_0 + H (N m). Adds twice the energy (J).
 INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_group *group,
                                    int32_t slot, sheet_gradient h, bool diagonal, vreal *energy,
                                    vmask *slack)
@@ -125,7 +126,7 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	return (sheet_gradient){{v3_scale(w, r.c[0]), v3_scale(w, r.c[1])}};
 }
 
-// The gradient on vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
+// The gradient at vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
 INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gradient stress,
                                 int i)
 {
@@ -133,8 +134,8 @@ INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gr
 	                     v_load(set->dm_inverse[2 * i + 1], slot), stress.c[1]);
 }
 
-// One vector of pairs, whose second halves are a batch behind their first: returns twice the
-// energies (J) and adds the gradient on their four vertices.
+// Handles one vector of pairs; the second triangles are one batch after the first. Returns twice
+// the energies (J) and adds the gradient at the four vertices of each pair.
 INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group, int32_t slot,
                          const real *displacement, bool diagonal, real *records, vmask *slack)
 {
@@ -156,7 +157,7 @@ INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group,
 	return energy;
 }
 
-// Asks for what the next pairs are made of, as fat_prefetch does.
+// Prefetches the data of the next pairs, as fat_prefetch does.
 INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 {
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
@@ -175,9 +176,9 @@ INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 	}
 }
 
-// Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
-// of the share's records, `records` where the gradients on them are added up. *slack: whether
-// some triangle hardly resists (CAU_SLACK).
+// Handles slots [first, last) of one group and returns their energy, J. `displacement` is u = x -
+// X, m, by the share's records. The gradients are added to `records`. *slack is set to whether a
+// triangle is slack (CAU_SLACK).
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
                            int32_t first, int32_t last, const real *displacement, real *records,
                            bool diagonal, bool *slack)

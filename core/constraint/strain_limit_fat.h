@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of tetrahedra: the rules of strain_limit_sheet.h on the 3x3 metric.
+// Strain limits of tetrahedra: those of strain_limit_sheet.h for the 3x3 metric.
 #pragma once
 
 #include "constraint/polar.h"
 #include "constraint/strain_range.h"
 
-// Targets mostly lie along the axes: then a third of the products do.
+// Most targets are diagonal. Then a third of the products is enough.
 INLINE int sym3_is_diagonal(sym3 s)
 {
 	return !v_any((vmask)s.a01 | (vmask)s.a02 | (vmask)s.a12);
@@ -18,7 +18,7 @@ INLINE m3 m3_times_target(m3 a, sym3 root, int along_axes)
 		{v3_scale(root.a00, a.c[0]), v3_scale(root.a11, a.c[1]), v3_scale(root.a22, a.c[2])}};
 }
 
-// TARGET in closed form: R = F - Q T^(1/2), Q the rotation of F T^(1/2). `q` keeps it.
+// TARGET in closed form: R = F - Q T^(1/2), where Q is the rotation of F T^(1/2). `q` keeps Q.
 INLINE m3 fat_target_residual(m3 f, sym3 target_root, rotation_lanes *q)
 {
 	int along_axes = sym3_is_diagonal(target_root);
@@ -41,7 +41,7 @@ INLINE sym3 sym3_mean(sym3 a, sym3 b)
 	              h * (a.a01 + b.a01), h * (a.a02 + b.a02), h * (a.a12 + b.a12)};
 }
 
-// Largest entry of a - b.
+// The largest absolute entry of a - b.
 INLINE vreal sym3_distance(sym3 a, sym3 b)
 {
 	vreal most = v_max(v_abs(a.a00 - b.a00), v_max(v_abs(a.a11 - b.a11), v_abs(a.a22 - b.a22)));
@@ -49,12 +49,13 @@ INLINE vreal sym3_distance(sym3 a, sym3 b)
 	             v_max(v_abs(a.a01 - b.a01), v_max(v_abs(a.a02 - b.a02), v_abs(a.a12 - b.a12))));
 }
 
-// Square roots of symmetric positive definite 3x3, and their inverses, by the Denman-Beavers
-// iteration. It converges quadratically: after a step of the square root of rounding (1e-4 of 1e-8,
-// 1e-9 of 1e-16) nothing is left to do. Ten steps are enough for stretches from 1/30 to 30.
+// Square roots of symmetric positive definite 3x3 matrices, and their inverses, by the
+// Denman-Beavers iteration. It converges quadratically. So it ends after a step as small as the
+// square root of rounding (1e-4 for 1e-8, 1e-9 for 1e-16). Ten steps are enough for stretches from
+// 1/30 to 30.
 enum { SQRT_STEPS = 10 };
 
-// Returns whether another step is needed.
+// One step of the iteration. Returns whether another step is needed.
 INLINE int sym3_sqrt_step(sym3 *root, sym3 *inverse)
 {
 	const real small = CAU_SINGLE ? (real)1e-4 : (real)1e-9;
@@ -64,8 +65,8 @@ INLINE int sym3_sqrt_step(sym3 *root, sym3 *inverse)
 	return v_any(sym3_distance(y, last) > small * (y.a00 + y.a11 + y.a22));
 }
 
-// Turns two into the inverses of their square roots. Side by side, as a step mostly waits for the
-// one before it.
+// Replaces two matrices by the inverses of their square roots. Both are computed side by side,
+// because each step waits for the one before it.
 INLINE void sym3_inverse_roots(sym3 a[2])
 {
 	vreal one = v_set(1), zero = v_set(0);
@@ -83,7 +84,7 @@ INLINE void sym3_inverse_roots(sym3 a[2])
 	}
 }
 
-// RANGE, like sheet_range_residual, of three stretches and three shears.
+// The residual of RANGE, as in sheet_range_residual, for three stretches and three shears.
 INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double stretch_max[3],
                              double shear_max, vreal *squared)
 {
@@ -102,9 +103,9 @@ INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double str
 	return r;
 }
 
-// TARGET linearised: the six unordered pairs of eq. 12 on the 3x3 metric, each projected once in F.
-// part[i] is the residual of pair i. Its gradient is guarded against columns shorter than a
-// thousandth of their rest length (squared: 1e-6), where it says nothing about the distance.
+// TARGET linearised: the six unordered pairs of eq. 12 for the 3x3 metric, each projected once in
+// F. part[i] is the residual of pair i. The step is limited for columns shorter than a thousandth
+// of their rest length (squared: 1e-6), where the gradient does not indicate the distance.
 INLINE void fat_linearised_residuals(m3 f, sym3 target, m3 part[6])
 {
 	static const int first[6] = {0, 1, 2, 0, 0, 1}, second[6] = {0, 1, 2, 1, 2, 2};

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of triangles (section 5.1, Appendix A): what F is driven to, and the residual
-// R = F - P, so that a triangle's energy is w/2 |R|^2 and its stress w R. Columns f_1, f_2 of F.
+// Strain limits of triangles (section 5.1, Appendix A). P is the nearest admissible F, and R = F -
+// P is the residual. A triangle's energy is w/2 |R|^2 and its stress w R. f_1 and f_2 are the
+// columns of F.
 #pragma once
 
 #include "constraint/strain_range.h"
 
-typedef struct sheet_gradient { // F or R, 3 x 2
+typedef struct sheet_gradient { // F or R of a triangle, 3 x 2, by columns
 	v3 c[2];
 } sheet_gradient;
 
-// Square root of a symmetric positive semidefinite 2x2: (M + sqrt(det) I) / sqrt(tr + 2 sqrt(det)).
+// The square root of a symmetric positive semidefinite 2x2 matrix: (M + sqrt(det) I) / sqrt(tr + 2
+// sqrt(det)).
 INLINE sym2 sym2_sqrt(sym2 m, vreal *root_determinant)
 {
 	vreal det = v_max(m.a00 * m.a11 - m.a01 * m.a01, v_set(0));
@@ -19,7 +21,7 @@ INLINE sym2 sym2_sqrt(sym2 m, vreal *root_determinant)
 	return (sym2){(m.a00 + s) / t, (m.a11 + s) / t, m.a01 / t};
 }
 
-// B A B for symmetric 2x2.
+// B A B, for symmetric 2x2 matrices.
 INLINE sym2 sym2_sandwich(sym2 b, sym2 a)
 {
 	vreal p00 = b.a00 * a.a00 + b.a01 * a.a01, p01 = b.a00 * a.a01 + b.a01 * a.a11;
@@ -27,25 +29,25 @@ INLINE sym2 sym2_sandwich(sym2 b, sym2 a)
 	return (sym2){p00 * b.a00 + p01 * b.a01, p10 * b.a01 + p11 * b.a11, p00 * b.a01 + p01 * b.a11};
 }
 
-// F B, B symmetric.
+// F B, for a symmetric B.
 INLINE sheet_gradient sheet_times(sheet_gradient f, sym2 b)
 {
 	return (sheet_gradient){{v3_add_scaled(v3_scale(b.a00, f.c[0]), b.a01, f.c[1]),
 	                         v3_add_scaled(v3_scale(b.a01, f.c[0]), b.a11, f.c[1])}};
 }
 
-// TARGET in closed form: P = Q T^(1/2), Q the orthonormal polar factor of F T^(1/2). With K = F^T F
-// and S = (T^(1/2) K T^(1/2))^(1/2), Q = F T^(1/2) S^-1, so R = F (I - T^(1/2) S^-1 T^(1/2)). At
-// rest with T = I this is exactly zero. Where F has lost rank Q is not defined: the last one
-// (`polar`) is kept. `slack` gets the lanes where the law hardly resists along the normal: there
-// the stiffness is w (I - T^(1/2) S^-1 T^(1/2)).
+// TARGET in closed form: P = Q T^(1/2), where Q is the orthonormal polar factor of F T^(1/2). With
+// K = F^T F and S = (T^(1/2) K T^(1/2))^(1/2), Q = F T^(1/2) S^-1. So R = F (I - T^(1/2) S^-1
+// T^(1/2)). At rest with T = I this is exactly zero. Where F has lost rank, Q is not defined, and
+// the last one (`polar`) is used. `slack` marks the lanes with little stiffness along the normal,
+// which is w (I - T^(1/2) S^-1 T^(1/2)).
 INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 target_root,
                                             sheet_gradient *polar, vmask *slack)
 {
 	vreal s;
 	sym2 m = sym2_sandwich(target_root, k);
 	sym2 root = sym2_sqrt(m, &s);
-	// singular values within about 1 : 2000 of each other, and K more than its own rounding
+	// the ratio of singular values is below about 2000, and K is above its own rounding
 	vreal trace = m.a00 + m.a11;
 	vmask full = (s > (real)1e-3 * trace) & (trace > v_set(64 * REAL_EPSILON));
 	vreal inverse = 1 / v_select(full, s, v_set(1));
@@ -62,7 +64,8 @@ INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 targe
 	return exact;
 }
 
-// RANGE: the residuals of both stretches and of the shear; *squared is their squared distances.
+// RANGE: the residuals of both stretches and of the shear. *squared is the sum of their squared
+// distances.
 INLINE sheet_gradient sheet_range_residual(sheet_gradient f, sym2 k, const double stretch_min[2],
                                            const double stretch_max[2], double shear_max,
                                            vreal *squared)
@@ -74,9 +77,9 @@ INLINE sheet_gradient sheet_range_residual(sheet_gradient f, sym2 k, const doubl
 	return r;
 }
 
-// One linearised constraint C of F (eq. 12): dF = -C (dC/dF) / |dC/dF|^2, returned as the residual
-// C (dC/dF) / |dC/dF|^2. The guard is for columns shorter than a thousandth of their rest length
-// (squared: 1e-6), where the gradient says nothing about the distance.
+// One linearised constraint C of F (eq. 12): dF = -C (dC/dF) / |dC/dF|^2. The residual is C (dC/dF)
+// / |dC/dF|^2. The step is limited for columns shorter than a thousandth of their rest length
+// (squared: 1e-6), where the gradient does not indicate the distance.
 INLINE vreal linearised_step(vreal c, vreal gradient_squared)
 {
 	return c / v_max(gradient_squared, v_set((real)1e-6));

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strains kept in an interval: the energy of an element is w/2 times the squared distances of F to
-// each of the sets that its strains may lie in, added up. One set is that of the matrices whose
-// column f_a has a length in its interval; another is that of those whose columns f_a and f_b have
-// no more than a certain cosine between them. The nearest member of either is known in closed form,
-// so the residual F - P is the gradient of half the squared distance, and both depend on F^T F
-// alone, so there is no torque.
+// Strains limited to an interval. The strains define several sets of admissible F. One set has the
+// matrices whose column f_a has a length in its interval. Another has those with at most a certain
+// cosine between f_a and f_b. The energy of an element is w/2 times the sum of the squared
+// distances of F to these sets. The nearest member P of a set is known in closed form. So the
+// residual F - P is the gradient of half the squared distance. Both depend on F^T F alone, so there
+// is no torque.
 //
-// Departs: the sets are taken one by one. The nearest member of their intersection has no closed
-// form, and a metric that is clamped as a whole (what is nearest in length, then in shear) is not
-// the nearest, so that the force towards it is the gradient of nothing.
+// Departs: the sets are handled one by one. The nearest member of their intersection has no closed
+// form. A metric that is clamped as a whole (first to the nearest length, then to the nearest
+// shear) is not the nearest member, so the force towards it is the gradient of no energy.
 #pragma once
 
 #include "base/simd.h"
 
-// How far the shear's formulas are kept from where two columns are parallel and of one length, as
-// there is no one nearest pair: a share of their squares, a few roundings in size. Limits are off
-// by as much.
+// Margin that keeps the shear's formulas away from two parallel columns of one length, for which
+// the nearest pair is not unique. It is a share of the columns' squares, a few times rounding.
+// Limits have an error of the same size.
 #define RANGE_ROUNDING (CAU_SINGLE ? (real)1e-5 : (real)1e-10)
 
-// Column f of length sqrt(k): adds F - P to `residual`, returns the squared distance. Below the
-// rounding of k, which may be that of I + ..., its length is not known: it is taken to be no less.
+// Handles a column f of length sqrt(k): adds F - P to `residual` and returns the squared distance.
+// If k is less than the rounding of I + ..., the length is taken to be that of the rounding.
 INLINE vreal range_stretch(v3 f, vreal k, double least, double most, v3 *residual)
 {
 	vreal length = v_sqrt(v_max(k, v_set(64 * REAL_EPSILON)));
@@ -28,12 +28,13 @@ INLINE vreal range_stretch(v3 f, vreal k, double least, double most, v3 *residua
 	return (length - kept) * (length - kept);
 }
 
-// Columns f_1, f_2 with products k11, k22, k12, their cosine at most `most` (below 1) in size.
+// Handles columns f_1, f_2 with the products k11, k22, k12. The size of their cosine is at most
+// `most` (below 1).
 //
-// Both turn in their plane, by d together, until the cosine is most, and shrink to where they are
-// nearest. With a = k11 + k22 and x = |f_1| |f_2| sin d = sqrt(1 - most^2) |k12| - most J, J their
-// area, the squared distance is D = (a - r) / 2, r = sqrt(a^2 - 4 x^2), and
-// dD/da = -D / r, dD/dx = 2 x / r.
+// The nearest pair is turned in the columns' plane, by d together, until the cosine is `most`, and
+// scaled. With a = k11 + k22 and x = |f_1| |f_2| sin d = sqrt(1 - most^2) |k12| - most J, where J
+// is their area, the squared distance is D = (a - r) / 2, r = sqrt(a^2 - 4 x^2), and dD/da = -D /
+// r, dD/dx = 2 x / r.
 INLINE vreal range_shear(v3 f1, v3 f2, sym2 k, double most, v3 *residual1, v3 *residual2)
 {
 	real limit = (real)most, across = (real)sqrt(1 - most * most), tiny = RANGE_ROUNDING;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscosity of tetrahedra and triangles (Kelvin-Voigt): beside its law an element has the stress
-// S_v = t C : dE/dt. E = (F^T F - I)/2 is Green's strain, C the stiffness at rest and t the
-// retardation time, viscosity / stiffness. E does not change as an element turns, so turning is not
-// damped.
+// Viscosity of tetrahedra and triangles (Kelvin-Voigt): an element has the stress S_v = t C : dE/dt
+// in addition to its law's. E = (F^T F - I)/2 is Green's strain and C the stiffness at rest. t is
+// the retardation time, viscosity / stiffness. E does not change as an element turns, so turning is
+// not damped.
 //
-// In a solve dE/dt = (E(x) - R) / h. R is E at the tick's start, or what the first of two substeps
-// has made of it: E(x) + q/h (E(x1) - E(x)). So the stress is the gradient of
-// t / (2 h) (E - R) : C : (E - R), which the objective has too (J).
+// In a solve dE/dt = (E(x) - R) / h. R is E at the tick's start. In the second of two substeps, R
+// is E(x) + q/h (E(x1) - E(x)), from the start x and the result x1 of the first. So the stress is
+// the gradient of t / (2 h) (E - R) : C : (E - R), which the objective includes (J).
 #pragma once
 
 #include "constraint/plasticity_kernel.h"
@@ -25,7 +25,7 @@ INLINE m3 fat_gradient_at(const cau_fat_set *set, int32_t slot, const real *disp
 	return fat_displacement_gradient(set, slot, &face, displacement);
 }
 
-// Slots [first, last): R becomes R + share (E - R).
+// Handles slots [first, last): R becomes R + share (E - R).
 static void fat_strain_kernel(const cau_fat_set *set, int32_t first, int32_t last,
                               const real *displacement, double share)
 {
@@ -37,7 +37,7 @@ static void fat_strain_kernel(const cau_fat_set *set, int32_t first, int32_t las
 	}
 }
 
-// Adds the gradients to the records. Returns the energy, J.
+// Adds viscosity's gradients to the records. Returns viscosity's energy, J.
 static double fat_viscous_kernel(const cau_fat_set *set, const cau_fat_group *group,
                                  double rate_per_s, int32_t first, int32_t last,
                                  const real *displacement, real *records)
@@ -68,7 +68,7 @@ static double fat_viscous_kernel(const cau_fat_set *set, const cau_fat_group *gr
 
 // ---- triangles: C is the stiffness of their limit times the identity
 
-typedef struct sheet_strain { // E, and F that it is of
+typedef struct sheet_strain { // E, and the F at which it is computed
 	vreal a00, a11, a01;
 	sheet_gradient f;
 } sheet_strain;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The books of the edge-based structure: what a primitive is, how far heat has come at an edge,
-// which live, which faces are drawn; what an edge or an element that parts takes with it; and all
-// of it counted again from what has parted.
+// Bookkeeping of dissection by edges: the heat of a primitive, the heating of an edge, live
+// primitives, drawn faces; removal of an edge or an element; and the recount of all of this from
+// what has parted.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 
-// Elements of all kinds, which is how many can be removed at most.
+// Returns the number of elements of all kinds: the most that can be removed.
 static int32_t element_total(const cau_tissue *tissue)
 {
 	int32_t total = 0;
@@ -27,7 +27,7 @@ const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int pr
 	return cau_layer_heat(&tissue->layer[cau_tissue_layer_of(tissue, primitive, index)], material);
 }
 
-// Of the primitives of a kind that share the edge, the first one's material; NULL: there is none.
+// Returns the heat material of the first primitive of a kind at the edge; NULL if there is none.
 static const cau_heat_material *heat_at(const cau_dissection *dissection, int primitive,
                                         int32_t edge)
 {
@@ -39,7 +39,7 @@ static const cau_heat_material *heat_at(const cau_dissection *dissection, int pr
 	return cau_dissection_heat_of(dissection->tissue, primitive, edges->sharer[primitive][k]);
 }
 
-// The material that needs most exposure decides.
+// The material that needs most exposure determines the new value.
 void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double share)
 {
 	double exposure = dissection->exposure[edge];
@@ -180,7 +180,7 @@ void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t
 
 // ---- recount
 
-// Marks what parted edges take along.
+// Clears `alive` for elements at parted edges.
 static void mark_parted(const cau_tissue *tissue, const uint16_t *parted,
                         uint8_t *const alive[CAU_ELEMENT_KINDS])
 {

@@ -7,7 +7,7 @@
 
 _Static_assert(CAU_MAX_LAYERS <= 16, "a bit of `parted` for each layer");
 
-static const double heat_capacity = 3500; // J/(kg K), soft tissue
+static const double heat_capacity = 3500; // J/(kg K), of soft tissue
 
 static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *arena,
                                        cau_error *error)
@@ -97,7 +97,8 @@ static bool edge_lives(const cau_dissection *dissection, int32_t edge)
 	return false;
 }
 
-// An edge's share of the mass at its ends: there are about a dozen edges at a vertex.
+// Returns the heat, J, that an edge takes up. Its mass is a share of the mass at its ends: about a
+// dozen edges meet at a vertex.
 static double heat_taken(const cau_dissection *dissection, int32_t edge, double gain)
 {
 	CAU_ASSERT(gain > 0, "edge %d takes %g degC s", edge, gain);
@@ -112,8 +113,8 @@ static double heat_taken(const cau_dissection *dissection, int32_t edge, double 
 	return gain * absorption * heat_capacity * mass / 12;
 }
 
-// Whether a sphere can reach the segment at all: most edges of a near block are out of it, and the
-// temperature at their ends need not be looked up.
+// True if a sphere can reach the segment. Most edges of a near block are out of reach, and then the
+// temperature at their ends is not needed.
 static bool in_reach(cau_vec3 a, cau_vec3 b, cau_vec3 center, double radius)
 {
 	cau_vec3 along = cau_sub(b, a), off = cau_sub(cau_add(a, b), cau_add(center, center));
@@ -170,8 +171,8 @@ static double ignition_in_bundles(const cau_dissection *dissection, const cau_he
 	                               heat->ignition_bundle_m);
 }
 
-// Ignition of an edge in the layer of one of its primitives: exposure is compared as xi times the
-// integral.
+// True if an edge ignites in the layer of one of its primitives: xi times the exposure exceeds the
+// ignition temperature.
 static bool ignites(const cau_dissection *dissection, int primitive, int32_t index, int32_t edge)
 {
 	const cau_heat_material *heat = cau_dissection_heat_of(dissection->tissue, primitive, index);
@@ -183,13 +184,14 @@ static bool ignites(const cau_dissection *dissection, int primitive, int32_t ind
 	return heat->absorption_per_s * dissection->exposure[edge] > ignition;
 }
 
-// Links are single fibres, and part by their edge under either rule.
+// Links are single fibres, and part by their edge under both rules.
 static int first_kind_of_edges(const cau_dissection *dissection)
 {
 	return dissection->doses.dose ? CAU_PRIMITIVE_LINK : CAU_PRIMITIVE_TRIANGLE;
 }
 
-// Layers in which the edge parts now, as bits; those in which it has parted are left out.
+// Returns the layers, as bits, in which the edge parts now. Layers in which it has parted before
+// are left out.
 static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 {
 	const cau_edge_table *edges = &dissection->tissue->edges;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rooms' walls: books (books.c) at the bottom, the two rules of parting on them, elements by
-// their doses (doses.c) and edges (dissection.c), which calls the others.
+// Interfaces between the files of core/dissect. books.c is the lowest. The two rules of parting use
+// it: by elements and their doses (doses.c), and by edges (dissection.c). dissection.c calls the
+// others.
 #pragma once
 
 #include <stdbool.h>
@@ -11,13 +12,13 @@
 const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int primitive,
                                                 int32_t index);
 bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index);
-// Takes a living primitive out: appends it to `removed`, with the hinges of a triangle.
+// Removes a live primitive and appends it to `removed`, with the hinges of a triangle.
 void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index);
-// Marks an edge as one of the present tick.
+// Lists an edge among those that changed in the present tick.
 void cau_dissection_touch(cau_dissection *dissection, int32_t edge);
-// Place of a triangle or a tetrahedron in the arrays of doses.
+// Returns the index of a triangle or a tetrahedron in the arrays of doses.
 int32_t cau_doses_place(const cau_tissue *tissue, int primitive, int32_t index);
-// Counts the edge as parted in these layers (bits), none of which it had parted in.
+// Parts an edge in these layers (bits). It must not have parted in any of them before.
 void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t layers);
 
 // ---- doses.c
@@ -28,7 +29,7 @@ void cau_doses_expose(cau_dissection *dissection, const cau_near *near, const do
                       const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                       double jaw, double duration_s);
 void cau_doses_part(cau_dissection *dissection, uint32_t *layers);
-// Takes a living triangle or tetrahedron out by itself, where elements part.
+// Removes a live triangle or tetrahedron, if elements part one by one.
 void cau_doses_lose(cau_dissection *dissection, int primitive, int32_t index);
 
 // ---- tears.c

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The second rule of parting: each triangle and tetrahedron by the dose at its middle.
+// The second rule of parting: each triangle and tetrahedron parts by the dose at its middle.
 //
-// An edge that parts takes all that share it, which is half a cell on all sides of the instrument
-// more than it burnt, and one draw of ignition an edge makes fraying a matter of the mesh. Here an
-// element is one point of quadrature, as it is for its strain: it has part in the cut by the dose
-// (eq. 20) of its middle, against an ignition temperature drawn from a field over rest space. So
-// what a cut takes tends to what the hot part has swept and burnt, whatever the mesh; half the
-// elements that its surface crosses are in, half of them out.
+// An edge that parts removes all elements at it. So the cut is wider than the burnt tissue by half
+// a cell on all sides of the instrument. And as each edge has its own random ignition temperature,
+// fraying depends on the mesh. Here an element is one point of quadrature, as for its strain. It
+// parts by the dose (eq. 20) at its middle. The ignition temperature is drawn from a field over
+// rest space. So the removed volume tends to the volume that the hot part has swept and burnt,
+// whatever the mesh. Of the elements that the cut's surface crosses, half are removed.
 //
-// A hot part thinner than the elements would pass between their middles. So it counts as no thinner
-// than the mesh can tell (`half_width_of`).
+// A hot part thinner than the elements would pass between their middles. So its thickness counts as
+// at least what the mesh can resolve (half_width_of).
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 
-// Over which ignition changes where the layer has no bundles, m.
+// Length over which the ignition temperature changes if the layer has no bundles, m.
 static const double field_m = 1e-3;
 
-enum { KINDS = CAU_PRIMITIVE_LINK }; // triangles and tetrahedra
+enum { KINDS = CAU_PRIMITIVE_LINK }; // the kinds that have doses: triangles and tetrahedra
 
 static int32_t count_of(const cau_tissue *tissue)
 {
@@ -39,10 +39,10 @@ static cau_vec3 middle_of(const cau_tissue *tissue, int primitive, int32_t index
 	return cau_scale(1.0 / count, sum);
 }
 
-// Half the width of the thinnest cut that elements such as this one can tell, m. Of a triangle, how
-// far a vertex is from its middle: where two of them hang together by a vertex, on either side of a
-// way that divides them, the way is no further than that from one of the middles, which goes. A
-// tetrahedron's, as if it were regular: no way of a tip divides a body.
+// Returns half the width of the thinnest cut that such an element can resolve, m. For a triangle it
+// is the distance of a vertex from its middle. Suppose that two triangles on either side of a cut
+// still share a vertex. Then the cut passes within this distance of one of their middles, and that
+// triangle parts. A tetrahedron counts as regular, because no path of a tip divides a body.
 static double half_width_of(const cau_tissue *tissue, int primitive, int32_t index)
 {
 	if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
@@ -92,11 +92,11 @@ typedef struct exposing {
 	const cau_tool_def *tool;
 	const cau_pose *pose;
 	double jaw, duration_s;
-	cau_vec3 center; // of a ball round the hot part
+	cau_vec3 center; // centre of a ball around the hot part
 	double radius, thinnest_m;
 } exposing;
 
-// How much the hot part is widened for elements of this half width, m.
+// Returns the widening of the hot part, m, for elements of this half width.
 static double widening(const exposing *work, double half_width_m)
 {
 	return fmax(half_width_m - work->thinnest_m, 0);
@@ -116,7 +116,7 @@ static void expose_element(const exposing *work, int primitive, int32_t index)
 		cau_tool_distance_at(work->tool, work->pose, work->jaw, CAU_PART_HOT, middle, &outward);
 	if (distance > widening(work, half_width_of(tissue, primitive, index)))
 		return;
-	// In what the hot part is widened by it is as warm as at its surface.
+	// Within its widening, the hot part is as warm as at its surface.
 	double u = cau_heat_grid_at(work->grid, cau_add_scaled(middle, -fmax(distance, 0), outward));
 	if (u <= CAU_LIVING_C)
 		return;
@@ -129,8 +129,9 @@ static void expose_element(const exposing *work, int primitive, int32_t index)
 	}
 }
 
-// Whether the edge is the first of the element: that of its two least vertices. Every block of the
-// broad phase that has the least vertex has this edge, and its box holds the whole element.
+// True if the edge is the first of the element: the edge between its two lowest vertex indices.
+// Every block of the broad phase that owns the lowest vertex owns this edge, and its box contains
+// the whole element.
 static bool is_first_edge(const int32_t *ends, const int32_t *vertex, int count)
 {
 	for (int i = 0; i < count; i++)
@@ -183,7 +184,7 @@ static double ignition_of(const cau_dissection *dissection, int primitive, int32
 	                               heat->ignition_bundle_m > 0 ? heat->ignition_bundle_m : field_m);
 }
 
-// An edge has parted in a layer once none of the layer's elements at it is left.
+// Parts an edge in a layer once no live element of the layer is left at the edge.
 static void lose_edge_between(cau_dissection *dissection, int32_t a, int32_t b, int32_t layer)
 {
 	const cau_tissue *tissue = dissection->tissue;

@@ -36,7 +36,8 @@ static void morton_order(const cau_tissue *tissue, keyed *order)
 	qsort(order, (size_t)tissue->vertex_count, sizeof *order, compare);
 }
 
-// Edges go to the block of their first vertex; their second vertices are its halo.
+// Each edge belongs to the block of its first vertex. The second vertices of a block's edges are
+// its halo.
 static void own_edges(cau_near *near, const cau_tissue *tissue, const int32_t *block_of)
 {
 	const cau_edge_table *edges = &tissue->edges;
@@ -61,8 +62,8 @@ static int32_t least_vertex(const cau_face_table *faces, int32_t face)
 	return least < v[2] ? least : v[2];
 }
 
-// Faces go to the block of their least vertex, which has both edges there, and so the others in its
-// halo.
+// Each face belongs to the block of its vertex with the least index. That block owns two edges of
+// the face, so the other two vertices are in its halo.
 static void own_faces(cau_near *near, const cau_face_table *faces, const int32_t *block_of)
 {
 	for (int32_t f = 0; f < faces->face_count; f++)
@@ -70,7 +71,7 @@ static void own_faces(cau_near *near, const cau_face_table *faces, const int32_t
 	for (int32_t b = 0; b < near->block_count; b++)
 		near->face_first[b + 1] += near->face_first[b];
 	for (int32_t f = faces->face_count;
-	     f-- > 0;) { // from the blocks' ends, which come back to their starts
+	     f-- > 0;) { // from the end of each block's range back to its start
 		int32_t at = --near->face_first[block_of[least_vertex(faces, f)] + 1];
 		CAU_ASSERT_INDEX(at, faces->face_count);
 		near->face[at] = f;
@@ -86,7 +87,7 @@ static int compare_index(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-// Drops repeated halo vertices, block by block.
+// Removes repeated halo vertices in each block.
 static void thin_halo(cau_near *near)
 {
 	int32_t to = 0;
@@ -141,7 +142,8 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 	return status;
 }
 
-// In double until it is whole: rounding keeps the order, and costs more than the comparisons.
+// In double until the box is complete: rounding to float keeps the order, and costs more than the
+// comparisons.
 typedef struct bounds {
 	double least[3], most[3];
 } bounds;
@@ -183,7 +185,7 @@ static bounds bounds_of(const cau_box *box)
 	return b;
 }
 
-// How many vertices the block has of its own.
+// Returns the number of the block's own vertices.
 static int32_t own_count(const cau_near *near, int32_t block)
 {
 	int32_t left = near->vertex_count - block * CAU_NEAR_BLOCK;
@@ -219,9 +221,9 @@ bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 	double squared = 0;
 	for (int i = 0; i < 3; i++) {
 		double below = (double)box->least[i] - c[i], above = c[i] - (double)box->most[i];
-		double outside = below > above ? below : above; // fmax would be a library's call
+		double outside = below > above ? below : above; // fmax would be a library call
 		squared += outside > 0 ? outside * outside : 0;
 	}
-	double reach = radius_m + 1e-6; // boxes are in float
+	double reach = radius_m + 1e-6; // for rounding: boxes are in float
 	return squared <= reach * reach;
 }

@@ -7,9 +7,9 @@
 #include "cautery/assert.h"
 
 static const double ramp_s = 0.2;
-static const double denatured_share = 0.5; // an element shrinks whole, once half of it would
+static const double denatured_share = 0.5; // coagulated share from which the whole element shrinks
 
-// All elements, or an eighth of them where that is plenty.
+// Returns the capacity: all elements, or an eighth of them if that is at least CAU_SHRINKING_LEAST.
 static int32_t most_active(const cau_tissue *tissue)
 {
 	int32_t all = tissue->triangle_count + tissue->tetrahedron_count;
@@ -39,8 +39,8 @@ static cau_vec3 at(const double *position, int32_t vertex)
 	return cau_vec3_of(position + 3 * (size_t)vertex);
 }
 
-// N_c at the element's contact point, and the direction from contact point to centroid as a
-// stand-in.
+// N_c at the element's contact point. `away` is the direction from the contact point to the
+// centroid, used where N_c is perpendicular to the sheet.
 typedef struct contact_frame {
 	cau_vec3 normal, away;
 } contact_frame;
@@ -59,7 +59,7 @@ static contact_frame contact_of(cau_vec3 centroid, const cau_tool_def *tool, con
 
 // ---- triangles
 
-// Columns f_1, f_2 of F.
+// Computes the columns f_1, f_2 of F.
 static void triangle_gradient(const cau_tissue *tissue, const double *position, int32_t triangle,
                               cau_vec3 f[2])
 {
@@ -71,7 +71,7 @@ static void triangle_gradient(const cau_tissue *tissue, const double *position, 
 	f[1] = cau_add_scaled(cau_scale(m[1], d1), m[3], d2);
 }
 
-// diag(S) in axes (c, s), (-s, c), between two T^(1/2): 2x2.
+// Returns root A root for 2x2 matrices, where A has diag(S) in the axes (c, s), (-s, c).
 static void sandwich2(const double root[3], double c, double s, const double shrink[2],
                       double out[3])
 {
@@ -85,7 +85,8 @@ static void sandwich2(const double root[3], double c, double s, const double shr
 	out[2] = p00 * root[2] + p01 * root[1];
 }
 
-// F^T N_c of a triangle, as N_c where that stands on the sheet.
+// Returns F^T N_c of a triangle. If N_c is perpendicular to the sheet, uses the direction away from
+// the contact point instead.
 static cau_vec3 triangle_axis(const cau_tissue *tissue, const double *position, int32_t triangle,
                               const cau_tool_def *tool, const cau_pose *pose, double jaw)
 {
@@ -96,7 +97,7 @@ static cau_vec3 triangle_axis(const cau_tissue *tissue, const double *position, 
 	triangle_gradient(tissue, position, triangle, f);
 	double x = cau_dot(f[0], frame.normal), y = cau_dot(f[1], frame.normal);
 	double scale = cau_length(f[0]) + cau_length(f[1]);
-	if (!(hypot(x, y) > 1e-3 * scale)) { // the normal stands on the sheet
+	if (!(hypot(x, y) > 1e-3 * scale)) { // N_c is perpendicular to the sheet
 		x = cau_dot(f[0], frame.away);
 		y = cau_dot(f[1], frame.away);
 	}
@@ -130,7 +131,7 @@ static cau_vec3 tetrahedron_transpose_times(const cau_tissue *tissue, const doub
 	return cau_vec3_of(out);
 }
 
-// root A root for symmetric 3x3 as six numbers.
+// Returns root A root for symmetric 3x3 matrices as six numbers.
 static void sandwich3(const double root[6], const double a[6], double out[6])
 {
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -143,7 +144,7 @@ static void sandwich3(const double root[6], const double a[6], double out[6])
 	}
 }
 
-// F^T N_c and F^T N_a of a tetrahedron, N_a = N_f x N_c.
+// Returns F^T N_c and F^T N_a of a tetrahedron, with N_a = N_f x N_c.
 static void tetrahedron_axes(const cau_tissue *tissue, const double *position, int32_t tetrahedron,
                              cau_vec3 face_normal, const cau_tool_def *tool, const cau_pose *pose,
                              double jaw, cau_vec3 axis[2])
@@ -159,7 +160,7 @@ static void tetrahedron_axes(const cau_tissue *tissue, const double *position, i
 	                                      cau_cross(face_normal, frame.normal));
 }
 
-// The axes are made orthogonal.
+// Computes a tetrahedron's target. The axes are made orthogonal first.
 static void tetrahedron_target(const cau_tissue *tissue, int32_t tetrahedron,
                                const cau_vec3 axis[2], const double from[6], double to[6])
 {
@@ -201,14 +202,15 @@ static bool may_shrink(const cau_shrink *shrink, const cau_dissection *dissectio
 	return s[0] != 1 || s[1] != 1 || s[2] != 1;
 }
 
-// `axis`: what S is along, in the element at rest; of a triangle the first counts.
+// Starts to shrink an element. `axis` has the axes of S in the element at rest; for a triangle only
+// the first is used.
 static void start_shrinking(cau_shrink *shrink, const cau_tissue *tissue, int kind, int32_t element,
                             const cau_vec3 axis[2], cau_elements *elements,
                             const cau_element_slots *slots)
 {
 	cau_shrinking shrinking = {.kind = kind, .element = element};
 	cau_elements_target(elements, slots, kind, element, shrinking.from);
-	if (!(shrinking.from[0] > 0)) { // it had no target: T = I
+	if (!(shrinking.from[0] > 0)) { // the element had no target: T = I
 		shrinking.from[0] = shrinking.from[1] = 1;
 		shrinking.from[2] = kind == CAU_ELEMENT_TETRAHEDRON;
 	}
@@ -225,7 +227,7 @@ static void start_shrinking(cau_shrink *shrink, const cau_tissue *tissue, int ki
 
 // ---- denatured tissue
 
-// Of a field with these values at the element's corners, in the element at rest.
+// Returns the gradient, in the element at rest, of a field with these values at its corners.
 static cau_vec3 gradient(const cau_tissue *tissue, int kind, int32_t element, const double value[4])
 {
 	if (kind == CAU_ELEMENT_TRIANGLE) {

@@ -1,40 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tearing: what is stretched beyond what its layer bears parts, with no heat.
+// Tearing: tissue that is stretched beyond what its layer can bear parts without heat.
 //
-// A strength would tie a tear to the mesh: at the tip of a cut the stretch grows without bound as
-// elements shrink, so the finer mesh would tear first, and at no work at all. What a tear takes is
-// energy by its area, G_c. So an element is one band of a crack [Bazant and Oh 1983, Crack band
-// theory for fracture of concrete]: it goes when what it stores over its width, energy density
-// times size, reaches G_c. The density beside a tip falls with the distance as 1/r, and what
-// elements of any size h feel there, times h, is one share of the energy that the tear would set
-// free (`share_of`). (Away from any tip or edge of what is held, the stretch is even
-// and there is no crack yet: there a finer mesh bears more, by the root of h.)
+// A strength limit would make tears depend on the mesh. At the tip of a cut the stretch grows
+// without bound as elements shrink. So a finer mesh would tear first, and with no work at all. A
+// tear needs energy for its area, G_c. So an element is one band of a crack [Bazant and Oh 1983,
+// Crack band theory for fracture of concrete]. It tears when its energy density times its size
+// reaches G_c. The energy density near a tip falls with the distance as 1/r. So for elements of any
+// size h, density times h is the same share of the energy that the tear would release (`share_of`).
+// (Away from any tip or held edge, the stretch is even and there is no crack yet. There a finer
+// mesh bears more, in proportion to 1 / sqrt(h).)
 //
-// What counts is stretch beyond the rest shape, not the energy of the law. A fascia whose target is
-// 0.1 stores much at rest and is taut for good; it does not tear by that. So with the principal
+// The stretch beyond the rest shape counts, not the energy of the law. A fascia whose target is 0.1
+// stores much energy at rest and is always taut; this does not tear it. So with the principal
 // stretches s of F
 //     psi = E/2 sum (s - 1)+^2 + k/2 sum (s - s_free)+^2,
-// E Young's modulus of fat and links, k the stiffness of the strain limit of sheets and fat, s_free
-// 1 or, of a range, what it lets go along that axis. Pushing tears nothing. Along one axis this is
-// the energy of the laws at small strain; it leaves out what Poisson's ratio adds where two axes
-// are stretched, and counts what has flowed as stored, which a band spends all the same.
+// where E is Young's modulus of fat and links, and k is the stiffness of the strain limit of sheets
+// and fat. s_free is 1, or for a range, the largest stretch in the range along that axis.
+// Compression does not count. Along one axis psi is the energy of the laws at small strain. It
+// leaves out what Poisson's ratio adds when two axes are stretched. It counts plastic strain as
+// stored energy, although a band has spent that energy.
 //
-// Where a layer's `coagulated_tear` is below 1, heat weakens it. G_c falls in proportion to the
-// exposure of the element's edges, and is that share of its fresh value from an exposure of 0.5 on.
+// If a layer's `coagulated_tear` is below 1, heat weakens the layer. G_c falls in proportion to the
+// exposure of the element's edges. From an exposure of 0.5 on, it is that share of its fresh value.
 //
-// An element goes when it was there in two converged ticks, one after the other, or in six of any
-// kind: an iterate on the way may be far beyond the solution, but not for a tenth of a second, and
-// a flap that hangs on little may never converge. Of those that touch each other only the most
-// loaded goes, as what it leaves lets its neighbours go slack: a tear is one element wide.
+// An element tears after two consecutive converged ticks in which it was overloaded, or after six
+// consecutive ticks of any kind. An iterate may be far from the solution, but not for a tenth of a
+// second. And a flap that hangs by little may never converge. Of overloaded elements that share
+// vertices, only the most loaded tears, because its loss unloads its neighbours. So a tear is one
+// element wide.
 #include <string.h>
 
 #include "base/symmetric.h"
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 
-enum { PART = 2048 }; // elements that are looked at in one go
+enum { PART = 2048 }; // elements that one part of the loop examines
 
-// What a tick counts in which an element is over, and how much it takes.
+// Count of a tick in which an element is overloaded, and the count at which it tears.
 enum { COUNTS_CONVERGED = 3, COUNTS_AT_ALL = 1, TAKES = 2 * COUNTS_CONVERGED };
 
 int32_t cau_tears_capacity(const cau_tissue *tissue)
@@ -55,8 +57,9 @@ static int primitive_at(const cau_tissue *tissue, int32_t place, int32_t *index)
 	return CAU_PRIMITIVE_LINK;
 }
 
-// Where its band is crossed, m: of a triangle the leg of a right one of its area, of a tetrahedron
-// the edge of the cube that six of them fill, of a fibre all of it, which recoils whole.
+// Width of an element's crack band, m. Triangle: leg of a right triangle of its area. Tetrahedron:
+// edge of the cube that six of them fill. Link: its whole length, because a torn fibre recoils
+// whole.
 static double size_of(const cau_tissue *tissue, int primitive, int32_t index)
 {
 	if (primitive == CAU_PRIMITIVE_TRIANGLE)
@@ -70,7 +73,7 @@ cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_aren
                             cau_error *error)
 {
 	size_t total = (size_t)cau_tears_capacity(tissue);
-	size_t parts = total / PART + CAU_MAX_LAYERS; // each layer's last may not be full
+	size_t parts = total / PART + CAU_MAX_LAYERS; // the last part of each layer may not be full
 	tears->over = cau_arena_array(arena, total, sizeof *tears->over);
 	tears->before = cau_arena_array(arena, total, sizeof *tears->before);
 	tears->now = cau_arena_array(arena, parts * PART, sizeof *tears->now);
@@ -90,19 +93,19 @@ cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_aren
 	return CAU_OK;
 }
 
-// ---- how much an element is loaded
+// ---- load of an element
 
-// What an element's law and its layer make of stretch.
+// The properties of an element's law and layer that determine its load.
 typedef struct bearing {
 	double young_pa, limit_pa;
 	double free[3];          // largest stretches below the strain limit, along the material axes
-	double tear_j_m2;        // its share of G_c
-	double coagulated_share; // of tear_j_m2, where it is coagulated
+	double tear_j_m2;        // the element's share of G_c
+	double coagulated_share; // share of tear_j_m2 that remains if the element is coagulated
 } bearing;
 
-// The share of the energy set free that one element at the tip of a cut stores over its size:
-// measured on strips of known energy, of triangles and of tetrahedra, within 4 % on three meshes
-// (tests/core/session/tear_test.c). A fibre has no tip: it stores all that it sets free.
+// The share of the released energy that one element at the tip of a cut stores over its size.
+// Measured on strips of known energy, of triangles and of tetrahedra, within 4 % on three meshes
+// (tests/core/session/tear_test.c). A fibre has no tip: it stores all the energy that it releases.
 static const double share_of[CAU_PRIMITIVE_KINDS] = {0.4, 0.4, 1};
 
 static void free_stretches(double out[3], int limit, const double *strain_max, int count)
@@ -135,8 +138,8 @@ static bearing bearing_of(const cau_tissue *tissue, int primitive, int32_t index
 	return b;
 }
 
-// F^T F in the material axes, 00, 11, 22, 01, 02, 12, and what a point of the axes has not, 0; of a
-// link its squared stretch alone.
+// Computes F^T F in the material axes: 00, 11, 22, 01, 02, 12. Entries of axes that the element
+// does not have are 0. A link has only its squared stretch.
 static void metric_of(const cau_tissue *tissue, int primitive, int32_t index,
                       const double *position, double metric[6])
 {
@@ -166,7 +169,7 @@ static double square_above(double stretch, double free)
 	return stretch > free ? (stretch - free) * (stretch - free) : 0;
 }
 
-// psi, J/m^3.
+// Returns psi, J/m^3.
 static double stored_energy(const bearing *b, const double metric[6])
 {
 	double value[3], axis[3][3], twice = 0;
@@ -181,14 +184,14 @@ static double stored_energy(const bearing *b, const double metric[6])
 	return twice / 2;
 }
 
-// Where an element of size_m would be loaded with 1.
+// Returns the stored energy density, J/m^3, at which an element of size_m has the load 1.
 static double borne_j_m3(const bearing *b, double size_m)
 {
 	return b->tear_j_m2 / size_m;
 }
 
-// Sum of the squared stretches below which no element of size up to widest_m can be loaded with 1:
-// for a given sum psi is most where all of it is along one axis.
+// Returns the sum of squared stretches below which no element of a size up to widest_m can have a
+// load of 1. For a given sum, psi is largest if all of it is along one axis.
 static double least_squared(const bearing *b, double widest_m)
 {
 	double borne = b->coagulated_share * borne_j_m3(b, widest_m);
@@ -211,7 +214,7 @@ double cau_dissection_coagulated(const cau_dissection *dissection, int primitive
 	return sum / edges;
 }
 
-// Share of its fresh G_c that the element bears.
+// Returns the share of its fresh G_c that the element still has.
 static double strength_of(const cau_dissection *dissection, const bearing *b, int primitive,
                           int32_t index)
 {
@@ -229,9 +232,9 @@ static double load_of(const cau_dissection *dissection, const bearing *b, int pr
 	                                   strength_of(dissection, b, primitive, index));
 }
 
-// ---- which are over what they bear
+// ---- find overloaded elements
 
-// Elements of one layer that tears, and the first of the parts that they are looked at in.
+// Elements of one layer that can tear, and the first part of the loop that examines them.
 typedef struct tearing {
 	int primitive;
 	int32_t first, count, first_part;
@@ -244,7 +247,7 @@ typedef struct looking {
 	tearing range[CAU_MAX_LAYERS];
 } looking;
 
-// The sum of the squared stretches, quickly: most elements are far from being over.
+// Returns the sum of the squared stretches, by a fast formula: most elements are far from overload.
 static double squared_stretches(const cau_tissue *tissue, int primitive, int32_t index,
                                 const double *position)
 {
@@ -321,7 +324,7 @@ static void add_range(looking *work, int primitive, int32_t first, int32_t count
 	work->part_count += (count + PART - 1) / PART;
 }
 
-// By place: triangles of all layers, then tetrahedra, then links.
+// Lists the ranges in the order of indices: triangles of all layers, then tetrahedra, then links.
 static void list_ranges(looking *work)
 {
 	const cau_tissue *tissue = work->dissection->tissue;
@@ -339,7 +342,7 @@ static void list_ranges(looking *work)
 		}
 }
 
-// Fills `now` and `load`, by place, and returns how many there are.
+// Fills `now` and `load` in the order of indices. Returns the number of overloaded elements.
 static int32_t look(cau_dissection *dissection, const double *position, cau_pool *pool)
 {
 	looking work = {.dissection = dissection, .position = position};
@@ -356,10 +359,10 @@ static int32_t look(cau_dissection *dissection, const double *position, cau_pool
 	return count;
 }
 
-// ---- which go
+// ---- choose the elements that tear
 
-// Keeps the `count` over now as `over`, each with what it has counted up to, and leaves in `now`
-// those that have counted enough.
+// Stores the `count` overloaded elements as `over`, with their counts so far. Keeps in `now` only
+// those whose count is high enough. Returns their number.
 static int32_t count_over(cau_tears *tears, int32_t count, bool converged)
 {
 	int32_t ready = 0, before = tears->over_count, at = 0;
@@ -382,7 +385,8 @@ static int32_t count_over(cau_tears *tears, int32_t count, bool converged)
 	return ready;
 }
 
-// Of what touches a vertex, the most loaded: k + 1 of `now`, the first of equals.
+// Stores for each vertex the most loaded element there, as 1 + its index in `now`; of equal loads
+// the first.
 static void mark_most(cau_dissection *dissection, int32_t count)
 {
 	cau_tears *tears = &dissection->tears;
@@ -420,7 +424,7 @@ static void forget_most(cau_dissection *dissection, int32_t count)
 	}
 }
 
-// The edge along which it is stretched most, against its length at rest.
+// Returns the edge with the largest stretch: its length over its length at rest.
 static int32_t longest_edge(const cau_dissection *dissection, int primitive, int32_t index,
                             const double *position)
 {
@@ -448,7 +452,7 @@ static void tear(cau_dissection *dissection, int32_t place, const double *positi
 	int32_t index;
 	int primitive = primitive_at(tissue, place, &index);
 	if (!cau_dissection_lives(dissection, primitive, index))
-		return; // with an edge of the one before it
+		return; // removed with an edge that has just torn
 	int32_t layer = cau_tissue_layer_of(tissue, primitive, index);
 	if (dissection->doses.dose && primitive != CAU_PRIMITIVE_LINK)
 		cau_doses_lose(dissection, primitive, index);

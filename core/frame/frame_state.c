@@ -78,7 +78,7 @@ static void expose_edge(cau_frame_state *frame, const cau_dissection *dissection
 	}
 }
 
-// Counts an edge that has parted, in whichever layer, once at both its ends.
+// Counts an edge that has parted in any layer, once, at both its ends.
 static void char_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
 {
 	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
@@ -102,7 +102,7 @@ void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, 
 		if (from[3 * v] != to[3 * v] || from[3 * v + 1] != to[3 * v + 1] ||
 		    from[3 * v + 2] != to[3 * v + 2])
 			frame->moved[frame->moved_count++] = v;
-	for (int32_t k = 0; k < dissection->touched_count; k++) { // others do not part in this tick
+	for (int32_t k = 0; k < dissection->touched_count; k++) { // no other edge parts in this tick
 		expose_edge(frame, dissection, dissection->touched[k]);
 		char_edge(frame, dissection, dissection->touched[k]);
 	}

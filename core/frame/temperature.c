@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The temperature channel: what the tools' heat grids say at the vertices, read as exposure reads
-// them. The method keeps no heat in the tissue itself: where no grid reaches it is at ambient.
+// The temperature channel: the temperatures of the tools' heat grids at the vertices, interpolated
+// as for exposure. The method stores no heat in the tissue itself: tissue outside all grids is at
+// ambient.
 #include <math.h>
 
 #include "cautery/assert.h"
 #include "frame/frame_state.h"
 
-static const double BOX_MARGIN_M = 1e-6; // boxes of blocks are in float
+static const double BOX_MARGIN_M = 1e-6; // the blocks' boxes are in single precision
 
 void cau_frame_cool(cau_frame_state *frame, const cau_tissue *tissue, double ambient_c)
 {
@@ -24,7 +25,7 @@ void cau_frame_cool_heated(cau_frame_state *frame)
 	frame->heated_count = 0;
 }
 
-// Whether a box of vertices reaches into the one that the grid has heat in.
+// Whether a box of vertices meets the box of a heat grid.
 static bool boxes_meet(const double least[3], const double most[3], const cau_box *box)
 {
 	const double margin = BOX_MARGIN_M;

@@ -3,11 +3,12 @@
 
 #include "cautery/assert.h"
 
-// Nodes around node i, `row` and `plane` nodes on from one to the next along y and z.
+// Sum of the six nodes around node i. The distance in memory to the next node is `row` along y and
+// `plane` along z.
 #define SIX(u, i, row, plane)                                                                      \
 	(u[i - 1] + u[i + 1] + u[i - row] + u[i + row] + u[i - plane] + u[i + plane])
 
-// One row of inner nodes along x; `u` and `next` point at its first inner node.
+// Computes one row of inner nodes along x. `u` and `next` point at the first inner node of the row.
 static void diffuse_row(const float *restrict u, float rate, float *restrict next, int64_t count,
                         int64_t row, int64_t plane)
 {
@@ -52,7 +53,8 @@ void cau_diffuse_around(const float *temperature, const float *rate, const float
 		}
 }
 
-// Lanes instead of one running value, so that the loop is vectorised without reordering rules.
+// Uses 16 lanes instead of one running value, so that the compiler can vectorise the loop without
+// reordering operations.
 void cau_extremes(const float *values, int64_t count, float *least, float *greatest)
 {
 	CAU_ASSERT(count >= 1, "the extremes of %lld values", (long long)count);

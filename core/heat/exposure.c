@@ -3,8 +3,9 @@
 
 #include "cautery/assert.h"
 
-// Of the parts that half a cell asks for: with four, a ball at 50 mm/s in cells of a sixth of its
-// radius is within 2 %, and more bring it little (README.md).
+// PARTS_MAX: most parts of a swept motion. CELL_PARTS_MAX: most parts of the motion by half cells.
+// With four, the error of a ball at 50 mm/s in cells of a sixth of its radius is within 2 %, and
+// more parts improve it little (README.md).
 enum { PARTS_MAX = 32, CELL_PARTS_MAX = 4 };
 
 double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
@@ -24,8 +25,8 @@ double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, co
 	return absorption_per_s * mean * duration_s;
 }
 
-// Greatest rate of turning along cau_pose_between, times its duration (rad): blending quaternions
-// whose rotations differ by theta turns fastest half way, at 4 tan(theta / 4).
+// Returns the greatest rate of rotation along cau_pose_between, times the duration (rad). A blend
+// of quaternions whose rotations differ by theta rotates fastest half way, at 4 tan(theta / 4).
 static double turn_between(const cau_pose *from, const cau_pose *to)
 {
 	double dot = 0;
@@ -34,13 +35,14 @@ static double turn_between(const cau_pose *from, const cau_pose *to)
 	return 4 * tan(acos(fmin(fabs(dot), 1)) / 2);
 }
 
-// No point of the hot part goes further than this from one pose to the other, m.
+// Returns a bound of the path of any point of the hot part from one pose to the other, m.
 static double longest_way_m(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
 {
 	cau_vec3 center;
 	double radius;
 	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
-	double reach = cau_length(center) + radius; // of the hot part about the tip
+	// Radius of a ball around the tip that contains the hot part.
+	double reach = cau_length(center) + radius;
 	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
 	CAU_ASSERT(reach >= 0, "a hot part that reaches %g m", reach);
 	return way + reach * turn_between(from, to);

@@ -1,32 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exposure of edges to heat (eq. 20 as an integral) and ignition.
+// Exposure of edges to heat (eq. 20 as an integral), and ignition temperatures.
 #pragma once
 
 #include "heat/heat_grid.h"
 
 enum { CAU_LIVING_C = 45 }; // below this mean temperature tissue does not char
 
-// Exposure (degC) that an edge a-b gains in duration_s: xi (u_a + u_b)/2 dt while the edge meets
-// the hot part's shape at `pose` or lies inside it and that mean exceeds CAU_LIVING_C, else 0.
+// Returns the exposure (degC) that an edge a-b gains in duration_s: xi (u_a + u_b)/2 dt. It is 0
+// unless the edge meets the hot part's shape at `pose`, or is inside, and the mean temperature
+// exceeds CAU_LIVING_C.
 double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                          double jaw, cau_vec3 a, cau_vec3 b, double absorption_per_s,
                          double duration_s);
 
-// Number of equal parts of a tick's motion (at least 1, at most 32) such that no point of the hot
-// part moves by more than half its thinnest radius in one part: the swept shape is the union of the
+// Returns the number of equal parts of a tick's motion, 1 to 32. In each part no point of the hot
+// part moves by more than half of its thinnest radius. The swept shape is then the union of the
 // parts.
 int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
-// The same, and so many more, up to four, that no point of the hot part moves by more than half a
-// cell of the tool's grid in one: the field is that of a tool which moves, not of one that leaps.
+// Returns at least cau_exposure_parts, and as many as the grid needs, up to four. With as many
+// parts as needed, no point of the hot part moves by more than half a cell of the tool's grid in
+// one part. The field is then that of a tool that moves, not of one that jumps.
 int cau_heating_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
-// Ignition temperature of edge `edge` in layer `layer`: mean + spread * g, g standard normal (cut
-// off at 3), drawn from (seed, layer, edge) alone; never below a tenth of the mean.
+// Returns the ignition temperature of edge `edge` in layer `layer`: mean + spread * g. g is
+// standard normal, limited to -3 to 3, and depends only on (seed, layer, edge). The result is never
+// below a tenth of the mean.
 double cau_ignition_of(double mean_c, double spread_c, uint64_t seed, int32_t layer, int32_t edge);
 
-// The same where fibres part in bundles: g is a smooth normal field over rest space, drawn from
-// (seed, layer, place) alone. It changes over bundle_m (> 0) across `fibre` (unit) and over eight
-// times that along it. `place`: middle of the edge at rest, m.
+// Returns the ignition temperature of an edge in tissue whose fibres part in bundles: mean + spread
+// * g. g is a smooth normal field over rest space, limited to -3 to 3, and depends only on (seed,
+// layer, place). It changes over bundle_m (> 0) across `fibre` (unit), and over eight times that
+// length along `fibre`. `place` is the middle of the edge at rest, m. The result is never below a
+// tenth of the mean.
 double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, int32_t layer,
                                cau_vec3 place, cau_vec3 fibre, double bundle_m);

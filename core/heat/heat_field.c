@@ -20,9 +20,9 @@ void cau_heat_field_swap(cau_heat_field *field)
 	field->next = old;
 }
 
-// ---- between two fields
+// ---- between two nested fields
 
-// Twice the middle is 2 origin + N - 1 in the cells of the finer field.
+// In cells of the finer field, twice its middle is 2 finer + N - 1.
 void cau_heat_field_origin_around(const int64_t finer[3], int32_t nodes, int64_t origin[3])
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -31,8 +31,9 @@ void cau_heat_field_origin_around(const int64_t finer[3], int32_t nodes, int64_t
 	}
 }
 
-// The field around at a node of the finer one, which is one of its nodes or half way between some.
-// Sums in pairs, so that eight equal values give just that.
+// Returns the value of the coarser field at a node of the finer field. This node is a node of the
+// coarser field, or half way between some of its nodes. Values are added in pairs, so that eight
+// equal values give exactly that value.
 static float sample(const cau_heat_field *coarser, int64_t n, int64_t x, int64_t y, int64_t z)
 {
 	const int64_t node[3] = {x, y, z}, stride[3] = {1, n, n * n};
@@ -54,7 +55,8 @@ static int64_t clamp(int64_t node, int64_t least, int64_t most)
 	return node < least ? least : node > most ? most : node;
 }
 
-// A node that comes in: from the field around, or the nearest node that there was.
+// Returns the value of a node that is new after a move: from the coarser field, or else from the
+// nearest former node.
 static float incoming(const cau_heat_field *field, int64_t n, const int64_t origin[3],
                       const int64_t node[3], const cau_heat_field *coarser)
 {
@@ -73,7 +75,8 @@ static void move_row(cau_heat_field *field, int64_t n, const int64_t origin[3], 
 	int64_t shift = origin[0] - field->origin[0];
 	int64_t from_y = y + origin[1] - field->origin[1], from_z = z + origin[2] - field->origin[2];
 	bool had = from_y >= 0 && from_y < n && from_z >= 0 && from_z < n;
-	int64_t first = had ? clamp(-shift, 0, n) : n; // x of the nodes that were there already
+	// First x of nodes that were in the field before.
+	int64_t first = had ? clamp(-shift, 0, n) : n;
 	int64_t last = had ? clamp(n - shift, first, n) : n;
 	float *to = field->next + (z * n + y) * n;
 	if (last > first)
@@ -104,7 +107,8 @@ static bool is_outer(int64_t n, int64_t y, int64_t z)
 	return y == 0 || z == 0 || y == n - 1 || z == n - 1;
 }
 
-// A whole row along x, of `to`: `sample` with the sums over y and z made once for two nodes.
+// Interpolates a whole row along x into `to`. Results equal those of `sample`, but each sum over y
+// and z is computed once for two nodes.
 static void sample_row(const cau_heat_field *coarser, int64_t n, const int64_t first[3], float *to)
 {
 	int64_t odd_y = first[1] & 1, odd_z = first[2] & 1, odd_x = first[0] & 1;
@@ -115,7 +119,7 @@ static void sample_row(const cau_heat_field *coarser, int64_t n, const int64_t f
 	const float *u = coarser->temperature + (z * n + y) * n + x, *v = u + along_z;
 	float here = (u[0] + u[along_y]) + (v[0] + v[along_y]);
 	for (int64_t i = 0; i < n; i++) {
-		if ((odd_x + i) & 1) { // half way to the next
+		if ((odd_x + i) & 1) { // half way to the next node
 			u++, v++;
 			float there = (u[0] + u[along_y]) + (v[0] + v[along_y]);
 			to[i] = 0.125F * (here + there);
@@ -148,7 +152,7 @@ void cau_heat_field_take_boundary(cau_heat_field *field, int32_t nodes,
 
 void cau_heat_field_take_inner(cau_heat_field *coarser, int32_t nodes, const cau_heat_field *finer)
 {
-	int64_t n = nodes, least[3], most[3]; // inner nodes of the finer field with even places
+	int64_t n = nodes, least[3], most[3]; // inner nodes of the finer field with even indices
 	for (int axis = 0; axis < 3; axis++) {
 		int64_t odd = finer->origin[axis] & 1;
 		least[axis] = 2 - odd;
@@ -193,7 +197,7 @@ void cau_heat_field_open_boundary(cau_heat_field *field, int32_t nodes, float am
 			int64_t in_y = clamp(y, 1, n - 2), in_z = clamp(z, 1, n - 2);
 			float *u = field->temperature + (z * n + y) * n;
 			const float *within = field->temperature + (in_z * n + in_y) * n;
-			const float *side = fall + y * n + z; // as a face across x has it
+			const float *side = fall + y * n + z; // value of `fall` for a face across x
 			if (in_y != y || in_z != z) {
 				const float *row = fall + (in_z != z ? y : z) * n;
 				for (int64_t x = 1; x < n - 1; x++)

@@ -6,11 +6,11 @@
 #include "cautery/assert.h"
 #include "heat/diffuse.h"
 
-static const double REST_C = 0.01; // a field nowhere further from ambient is at rest
+static const double REST_C = 0.01; // a field is at rest if no node is farther from ambient
 
-// What is no further from ambient parts nothing (at 41 degC tissue lives), and it never will again
-// when nothing is held, as it only falls. The outer fields would take minutes for the rest of it;
-// alone, the innermost one takes seconds.
+// Within this difference from ambient, heat parts no tissue (tissue lives at 41 degC). If no
+// surface is held, the field only falls, so this heat parts no tissue later either. The outer
+// fields would take minutes to reach ambient. The innermost field alone takes seconds.
 static const double FAINT_C = 4;
 
 static int64_t node_count(const cau_heat_grid *grid)
@@ -42,17 +42,18 @@ int64_t cau_heat_grid_substeps(double step_m, double diffusivity_m2_s, double du
 	CAU_ASSERT(step_m > 0 && diffusivity_m2_s >= 0, "a grid of %g m with %g m^2/s", step_m,
 	           diffusivity_m2_s);
 	double parts = 6 * diffusivity_m2_s * duration_s / (step_m * step_m);
-	parts = ceil(parts * (1 - 1e-12)); // exactly at the limit is within it, whatever the rounding
+	// a value exactly at the limit is within the limit, despite rounding
+	parts = ceil(parts * (1 - 1e-12));
 	return (int64_t)fmin(fmax(parts, 1), 1e9);
 }
 
-// Whole cells, kept within what an integer holds for any position.
+// Rounds down to whole cells. Limits the result, so that any position fits into an integer.
 static int64_t whole_cells(double cells)
 {
 	return (int64_t)floor(fmin(fmax(cells, -1e15), 1e15));
 }
 
-// The node (0,0,0) for which the grid is centred on the hot part.
+// Computes the origin, node (0,0,0), for which the grid is centred on the hot part.
 static void origin_for(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                        int64_t origin[3])
 {
@@ -89,7 +90,8 @@ cau_status cau_heat_grid_check(const cau_tool_def *tool, double tick_s, cau_erro
 	return CAU_OK;
 }
 
-enum { ARRAYS = 2 * CAU_HEAT_FIELDS + 3 }; // a field and its scratch each, the surface's three
+// Each field with its scratch, and three arrays of the surface.
+enum { ARRAYS = 2 * CAU_HEAT_FIELDS + 3 };
 
 static void lay_out(cau_heat_grid *grid, double step_m, size_t nodes)
 {
@@ -105,7 +107,7 @@ static void lay_out(cau_heat_grid *grid, double step_m, size_t nodes)
 	grid->fall = room + 3 * nodes;
 }
 
-// The outer fields' origins, around that of the innermost one.
+// Sets the outer fields' origins around that of the innermost field.
 static void place_outer(cau_heat_grid *grid)
 {
 	for (int k = 1; k < CAU_HEAT_FIELDS; k++)
@@ -141,7 +143,7 @@ void cau_heat_grid_finish(cau_heat_grid *grid)
 	*grid = (cau_heat_grid){0};
 }
 
-// What the inner fields hold, to where the outer ones have it too.
+// Copies the inner fields to the nodes of the outer fields at the same positions.
 static void take_inner(cau_heat_grid *grid)
 {
 	for (int k = 1; k < CAU_HEAT_FIELDS; k++)
@@ -158,8 +160,9 @@ static bool is_leap(const cau_heat_field *field, int32_t nodes, const int64_t or
 	return false;
 }
 
-// Moves the fields so that they are centred on the hot part, the outermost first: the others find
-// what comes in there. No value is resampled: nodes keep theirs.
+// Moves the fields so that they are centred on the hot part, the outermost first. The inner fields
+// take values of new nodes from the outer fields. No value is resampled: nodes that stay keep their
+// values.
 static void follow(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose)
 {
 	int64_t origin[CAU_HEAT_FIELDS][3] = {0};
@@ -194,8 +197,8 @@ static double rate_of(const cau_heat_grid *grid, int k, double duration_s, int64
 	return rate;
 }
 
-// The outer fields, the outermost first: each has its boundary from the one around it, and is held
-// where there is one within.
+// Advances the outer fields, the outermost first. Each field has its boundary from the next wider
+// field. Where there is a finer field, the values of that field are held.
 static void advance_outer(cau_heat_grid *grid, double duration_s)
 {
 	int32_t n = grid->nodes;

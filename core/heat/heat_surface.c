@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hot part held at its temperature, with its surface where it is instead of at the nearest
+// Holds the hot part at its temperature, with the boundary at its surface instead of at the nearest
 // nodes (a ghost-fluid boundary, after Gibou, Fedkiw, Cheng and Kang 2002).
 //
-// A node outside whose neighbour lies within the hot part has the surface at theta cells from it
-// towards that neighbour, by their signed distances. The neighbour's value is then that which
-// continues the field linearly through the tool's temperature T there: its part of the Laplacian,
-// u_neighbour - u, becomes (T - u) / theta.
+// Take a node outside the hot part with a neighbour inside. The surface is theta cells from the
+// node towards this neighbour; theta follows from the signed distances of both. The neighbour gets
+// the value that continues the field linearly through the tool's temperature T at the surface. So
+// its part of the Laplacian, u_neighbour - u, becomes (T - u) / theta.
 //
-// As an explicit step this would need dt <= theta dl^2 / alpha, and theta may be anything above 0.
-// So the terms towards the surface are taken at the step's end instead. They hold the node's own
-// new value and nothing else that is new, so that nothing is solved:
+// An explicit step of these terms would need dt <= theta dl^2 / alpha, and theta may be any number
+// above 0. So the terms towards the surface are taken at the end of the step. They contain no other
+// new value than that of the node itself, so no system has to be solved:
 //
 //     u' = u + r / (1 + r S) (sum - 6 u + (S - count) (T - u)),   S = sum over `count` of 1 / theta
 //
-// where `sum` counts the neighbours within at T, as they are. New values stay means of old ones
-// and of T for every theta and any r up to 1/6, the steady field is that of the terms above, and a
-// node on the surface is at T. No theta need be clamped, and no step be shorter for the surface.
+// `sum` contains the neighbours inside with their stored value T. For every theta and any r up to
+// 1/6, new values are means of old values and T. The steady field is that of the terms above, and a
+// node on the surface is at T. So no theta needs a limit, and the surface needs no shorter step.
 #include "heat/heat_surface.h"
 
 #include "cautery/assert.h"
 
-static const double NEAR = 1;  // cells: as far as a node's neighbours can lie beyond the surface
-static const double ON = 1e-4; // cells: nearer than this a node lies on the surface
+static const double NEAR = 1;  // cells: how far beyond the surface a node's neighbours can be
+static const double ON = 1e-4; // cells: a node nearer than this is on the surface
 
-// Cells: for nodes that are known to be further than NEAR. In cells that the surface passes through
-// they are no further than a cell is across, 1.73.
+// Cells: distance that is stored for nodes known to be farther than NEAR. In cells that the surface
+// crosses, nodes are no farther than the diagonal of a cell, 1.73.
 static const float BEYOND = 1.4F;
 
-// What find_block needs to place a node in the tool's frame: node (x, y, z) is at first + x axis[0]
-// + ...
+// Gives the position of a node in the tool's frame: node (x, y, z) is at first + x axis[0] + y
+// axis[1] + z axis[2].
 typedef struct search {
 	cau_heat_surface *surface;
 	int32_t nodes;
@@ -36,7 +36,7 @@ typedef struct search {
 	const cau_tool_def *tool;
 	double jaw;
 	cau_vec3 first;
-	cau_vec3 axis[3]; // m in the tool's frame for one cell along the world's x, y, z
+	cau_vec3 axis[3]; // m in the tool's frame, for one cell along the world's x, y, z
 } search;
 
 static double cells_at(const search *s, double x, double y, double z)
@@ -46,7 +46,8 @@ static double cells_at(const search *s, double x, double y, double z)
 	return cau_tool_distance(s->tool, s->jaw, CAU_PART_HOT, place, NULL) / s->step_m;
 }
 
-// The distances of a block's nodes: all `value`, or each its own where that is not a number.
+// Sets the distances of a block's nodes to `value`. If `value` is not a number, the distance of
+// each node is computed.
 static void fill_block(const search *s, const int32_t least[3], int32_t size, float value)
 {
 	CAU_ASSERT(size >= 1, "a block of %d nodes", size);
@@ -67,14 +68,14 @@ static void fill_block(const search *s, const int32_t least[3], int32_t size, fl
 					continue;
 				}
 				double cells = cells_at(s, x, y, z);
-				if (!isnan(cells)) // else it holds nothing
+				if (!isnan(cells)) // if the distance is not a number, the node is not held
 					*distance = fabs(cells) < ON ? 0 : (float)cells;
 			}
 }
 
-// The distances of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz: its
-// value in the middle decides the whole block, unless the surface may be near one of its nodes;
-// then its eighths are asked.
+// Finds the distances of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz,
+// so its value in the middle decides the whole block, unless the surface may be near one of the
+// nodes. In that case the block is divided into eight parts.
 static void find_block(const search *s, const int32_t least[3], int32_t size)
 {
 	CAU_ASSERT(size >= 2 && (size & (size - 1)) == 0, "a block of %d nodes", size);
@@ -130,7 +131,8 @@ void cau_heat_surface_find(cau_heat_surface *surface, const cau_heat_field *fiel
 	surface->held_c = (float)tool->temperature_c;
 }
 
-// `rate` and `pull` of an inner node outside the hot part, less than a cell from it.
+// Computes `rate` and `pull` of an inner node outside the hot part, less than a cell from its
+// surface.
 static void bind(cau_heat_surface *surface, int64_t n, int64_t i, float rate)
 {
 	const int64_t on[6] = {-1, 1, -n, n, -n * n, n * n};
@@ -178,9 +180,9 @@ void cau_heat_surface_hold(cau_heat_surface *surface, cau_heat_field *field, int
 					hold_node(surface, field, n, (const int64_t[3]){x, y, z}, (float)rate);
 }
 
-// The field has a kink at the surface, so the nodes within are read as if it went on through the
-// surface as it falls outside: by their distances, and the mean of (u - T) / distance of the cell's
-// nodes outside.
+// Reads the field near the surface. The field has a kink at the surface. So nodes inside the hot
+// part are read as if the outer field continued through the surface. Their values follow from their
+// distances, and from the mean of (u - T) / distance over the cell's outer nodes.
 double cau_heat_surface_at(const cau_heat_surface *surface, const cau_heat_field *field,
                            int32_t nodes, const cau_heat_cell *cell)
 {
@@ -203,5 +205,5 @@ double cau_heat_surface_at(const cau_heat_surface *surface, const cau_heat_field
 	if (distance <= 0)
 		return held;
 	double beyond = sum + depth * rise / outside;
-	return (beyond - held) * rise > 0 ? beyond : held; // never past the tool's temperature
+	return (beyond - held) * rise > 0 ? beyond : held; // never beyond the tool's temperature
 }

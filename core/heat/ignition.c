@@ -11,13 +11,13 @@ static uint64_t mix(uint64_t value)
 	return value ^ (value >> 31);
 }
 
-// Uniform in (0, 1), from the upper 53 bits.
+// Returns a uniform number in (0, 1), from the upper 53 bits.
 static double unit(uint64_t value)
 {
 	return ((double)(value >> 11) + 0.5) * 0x1p-53;
 }
 
-// Standard normal by Box-Muller, cut off at 3.
+// Returns a standard normal number by Box-Muller, limited to -3 to 3.
 static double normal(uint64_t seed, uint64_t where)
 {
 	uint64_t first = mix(mix(seed) ^ where);
@@ -40,14 +40,15 @@ double cau_ignition_of(double mean_c, double spread_c, uint64_t seed, int32_t la
 }
 
 // ---- bundles
-static const double bundle_length = 8; // over its width
+static const double bundle_length = 8; // length of a bundle over its width
 
 static double smooth(double t)
 {
 	return t * t * (3 - 2 * t);
 }
 
-// A node of the lattice of draws; 21 bits a coordinate, so that far nodes may repeat each other.
+// Returns the draw of one node of the lattice. Each coordinate has 21 bits, so far nodes may have
+// equal draws.
 static double node_draw(uint64_t seed, int32_t layer, const int64_t node[3])
 {
 	uint64_t where = 0;
@@ -61,7 +62,7 @@ double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, in
 {
 	CAU_ASSERT(bundle_m > 0, "bundles of %g m", bundle_m);
 	CAU_ASSERT(fabs(cau_dot(fibre, fibre) - 1) < 1e-9, "a fibre of length %g", cau_length(fibre));
-	// Rest space, squeezed along the fibres, in units of the lattice.
+	// Rest space is compressed along the fibres. Units are those of the lattice.
 	double squeeze = (1 / bundle_length - 1) * cau_dot(place, fibre);
 	cau_vec3 squeezed = cau_scale(1 / bundle_m, cau_add(place, cau_scale(squeeze, fibre)));
 	double at[3], share[3];
@@ -71,7 +72,8 @@ double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, in
 		low[c] = (int64_t)floor(at[c]);
 		share[c] = smooth(at[c] - (double)low[c]);
 	}
-	// Weights of the eight corners, scaled so that the sum of draws is standard normal everywhere.
+	// The weights of the eight corners are scaled so that the sum of draws is standard normal
+	// everywhere.
 	double sum = 0, squares = 0;
 	for (int corner = 0; corner < 8; corner++) {
 		int64_t node[3];

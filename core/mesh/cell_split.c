@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells into tetrahedra: Dompierre et al., "How to subdivide pyramids, prisms, and hexahedra into
-// tetrahedra" (1999). The diagonal of every quadrangle starts at the vertex of the lowest number
-// among its corners. Cells that share the quadrangle therefore choose the same diagonal. A cell is
-// the cone from its lowest vertex over those of its faces that this vertex is not a corner of.
+// Splits cells into tetrahedra: Dompierre et al., "How to subdivide pyramids, prisms, and hexahedra
+// into tetrahedra" (1999). The diagonal of every quadrangle starts at the corner whose vertex has
+// the lowest index. Cells that share the quadrangle therefore choose the same diagonal. The vertex
+// of a cell with the lowest index is the apex. Each face of the cell without this vertex is joined
+// to the apex.
 #include "mesh/cell_split.h"
 
 #include <string.h>
@@ -14,7 +15,7 @@
 
 enum { FACES_MAX = 6 };
 
-// Faces of each shape, counter-clockwise from outside; -1 ends a triangle.
+// Corners of the faces of each shape, counter-clockwise from outside; -1 ends a triangle.
 static const struct {
 	int face_count;
 	int8_t face[FACES_MAX][4];
@@ -27,7 +28,7 @@ static const struct {
 		{6, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
 };
 
-// The number of the corner whose vertex has the lowest representative.
+// Returns the index of the corner whose vertex has the lowest representative in `map`.
 static int lowest_corner(const int32_t *vertex, int count, const int32_t *map)
 {
 	int lowest = 0;
@@ -37,7 +38,7 @@ static int lowest_corner(const int32_t *vertex, int count, const int32_t *map)
 	return lowest;
 }
 
-// Whether the two triangles of a quadrangle cut at this corner face the same way.
+// Whether the two triangles of a quadrangle that is cut from this corner face the same way.
 static bool is_convex_cut(const double *position, const int32_t vertex[4], int corner)
 {
 	double first[3], second[3];
@@ -62,7 +63,8 @@ static void split_quadrangle(cau_mesh_builder *builder, const cau_cell *cell, co
 	builder->report.split_polygons++;
 }
 
-// Adds (apex, triangle) unless two of its vertices are one.
+// Adds the tetrahedron (apex, triangle), unless two of its corners are the same vertex. Returns the
+// new count.
 static int add_cone(int32_t apex, const int32_t triangle[3], const int32_t *map,
                     int32_t (*tetrahedron)[4], int count)
 {
@@ -75,7 +77,7 @@ static int add_cone(int32_t apex, const int32_t triangle[3], const int32_t *map,
 	return count + 1;
 }
 
-// The tetrahedra of a cell, six at most. Returns how many.
+// Finds the tetrahedra of a cell, at most six. Returns their number.
 static int cone_cell(const cau_cell *cell, const int32_t *map, int32_t tetrahedron[12][4])
 {
 	int count = 0;
@@ -101,8 +103,8 @@ static int cone_cell(const cau_cell *cell, const int32_t *map, int32_t tetrahedr
 	return count;
 }
 
-// The corners of wedges are numbered in two ways, mirrored to each other, so that an inverted
-// wedge says nothing of the file.
+// Splits a solid cell. Files number the corners of wedges in two ways, each the mirror image of the
+// other. So an inverted wedge is not counted as a fault of the file.
 static void split_solid(cau_mesh_builder *builder, const cau_cell *cell, const int32_t *map)
 {
 	int32_t tetrahedron[12][4];
@@ -122,7 +124,7 @@ static void split_solid(cau_mesh_builder *builder, const cau_cell *cell, const i
 	builder->report.split_hexahedra += cell->shape == CAU_SHAPE_HEXAHEDRON;
 	builder->report.split_wedges += cell->shape == CAU_SHAPE_WEDGE;
 	builder->report.split_pyramids += cell->shape == CAU_SHAPE_PYRAMID;
-	// A cell that is flat altogether leaves nothing.
+	// A flat cell has no tetrahedra.
 	builder->report.degenerate_tetrahedra += count == 0;
 }
 

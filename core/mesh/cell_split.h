@@ -3,6 +3,6 @@
 
 #include "mesh/mesh_builder.h"
 
-// Splits the builder's cells into its triangles and tetrahedra, so that cells that share a
-// quadrangle split it alike.
+// Splits the builder's cells into triangles and tetrahedra. Cells that share a quadrangle split it
+// in the same way.
 void cau_cell_split(cau_mesh_builder *builder);

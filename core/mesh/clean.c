@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cleaning that real files need, before anything is computed on a mesh.
+// Repairs a mesh from a file before anything is computed on the mesh.
 #include <math.h>
 #include <string.h>
 
@@ -9,8 +9,9 @@
 #include "mesh/mesh_memory.h"
 #include "mesh/vertex_merge.h"
 
-// Flat, relative to the longest edge L: a triangle's height 2 A / L^2, and a tetrahedron's
-// 6 V / L^3. Coordinates written with six digits make flat elements come out near 1e-7.
+// Limits below which an element counts as flat, relative to its longest edge L. They apply to the
+// height of a triangle, 2 A / L^2, and to 6 V / L^3 of a tetrahedron. If coordinates have six
+// digits, a flat element has a value of about 1e-7.
 static const double flat_triangle = 1e-6;
 static const double flat_tetrahedron = 1e-8;
 static const double diagonal_min_m = 1e-9;
@@ -35,7 +36,7 @@ static double longest_edge(const cau_mesh *mesh, const int32_t *element, int cor
 	return sqrt(longest);
 }
 
-// 2 A / L^2 of a triangle of three vertices.
+// Returns 2 A / L^2 of a triangle.
 static double relative_height(const cau_mesh *mesh, const int32_t *t)
 {
 	double e[2][3], normal[3], longest = longest_edge(mesh, t, 3);
@@ -45,7 +46,7 @@ static double relative_height(const cau_mesh *mesh, const int32_t *t)
 	return sqrt(cau_dot3(normal, normal)) / (longest * longest);
 }
 
-// 6 V / L^3 of a tetrahedron of four vertices, with its sign.
+// Returns 6 V / L^3 of a tetrahedron, with its sign.
 static double relative_volume(const cau_mesh *mesh, const int32_t *t)
 {
 	double e[3][3], normal[3], longest = longest_edge(mesh, t, 4);
@@ -85,7 +86,7 @@ static cau_status check_numbers(const cau_mesh *mesh, cau_error *error)
 	return status;
 }
 
-// Applies map (old vertex to new) to every corner.
+// Replaces the vertex v of every corner by map[v].
 static void map_corners(cau_mesh *mesh, const int32_t *map)
 {
 	for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; i++)
@@ -94,7 +95,8 @@ static void map_corners(cau_mesh *mesh, const int32_t *map)
 		mesh->tetrahedron[i] = map[mesh->tetrahedron[i]];
 }
 
-// Keeps the vertices that a corner names, in their order. Returns how many went. `map` is scratch.
+// Removes vertices that no element uses; the others keep their order. Returns how many were
+// removed. `map` is scratch.
 static int32_t drop_unused(cau_mesh *mesh, int32_t *map)
 {
 	memset(map, 0, (size_t)mesh->vertex_count * sizeof *map);
@@ -116,7 +118,7 @@ static int32_t drop_unused(cau_mesh *mesh, int32_t *map)
 	return dropped;
 }
 
-// The bounding diagonal must be a size that numbers can hold.
+// Checks the bounding diagonal against both limits, and the coordinates against the upper limit.
 static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 {
 	double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -142,7 +144,7 @@ static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 	return CAU_OK;
 }
 
-// Lets every vertex near one of a lower number become that one. The position stays the lower one's.
+// Merges each vertex into a near vertex of lower index. The position of the lower vertex remains.
 static cau_status merge_vertices(cau_mesh *mesh, int32_t *map, int32_t *merged, cau_error *error)
 {
 	cau_status status = check_bounds(mesh, error);
@@ -151,7 +153,7 @@ static cau_status merge_vertices(cau_mesh *mesh, int32_t *map, int32_t *merged, 
 	if (!cau_vertex_merge_near(mesh->position, mesh->vertex_count, map))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for merging vertices");
 	map_corners(mesh, map);
-	*merged = drop_unused(mesh, map); // exactly the merged ones: all the rest are used
+	*merged = drop_unused(mesh, map); // exactly the merged vertices, because all others are used
 	CAU_ASSERT(*merged >= 0 && mesh->vertex_count > 0, "%d vertices merged, %d left", *merged,
 	           mesh->vertex_count);
 	return CAU_OK;
@@ -166,7 +168,7 @@ static bool has_corner_twice(const int32_t *element, int corners)
 	return false;
 }
 
-// ---- elements that are left out: marked, and then dropped together
+// ---- elements to remove are marked, and then removed together
 static void keep_triangles(cau_mesh *mesh, const bool *dropped)
 {
 	size_t kept = 0;
@@ -208,7 +210,8 @@ static int32_t drop_flat_triangles(cau_mesh *mesh, bool *dropped)
 	return count;
 }
 
-// Also turns inverted ones to positive volume, and counts them.
+// Removes flat tetrahedra. Turns inverted tetrahedra to positive volume, and counts them in
+// *turned.
 static int32_t drop_flat_tetrahedra(cau_mesh *mesh, bool *dropped, int32_t *turned)
 {
 	int32_t count = 0;
@@ -244,7 +247,8 @@ static cau_status drop_degenerate(cau_mesh *mesh, cau_mesh_report *done, cau_err
 	return CAU_OK;
 }
 
-// A texture triangle without area gives no material direction: it becomes zeros.
+// Sets flat texture triangles to zero, because they give no material direction. Returns their
+// number.
 static int32_t drop_flat_textures(cau_mesh *mesh)
 {
 	int32_t count = 0;
@@ -257,8 +261,8 @@ static int32_t drop_flat_textures(cau_mesh *mesh)
 	return count;
 }
 
-// Marks repeated[i] where an element of a lower number has the same vertices. Returns how many, or
-// -1 when memory ran out.
+// Marks repeated[i] if an element of lower index has the same vertices. Returns how many are
+// marked, or -1 if memory ran out.
 static int32_t mark_repeated(const int32_t *element, int32_t count, int corners,
                              int32_t vertex_count, bool *repeated)
 {
@@ -289,7 +293,7 @@ done:
 	return marked;
 }
 
-// Keeps the first of elements with the same vertices, whatever their order.
+// Removes all but the first of the elements that have the same vertices, in any order.
 static cau_status drop_repeated(cau_mesh *mesh, int32_t *dropped, cau_error *error)
 {
 	int32_t most = mesh->triangle_count > mesh->tetrahedron_count ? mesh->triangle_count
@@ -313,8 +317,8 @@ static cau_status drop_repeated(cau_mesh *mesh, int32_t *dropped, cau_error *err
 	return CAU_OK;
 }
 
-// Marks dropped[i] where two tetrahedra of lower numbers that stay have a face of tetrahedron i.
-// key: the four faces of each, sorted by `order`. Returns how many.
+// Marks dropped[i] if a face of tetrahedron i belongs to two kept tetrahedra of lower index. `key`
+// has the four faces of each tetrahedron, sorted by `order`. Returns how many are marked.
 static int32_t mark_thirds(const int32_t *key, const int32_t *order, int32_t face_count,
                            bool *dropped)
 {
@@ -334,7 +338,8 @@ static int32_t mark_thirds(const int32_t *key, const int32_t *order, int32_t fac
 	return marked;
 }
 
-// A face lies between two tetrahedra at most: further ones overlap these.
+// Removes tetrahedra beyond the second at a face. At most two tetrahedra can share a face, so
+// further ones overlap these two.
 static cau_status drop_thirds(cau_mesh *mesh, int32_t *thirds, cau_error *error)
 {
 	int32_t faces = 4 * mesh->tetrahedron_count;
@@ -384,8 +389,8 @@ cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *er
 	if (!status)
 		status = drop_thirds(mesh, &done->third_tetrahedra, error);
 	if (!status)
-		unused = drop_unused(mesh, map); // of what was left out
-	if (!status)                         // the rest may be far smaller than the whole mesh was
+		unused = drop_unused(mesh, map); // vertices of removed elements
+	if (!status)                         // the rest may be far smaller than the whole mesh
 		status = check_bounds(mesh, error);
 	done->unused_vertices += unused;
 	done->duplicate_elements += repeated;

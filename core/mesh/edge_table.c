@@ -8,9 +8,9 @@
 #include "mesh/mesh_memory.h"
 #include "mesh/primitives.h"
 
-// Every primitive puts its edges into consecutive slots: three a triangle, six a tetrahedron, one a
-// link, in this order of kinds. Sorting the slots by their ends brings the uses of an edge
-// together.
+// Every primitive writes its edges into consecutive slots: a triangle three, a tetrahedron six, a
+// link one. Triangles come first, then tetrahedra, then links. The slots are then sorted by the two
+// ends, so that all uses of an edge are next to each other.
 static const int slots_of[CAU_PRIMITIVE_KINDS] = {3, 6, 1};
 static const int corners_of[CAU_PRIMITIVE_KINDS] = {3, 4, 2};
 static const int8_t ends_of[CAU_PRIMITIVE_KINDS][6][2] = {
@@ -37,7 +37,7 @@ static kind_rows rows_of(const cau_primitives *p, int kind)
 	}
 }
 
-// Writes the ends (a < b) of every slot, (slot_count x 2).
+// Writes the two ends of every slot, (slot_count x 2). The lower vertex comes first.
 static void fill_slots(const cau_primitives *primitives, int32_t *end)
 {
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
@@ -58,7 +58,8 @@ static bool same_edge(const int32_t *end, int32_t s, int32_t t)
 	return p[0] == q[0] && p[1] == q[1];
 }
 
-// Numbers the unique edges: vertex of the table, and edge_of_slot (slot_count).
+// Numbers the unique edges. Sets the ends of each edge in the table, and the edge of each slot
+// (slot_count).
 static bool number_edges(const int32_t *end, const int32_t *order, int32_t slot_count,
                          int32_t *edge_of_slot, cau_edge_table *table)
 {
@@ -79,7 +80,7 @@ static bool number_edges(const int32_t *end, const int32_t *order, int32_t slot_
 	return true;
 }
 
-// The rows of one kind: which primitives share each edge, ascending.
+// Lists the primitives of one kind that share each edge, in ascending order.
 static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of_slot,
                          int32_t slot_count)
 {
@@ -101,7 +102,7 @@ static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of
 		sum += first[e];
 		first[e] = sum;
 	}
-	// From the back, so that first[e] comes down to the start of its row.
+	// Fills from the back, so that first[e] ends at the start of the list of edge e.
 	for (int32_t s = slot_count - 1; s >= 0; s--)
 		sharer[--first[edge_of_slot[s]]] = s / slots_of[kind];
 	CAU_ASSERT(first[0] == 0 && first[edge_count] == slot_count, "rows from %d to %d of %d slots",
@@ -109,7 +110,8 @@ static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of
 	return true;
 }
 
-// Each kind's sharers from its part of edge_of_slot; the triangles, which come first, keep theirs.
+// Fills the sharers of all kinds. Each kind uses its own part of edge_of_slot. The part of the
+// triangles is also kept as triangle_edge.
 static bool fill_kinds(const cau_primitives *primitives, const int32_t *edge_of_slot,
                        cau_edge_table *table)
 {
@@ -139,8 +141,8 @@ static int compare_layers(const void *left, const void *right)
 	return layers ? layers : (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-// Writes the hinges of edge e after the `hinge_count` there are (or only counts them where the
-// table has no hinge arrays yet) and returns their new number. `row` is scratch.
+// Appends the hinges of edge e and returns the new number of hinges. While the table has no arrays
+// of hinges, the hinges are only counted. `row` is scratch.
 static int32_t add_hinges(cau_edge_table *table, const int32_t *triangle_layer, int32_t e,
                           layer_triangle *row, int32_t hinge_count)
 {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The edge-based structure (section 6.1, figure 5): every edge knows the primitives that share it.
+// The edge-based structure (section 6.1, figure 5): the table lists for every edge the primitives
+// that share it.
 #pragma once
 
 #include <stdint.h>
 
 #include "cautery/status.h"
 
-// The primitives of a tissue over one vertex array. Hinges are pairs of triangles and follow them.
+// The primitives of a tissue over one array of vertices. Hinges are no primitives. A hinge is a
+// pair of triangles and exists while both exist.
 typedef struct cau_primitives {
 	int32_t vertex_count;
 	int32_t triangle_count;
@@ -24,8 +26,9 @@ typedef enum cau_primitive_kind {
 	CAU_PRIMITIVE_KINDS
 } cau_primitive_kind;
 
-// Unique edges (a < b), sorted by (a, b), and for each kind the primitives that share each edge, in
-// compressed lists: primitives of edge e are sharer[kind][first[kind][e] .. first[kind][e + 1]).
+// Unique edges (a < b), sorted by (a, b). For each kind of primitive there is a compressed list of
+// the primitives that share each edge: primitives of edge e are
+// sharer[kind][first[kind][e] .. first[kind][e + 1]).
 typedef struct cau_edge_table {
 	int32_t edge_count;
 	int32_t *vertex;                     // (edge_count x 2)
@@ -37,28 +40,29 @@ typedef struct cau_edge_table {
 	int32_t *hinge_triangle; // (hinge_count x 2)
 } cau_edge_table;
 
-// Builds the table. `triangle_layer` (triangle_count) says which triangles may form hinges
-// together.
+// Builds the table. A hinge joins two triangles with the same value in `triangle_layer`
+// (triangle_count).
 cau_status cau_edge_table_make(const cau_primitives *primitives, const int32_t *triangle_layer,
                                cau_edge_table *table, cau_error *error);
 void cau_edge_table_finish(cau_edge_table *table);
 
-// Edge between two vertices, or -1. O(log edges).
+// Returns the edge between two vertices, or -1. Takes O(log edges).
 int32_t cau_edge_table_find(const cau_edge_table *table, int32_t a, int32_t b);
 
 // Faces, in the order of the streamed mask: first every triangle of the sheets, then every unique
-// face of the tetrahedra. A fat face is drawn while exactly one live tetrahedron has it and no live
-// triangle covers it.
+// face of the tetrahedra. A face of a tetrahedron is drawn while exactly one live tetrahedron has
+// the face and no live triangle covers it.
 typedef struct cau_face_table {
 	int32_t face_count;
 	int32_t triangle_count; // faces [0, triangle_count) are the sheets' triangles
-	int32_t
-		*vertex; // (face_count x 3); for a fat face counter-clockwise seen from outside owner[0]
-	int32_t
-		*owner; // (face_count x 2): tetrahedra that have it (-1: none); a sheet's face: (-1, -1)
+	// (face_count x 3); a face of a tetrahedron is counter-clockwise seen from outside owner[0].
+	int32_t *vertex;
+	// (face_count x 2): tetrahedra that have the face, -1: none; of a sheet's face (-1, -1).
+	int32_t *owner;
 	int32_t *cover;            // (face_count): triangle with the same three vertices, or -1
 	int32_t *tetrahedron_face; // (tetrahedron_count x 4): face opposite vertex 0, 1, 2, 3
-	int32_t *triangle_covers;  // (triangle_count): fat face with the same three vertices, or -1
+	// (triangle_count): face of a tetrahedron with the same three vertices, or -1.
+	int32_t *triangle_covers;
 } cau_face_table;
 
 cau_status cau_face_table_make(const cau_primitives *primitives, cau_face_table *table,

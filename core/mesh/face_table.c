@@ -7,8 +7,9 @@
 #include "mesh/mesh_memory.h"
 #include "mesh/primitives.h"
 
-// Slots: first the sheets' triangles, then four faces of each tetrahedron. Sorted by their
-// vertices, slots of the same face stand together, the triangles that cover it first.
+// Slots hold the sheets' triangles first, then four faces of each tetrahedron. Slots are sorted by
+// their vertices. Then the slots of one face are next to each other, and triangles that cover the
+// face come first.
 
 // The face opposite each corner, counter-clockwise seen from outside a tetrahedron of positive
 // volume.
@@ -28,7 +29,7 @@ static void fill_slots(const cau_primitives *p, int32_t *key)
 		cau_index_order_row(key + 3 * s, 3);
 }
 
-// First position after the run of equal keys that starts at `from`.
+// Returns the position after the run of equal keys that starts at `from`.
 static int32_t run_end(const int32_t *key, const int32_t *order, int32_t from, int32_t slot_count)
 {
 	CAU_ASSERT_INDEX(from, slot_count);
@@ -39,7 +40,8 @@ static int32_t run_end(const int32_t *key, const int32_t *order, int32_t from, i
 	return next;
 }
 
-// Faces of the table: the triangles and each run with a tetrahedron in it (its last slot is fat).
+// Counts the faces of the table: all triangles, and each run of slots that contains a tetrahedron.
+// The last slot of such a run belongs to a tetrahedron.
 static int32_t count_faces(const int32_t *key, const int32_t *order, int32_t slot_count,
                            int32_t triangle_count)
 {
@@ -66,7 +68,8 @@ static bool reserve(cau_face_table *table, int32_t tetrahedron_count)
 	       table->triangle_covers;
 }
 
-// The sheets' own faces: no owner, no cover; what they cover is found with the fat.
+// Fills the sheets' own faces. They have no owner and no cover. What the triangles cover is found
+// with the tetrahedra's faces.
 static void fill_sheet_faces(const cau_primitives *p, cau_face_table *table)
 {
 	if (p->triangle_count)
@@ -77,7 +80,8 @@ static void fill_sheet_faces(const cau_primitives *p, cau_face_table *table)
 	}
 }
 
-// One fat face from its run of slots: `covers` triangles, then one or two tetrahedra.
+// Fills one face of a tetrahedron from its run of slots: first `covers` triangles, then one or two
+// tetrahedra.
 static void fill_fat_face(const cau_primitives *p, const int32_t *run, int32_t covers,
                           int32_t owners, int32_t face, cau_face_table *table)
 {

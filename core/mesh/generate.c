@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generated meshes. Vertices are numbered with the last axis fastest, elements cell by cell in the
-// same order, so that neighbours lie near each other in memory.
+// Generates meshes. The index of a vertex grows fastest along the last axis. Elements are listed
+// cell by cell in the same order, so that neighbours are near each other in memory.
 #include <math.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static cau_status check_turn(const cau_mesh_def *def, cau_error *error)
 	return cau_fail(error, CAU_BAD_VALUE, "texture_turn_rad", "must be a finite angle");
 }
 
-// Fails also where the product of the cells passes the bound on elements.
+// Checks the numbers of cells. Fails also if the cells make more elements than one mesh may have.
 static cau_status check_product(const int32_t cells[3], int axes, int elements_per_cell,
                                 cau_error *error)
 {
@@ -58,7 +58,8 @@ cau_status cau_mesh_check_cells(int source, const int32_t cells[3], cau_error *e
 	}
 }
 
-// UV of each corner: x and y in metres, turned, so that the map to the surface is an isometry.
+// Sets the texture coordinates of each corner: x and y in metres, rotated by `turn_rad`. The map to
+// the surface is then an isometry.
 static void fill_texture(cau_mesh *mesh, double turn_rad)
 {
 	CAU_ASSERT(mesh->texture != NULL, "no texture for %d triangles", mesh->triangle_count);
@@ -70,7 +71,8 @@ static void fill_texture(cau_mesh *mesh, double turn_rad)
 	}
 }
 
-// Vertices of a box of cells, centred in x and y, top at z = 0; cells[2] = 0 for a plane.
+// Sets the vertices of a box of cells. The box is centred in x and y, its top is at z = 0. cells[2]
+// = 0 makes a plane.
 static void fill_lattice(cau_mesh *mesh, const double size_m[3], const int32_t cells[3])
 {
 	CAU_ASSERT((int64_t)(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1) == mesh->vertex_count,
@@ -86,8 +88,8 @@ static void fill_lattice(cau_mesh *mesh, const double size_m[3], const int32_t c
 			}
 }
 
-// Two triangles a cell, counter-clockwise seen from +z; every cell is split along the diagonal from
-// its corner of least x and y to that of greatest, as the slab's top is.
+// Each cell has two triangles, counter-clockwise seen from +z. The diagonal goes from the cell's
+// corner of least x and y to that of greatest x and y, as on the top of a slab.
 cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
 {
 	*mesh = (cau_mesh){0};
@@ -109,7 +111,7 @@ cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_erro
 	int32_t *triangle = mesh->triangle;
 	for (int32_t i = 0; i < cells[0]; i++)
 		for (int32_t j = 0; j < cells[1]; j++, triangle += 6) {
-			int32_t a = i * (cells[1] + 1) + j, b = a + cells[1] + 1; // b: next along x
+			int32_t a = i * (cells[1] + 1) + j, b = a + cells[1] + 1; // b: the next vertex along x
 			memcpy(triangle, (int32_t[]){a, b, b + 1, a, b + 1, a + 1}, 6 * sizeof *triangle);
 		}
 	CAU_ASSERT(triangle == mesh->triangle + 3 * (size_t)mesh->triangle_count,
@@ -118,8 +120,9 @@ cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_erro
 	return CAU_OK;
 }
 
-// The six tetrahedra of one cell (Kuhn's subdivision): each walks from the least corner to the
-// greatest along the axes in another order. Neighbouring cells agree on their common faces.
+// Sets the six tetrahedra of one cell (Kuhn's subdivision). Each tetrahedron follows a path from
+// the cell's least corner to its greatest corner, with another order of the axes. Neighbouring
+// cells agree on their common faces.
 static void fill_cell(int32_t *tetrahedron, int32_t least, const int32_t stride[3])
 {
 	static const int8_t walks[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
@@ -162,8 +165,8 @@ cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error
 	return CAU_OK;
 }
 
-// Figure 5: a closed fan of cells[0] triangles round vertex 0, its rim on the ellipse with axes
-// size_m[0] along x and size_m[1] along y, starting on +x.
+// Figure 5: a closed fan of cells[0] triangles around vertex 0. The rim is on the ellipse with the
+// axes size_m[0] along x and size_m[1] along y. The rim starts on +x.
 cau_status cau_mesh_make_pattern(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
 {
 	*mesh = (cau_mesh){0};

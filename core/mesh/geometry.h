@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors and volumes of elements, for arrays of three numbers.
+// Vectors, and volumes of elements, as arrays of three numbers.
 #pragma once
 
 #include <math.h>
@@ -24,7 +24,8 @@ static inline double cau_dot3(const double a[3], const double b[3])
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// The normal of a triangle; its length is twice the area. `position` is that of all vertices.
+// Computes the normal of a triangle. Its length is twice the area. `position` has the positions of
+// all vertices.
 static inline void cau_triangle_normal(const double *position, const int32_t *t, double normal[3])
 {
 	double e[2][3];
@@ -33,7 +34,7 @@ static inline void cau_triangle_normal(const double *position, const int32_t *t,
 	cau_cross3(e[0], e[1], normal);
 }
 
-// Six times the signed volume of a tetrahedron.
+// Returns six times the signed volume of a tetrahedron.
 static inline double cau_tetrahedron_volume6(const double *position, const int32_t *t)
 {
 	double normal[3], edge[3];
@@ -42,7 +43,7 @@ static inline double cau_tetrahedron_volume6(const double *position, const int32
 	return cau_dot3(normal, edge);
 }
 
-// Sum of the squares of all edges between an element's corners.
+// Returns the sum of the squared lengths of all edges between an element's corners.
 static inline double cau_edge_squares(const double *position, const int32_t *element, int corners)
 {
 	double sum = 0;
@@ -56,7 +57,7 @@ static inline double cau_edge_squares(const double *position, const int32_t *ele
 	return sum;
 }
 
-// Whether a texture triangle spans a line or a point, so that it has no direction across it.
+// Whether a texture triangle is a line or a point. Then it gives no direction.
 static inline bool cau_texture_is_flat(const double uv[6])
 {
 	double a = uv[2] - uv[0], b = uv[4] - uv[0], c = uv[3] - uv[1], d = uv[5] - uv[1];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1), 4.0 and 4.1: types of elements, what each
-// version has between a section's name and its end, then the walk over the sections. Formats:
+// Reads Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1), 4.0 and 4.1. First come the types of
+// elements, then the contents of each version's sections, then the loop over the sections. Formats:
 // Gmsh's reference manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2). All failures go
 // to the scan.
 #include <stdlib.h>
@@ -18,22 +18,23 @@ typedef struct gmsh_file {
 	cau_mesh_builder *builder;
 	cau_node_map nodes;
 	bool has_nodes;
-	int size_bytes; // of a size_t in a binary file of version 4
-	bool is_4_0;    // version 4.0: other orders, and four-byte numbers of nodes and elements
+	int size_bytes; // bytes of a size_t in a binary file of version 4
+	// Version 4.0: another order of fields, and four-byte numbers of nodes and elements.
+	bool is_4_0;
 	struct entity {
 		int32_t dimension;
 		int32_t tag;
 		int32_t region;
-	} * entity; // version 4: entities with a physical group, in ascending order
+	} * entity; // version 4: entities with a physical group, sorted by dimension and tag
 	int32_t entity_count;
 	int32_t entity_capacity;
 } gmsh_file;
 
-// ---- elements and positions, as all versions have them
-// The corners of an element are its first nodes.
+// ---- elements and positions of all versions
+// Known types of elements. The corners of an element are its first nodes.
 static const struct {
 	int nodes;
-	cau_shape shape; // CAU_SHAPE_COUNT: passed over
+	cau_shape shape; // CAU_SHAPE_COUNT: the element is skipped
 	const char *name;
 } types[KNOWN_TYPES] = {
 	[1] = {2, CAU_SHAPE_COUNT, "lines"},
@@ -69,7 +70,7 @@ static const struct {
 	[31] = {56, CAU_SHAPE_TETRAHEDRON, "56-node tetrahedra"},
 };
 
-// Nodes of an element of this type, or 0 for a type that is not known.
+// Returns the number of nodes of this type of element, or 0 if the type is unknown.
 static int nodes_of_type(int64_t type)
 {
 	return type > 0 && type < KNOWN_TYPES ? types[type].nodes : 0;
@@ -84,7 +85,7 @@ static void read_position(gmsh_file *gmsh)
 	cau_mesh_builder_vertex(gmsh->builder, position);
 }
 
-// Passes over the nodes of an element that is not used: in text the rest of its line.
+// Skips the nodes of an element that is not used. In a text file this is the rest of the line.
 static void skip_element(gmsh_file *gmsh, int64_t type, int number_bytes)
 {
 	int nodes = nodes_of_type(type);
@@ -98,8 +99,8 @@ static void skip_element(gmsh_file *gmsh, int64_t type, int number_bytes)
 		              (long long)type);
 }
 
-// Reads the nodes of one element (numbers of number_bytes each in a binary file) and appends its
-// corners, or passes over it when it is of another type.
+// Reads the nodes of one element and appends its corners. Elements of other types are skipped. In a
+// binary file a node number has number_bytes bytes.
 static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t region,
                          int number_bytes)
 {
@@ -125,9 +126,10 @@ static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t 
 	                      types[type].nodes > corners);
 }
 
-// ---- version 1: text only; its $NOD is as version 2.2's $Nodes
+// ---- version 1: text only; $NOD has the format of $Nodes of version 2.2
 
-// number-of-elements, then: elm-number elm-type reg-phys reg-elem number-of-nodes node-numbers
+// Reads number-of-elements, then: elm-number elm-type reg-phys reg-elem number-of-nodes
+// node-numbers
 static void read_elements_1(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -148,7 +150,7 @@ static void read_elements_1(gmsh_file *gmsh)
 
 // ---- version 2.2: text or binary
 
-// number-of-nodes (text), then: node-number x y z
+// Reads number-of-nodes (text), then: node-number x y z
 static void read_nodes_2(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -165,7 +167,7 @@ static void read_nodes_2(gmsh_file *gmsh)
 	cau_node_map_seal(&gmsh->nodes, scan);
 }
 
-// The tags and nodes of one element; the first tag is its physical group.
+// Reads the tags and nodes of one element. The first tag is its physical group.
 static void read_tagged_element(gmsh_file *gmsh, int64_t number, int64_t type, int64_t tag_count)
 {
 	cau_scan *scan = gmsh->scan;
@@ -178,7 +180,7 @@ static void read_tagged_element(gmsh_file *gmsh, int64_t number, int64_t type, i
 	read_element(gmsh, number, type, (int32_t)region, 4);
 }
 
-// number-of-elements; text: elm-number elm-type number-of-tags tags node-numbers
+// Reads elm-number elm-type number-of-tags tags node-numbers for each element.
 static void read_text_elements(gmsh_file *gmsh, int64_t count)
 {
 	cau_scan *scan = gmsh->scan;
@@ -190,7 +192,8 @@ static void read_text_elements(gmsh_file *gmsh, int64_t count)
 	}
 }
 
-// Binary: blocks of elm-type num-elm-follow num-tags, then elm-number tags node-numbers of each
+// Reads binary blocks of elm-type num-elm-follow num-tags, then elm-number tags node-numbers of
+// each element.
 static void read_binary_elements(gmsh_file *gmsh, int64_t count)
 {
 	cau_scan *scan = gmsh->scan;
@@ -231,7 +234,7 @@ static int32_t read_int(gmsh_file *gmsh, const char *what, int32_t least, int32_
 	return (int32_t)cau_scan_integer(gmsh->scan, what, 4, least, most);
 }
 
-// A size that counts things of at least this many bytes each, as text or in binary.
+// Reads the number of items that follow. Each item has at least text_bytes or binary_bytes bytes.
 static int64_t read_count(gmsh_file *gmsh, const char *what, int64_t text_bytes,
                           int64_t binary_bytes)
 {
@@ -266,7 +269,7 @@ static int compare_entities(const void *left, const void *right)
 	return dimensions ? dimensions : (a->tag > b->tag) - (a->tag < b->tag);
 }
 
-// The region of an entity that is listed, else 0.
+// Returns the region of an entity, or 0 if the entity is not listed.
 static int32_t region_of(const gmsh_file *gmsh, int32_t dimension, int32_t tag)
 {
 	if (!gmsh->entity_count)
@@ -277,9 +280,9 @@ static int32_t region_of(const gmsh_file *gmsh, int32_t dimension, int32_t tag)
 	return found ? found->region : 0;
 }
 
-// Of a partitioned entity: parent's dimension(int) and tag(int), number of partitions(size; int in
-// some files of 4.0 is the same in text), partitions(int). Where the entity has no physical group
-// of its own, its parent's is its region.
+// Reads the extra fields of a partitioned entity: parent's dimension(int) and tag(int), number of
+// partitions(size), partitions(int). Some files of 4.0 have that number as int, which is the same
+// in text. An entity without a physical group gets the region of its parent.
 static void read_partition(gmsh_file *gmsh, struct entity *entity)
 {
 	cau_scan *scan = gmsh->scan;
@@ -291,9 +294,9 @@ static void read_partition(gmsh_file *gmsh, struct entity *entity)
 	entity->region = dimension == entity->dimension ? region_of(gmsh, dimension, tag) : 0;
 }
 
-// tag(int), x y z or a box of six reals, number of physical groups(size), groups(int), and but for
-// points number of bounding entities(size), entities(int). The first group is the region; a
-// negative one is the same group with turned orientation.
+// Reads tag(int), x y z or a box of six reals, number of physical groups(size), groups(int). Except
+// for points, number of bounding entities(size) and entities(int) follow. The first group is the
+// region. A negative group is the same group with reversed orientation.
 static void read_entity(gmsh_file *gmsh, int32_t dimension, bool partitioned)
 {
 	CAU_ASSERT(dimension >= 0 && dimension <= 3, "an entity of dimension %d", dimension);
@@ -317,7 +320,7 @@ static void read_entity(gmsh_file *gmsh, int32_t dimension, bool partitioned)
 		add_entity(gmsh, entity);
 }
 
-// Numbers of points, curves, surfaces and volumes (size each), then these.
+// Reads the numbers of points, curves, surfaces and volumes (size each), then the entities.
 static void read_entity_list(gmsh_file *gmsh, bool partitioned)
 {
 	int64_t count[4];
@@ -335,8 +338,8 @@ static void read_entities_4(gmsh_file *gmsh)
 	read_entity_list(gmsh, false);
 }
 
-// number of partitions(size), number of ghost entities(size), of each tag(int) and partition(int);
-// then the entities.
+// Reads number of partitions(size) and number of ghost entities(size), then tag(int) and
+// partition(int) of each ghost, then the entities.
 static void read_partitioned_entities(gmsh_file *gmsh)
 {
 	read_size(gmsh, "number of partitions");
@@ -346,7 +349,7 @@ static void read_partitioned_entities(gmsh_file *gmsh)
 	read_entity_list(gmsh, true);
 }
 
-// Dimension and tag of an entity, which version 4.0 has in the other order.
+// Reads the dimension and tag of an entity. Version 4.0 has the tag first.
 static void read_entity_of_block(gmsh_file *gmsh, int32_t *dimension, int32_t *tag)
 {
 	if (gmsh->is_4_0)
@@ -368,9 +371,9 @@ static void read_node_number(gmsh_file *gmsh)
 	cau_node_map_add(&gmsh->nodes, number, gmsh->scan);
 }
 
-// dimension(int) tag(int) parametric(int) number of nodes(size), all node numbers(size), then all
-// positions: x y z and, where parametric, one more real per dimension.
-// In 4.0: tag(int) dimension(int), and number and position of each node together.
+// Reads dimension(int) tag(int) parametric(int) number of nodes(size), all node numbers(size), then
+// all positions. A position is x y z and, if parametric, one more real for each dimension.
+// In 4.0: tag(int) dimension(int), and the number and position of each node together.
 static void read_node_block(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -389,7 +392,8 @@ static void read_node_block(gmsh_file *gmsh)
 	}
 }
 
-// number of blocks, number of nodes, least and greatest node number (size each), then the blocks.
+// Reads number of blocks, number of nodes, least and greatest node number (size each), then the
+// blocks.
 static void read_nodes_4(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -410,7 +414,8 @@ static void read_nodes_4(gmsh_file *gmsh)
 	cau_node_map_seal(&gmsh->nodes, scan);
 }
 
-// dimension(int) tag(int) type(int) number of elements(size), then element and node numbers(size).
+// Reads dimension(int) tag(int) type(int) number of elements(size), then element and node
+// numbers(size).
 static void read_element_block(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -426,7 +431,8 @@ static void read_element_block(gmsh_file *gmsh)
 	}
 }
 
-// number of blocks, number of elements, least and greatest number (size each), then the blocks.
+// Reads number of blocks, number of elements, least and greatest number (size each), then the
+// blocks.
 static void read_elements_4(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -442,7 +448,8 @@ static void read_elements_4(gmsh_file *gmsh)
 
 // ---- the sections of each version
 
-// As text in binary files too: number of names, then of each dimension, number, "name".
+// Reads the names, which are text in binary files too: number of names, then dimension, number and
+// "name" of each.
 static void read_names(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -479,7 +486,7 @@ static const section sections_4[] = {
 	{"$Elements", "$EndElements", read_elements_4},
 	{0}};
 
-// The number one in binary, from which the byte order is known.
+// Reads the number one in binary, which shows the byte order.
 static void read_byte_order(cau_scan *scan)
 {
 	cau_scan_skip_line(scan);
@@ -491,7 +498,7 @@ static void read_byte_order(cau_scan *scan)
 		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected the number one, found %lld", (long long)one);
 }
 
-// $MeshFormat: version, whether binary, size of a number. Returns the version's sections.
+// Reads $MeshFormat: version, whether binary, size of a number. Returns the version's sections.
 static const section *read_header(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
@@ -514,7 +521,7 @@ static const section *read_header(gmsh_file *gmsh)
 	return is_2 ? sections_2 : sections_4;
 }
 
-// Passes over a section by its name to behind its end.
+// Skips a section of this name, including its end.
 static void skip_section(cau_scan *scan, cau_word name)
 {
 	CAU_ASSERT(name.length > 0 && name.text[0] == '$', "a section called by %zu letters",

@@ -6,7 +6,8 @@
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
-// One stable pass: `to` is `from` ordered by key[row * stride]. bucket (bound + 1) is scratch.
+// Makes one stable pass of a counting sort: `to` is `from` ordered by key[row * stride]. bucket
+// (bound + 1) is scratch.
 static void counting_pass(const int32_t *key, int stride, const int32_t *from, int32_t count,
                           int32_t *bucket, int32_t bound, int32_t *to)
 {

@@ -5,12 +5,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Fills order (count) so that the rows of `tuple` (count x width), whose entries lie in [0, bound),
-// come in lexicographic order, equal rows in their own. Counting passes: O(width (count + bound)).
-// False: memory ran out.
+// Sorts the tuples of `tuple` (count x width), whose entries are in [0, bound). Fills order (count)
+// with their indices in lexicographic order. Equal tuples keep their order. Uses counting passes:
+// O(width (count + bound)). Returns false if memory ran out.
 bool cau_index_sort(const int32_t *tuple, int width, int32_t count, int32_t bound, int32_t *order);
 
-// Puts the entries of a small list in ascending order.
+// Sorts the entries of a small list in ascending order.
 static inline void cau_index_order_row(int32_t *row, int width)
 {
 	for (int i = 1; i < width; i++)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Medit meshes: text (.mesh) and binary (.meshb). Format: P. Frey, "MEDIT: an interactive mesh
-// visualization software" (2001); binary: libMeshb's documentation. The reference of an element is
-// its region.
+// Reads Medit meshes: text (.mesh) and binary (.meshb). Format: P. Frey, "MEDIT: an interactive
+// mesh visualization software" (2001); binary: libMeshb's documentation. The reference of an
+// element is its region.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -66,7 +66,7 @@ void cau_medit_add(cau_mesh_builder *builder, const cau_medit_kind *kind, const 
 	                      kind->nodes > corners);
 }
 
-// The next word; from '#' on a line is comment.
+// Reads the next word. Skips comments, which extend from '#' to the end of the line.
 static cau_word next_word(cau_scan *scan)
 {
 	cau_word word = cau_scan_word(scan);
@@ -82,7 +82,7 @@ static int64_t next_integer(cau_scan *scan, const char *what, int64_t least, int
 	return cau_scan_word_integer(scan, next_word(scan), what, least, most);
 }
 
-// Number of vertices, then of each: coordinates, reference.
+// Reads the number of vertices, then the coordinates and the reference of each.
 static void read_vertices(cau_mesh_builder *builder, int64_t dimension)
 {
 	cau_scan *scan = builder->scan;
@@ -116,7 +116,7 @@ static bool is_keyword(cau_word word)
 	return first >= 'a' && first <= 'z';
 }
 
-// Passes over what belongs to a keyword that is not used.
+// Skips the data of a keyword that is not used.
 static void skip_block(cau_mesh_builder *builder, cau_word keyword)
 {
 	cau_scan *scan = builder->scan;

@@ -8,7 +8,7 @@
 #include "mesh/mesh_memory.h"
 #include "mesh/polygon.h"
 
-// Makes *array (of items of item_bytes) hold `capacity`. False: memory ran out.
+// Grows *array (of items of item_bytes) to `capacity` items. Returns false if memory ran out.
 static bool grow_array(void *array, size_t item_bytes, int32_t capacity)
 {
 	CAU_ASSERT(capacity > 0 && item_bytes > 0, "room for %d items of %zu bytes", capacity,
@@ -21,7 +21,7 @@ static bool grow_array(void *array, size_t item_bytes, int32_t capacity)
 	return grown != NULL;
 }
 
-// The capacity that holds one item more, or 0 where `most` are held already.
+// Returns a capacity for at least one more item, or 0 if the capacity is `most` already.
 static int32_t next_capacity(int32_t capacity, int32_t most)
 {
 	CAU_ASSERT(capacity >= 0 && capacity <= most, "room for %d of at most %d", capacity, most);
@@ -30,7 +30,7 @@ static int32_t next_capacity(int32_t capacity, int32_t most)
 	return capacity > most / 2 ? most : capacity ? 2 * capacity : 64;
 }
 
-// Decides what growing came to.
+// Reports a failed growth to the scan. Returns whether the growth succeeded.
 static bool has_grown(cau_mesh_builder *builder, int32_t capacity, bool memory, const char *what)
 {
 	if (capacity == 0)
@@ -138,7 +138,8 @@ const char *cau_shape_name(cau_shape shape)
 	return shapes[shape].name;
 }
 
-// The report's entry of a kind; the last entry takes what there is no room for.
+// Returns the report's entry of a kind. If all entries are used, the last entry counts all further
+// kinds.
 static cau_mesh_kind *kind_of(cau_mesh_builder *builder, const char *name)
 {
 	cau_mesh_report *report = &builder->report;

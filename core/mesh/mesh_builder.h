@@ -13,29 +13,29 @@ typedef enum cau_shape {
 	CAU_SHAPE_PYRAMID,
 	CAU_SHAPE_WEDGE,
 	CAU_SHAPE_HEXAHEDRON,
-	CAU_SHAPE_COUNT, // none of them
+	CAU_SHAPE_COUNT, // number of shapes; also means none of them
 } cau_shape;
 
 enum { CAU_CORNERS_MAX = 8, CAU_REGION_NAMES_MAX = 4096 };
 
-// A cell that is split once all vertices are known.
+// A cell that is split after all vertices are known.
 typedef struct cau_cell {
-	int32_t shape; // cau_shape
+	int32_t shape; // a cau_shape
 	int32_t region;
 	int32_t vertex[CAU_CORNERS_MAX];
 } cau_cell;
 
-// A region's name, as the file has it.
+// The name of a region in the file.
 typedef struct cau_region_name {
-	int32_t dimension; // 2 or 3; 0: of both
+	int32_t dimension; // dimension of its elements: 2 or 3; 0: both
 	int32_t region;
 	cau_word name;
 } cau_region_name;
 
 typedef struct cau_mesh_builder {
 	cau_scan *scan;         // borrowed
-	cau_mesh_report report; // format, kinds, what was split and reduced
-	cau_mesh mesh;          // texture follows the triangles where `texture` is set
+	cau_mesh_report report; // format, kinds, and counts of split and reduced elements
+	cau_mesh mesh;          // has texture coordinates of the triangles if `texture` is set
 	bool texture;
 	int32_t vertex_capacity;
 	int32_t triangle_capacity;
@@ -48,30 +48,34 @@ typedef struct cau_mesh_builder {
 	int32_t name_capacity;
 } cau_mesh_builder;
 
-// Corners of a shape.
+// Returns the number of corners of a shape.
 int cau_shape_corners(cau_shape shape);
-// "triangles", "hexahedra", ...
+// Returns the name of a shape in the plural: "triangles", "hexahedra", ...
 const char *cau_shape_name(cau_shape shape);
 
-// Appends; refuses coordinates that are not finite.
+// Appends a vertex. Fails if a coordinate is not finite.
 void cau_mesh_builder_vertex(cau_mesh_builder *builder, const double position[3]);
-// `vertex` must be inside the vertices so far; `texture` (3 x 2) or NULL. Counts no kind.
+// Appends a triangle. Its vertices must already be in the mesh. `texture` (3 x 2) or NULL. Counts
+// no kind in the report.
 void cau_mesh_builder_triangle(cau_mesh_builder *builder, const int32_t vertex[3], int32_t region,
                                const double *texture);
+// Appends a tetrahedron. Its vertices must already be in the mesh. Counts no kind in the report.
 void cau_mesh_builder_tetrahedron(cau_mesh_builder *builder, const int32_t vertex[4],
                                   int32_t region);
-// A polygon of at least three corners as triangles; `texture` (count x 2) or NULL. Counts its kind.
+// Appends a polygon of at least three corners as triangles. `texture` (count x 2) or NULL. Counts
+// the polygon's kind in the report.
 void cau_mesh_builder_polygon(cau_mesh_builder *builder, const int32_t *vertex, int32_t count,
                               int32_t region, const double *texture);
-// A cell of any shape; `kind` is the name that the report counts it under. `reduced`: it had nodes
-// beside its corners.
+// Appends a cell of any shape. The report counts the cell under the name `kind`. `reduced`: the
+// cell had nodes other than its corners.
 void cau_mesh_builder_cell(cau_mesh_builder *builder, cau_shape shape, const int32_t *vertex,
                            int32_t region, const char *kind, bool reduced);
-// Counts elements that are passed over.
+// Counts skipped elements under the name `kind`.
 void cau_mesh_builder_skip(cau_mesh_builder *builder, const char *kind, int64_t count);
+// Appends the name of a region.
 void cau_mesh_builder_name(cau_mesh_builder *builder, int32_t dimension, int32_t region,
                            cau_word name);
-// Replaces every region r by of[r], or by 0 where r is not below `count`.
+// Replaces every region r by of[r], or by 0 if r is not in [0, count).
 void cau_mesh_builder_map_regions(cau_mesh_builder *builder, const int32_t *of, int64_t count);
 
 void cau_mesh_builder_finish(cau_mesh_builder *builder); // frees everything

@@ -15,7 +15,8 @@
 enum { PATH_BYTES = 600 };
 static const long long most_bytes = 1LL << 30;
 
-// Reads until `wanted` bytes are there. Returns how many came, or -1 with errno set.
+// Reads until `wanted` bytes are read or the file ends. Returns the number of bytes, or -1 with
+// errno set.
 static ssize_t read_all(int file, char *bytes, size_t wanted)
 {
 	size_t done = 0;
@@ -58,7 +59,8 @@ static cau_status load(int file, const char *path, void **bytes, size_t *byte_co
 
 static cau_status load_one(const char *path, void **bytes, size_t *byte_count, cau_error *error)
 {
-	int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe would wait for its writer
+	// Without O_NONBLOCK, open would wait for the writer of a pipe.
+	int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 	if (file < 0)
 		return cau_fail(error, CAU_IO, NULL, "cannot open '%.180s': %s", path, strerror(errno));
 	cau_status status = load(file, path, bytes, byte_count, error);
@@ -66,8 +68,8 @@ static cau_status load_one(const char *path, void **bytes, size_t *byte_count, c
 	return status;
 }
 
-// TetGen writes points and elements as two files of one name: the other one's path. False: this is
-// no such file, or the other one is not there.
+// Finds the second file of a TetGen mesh, which has points and elements in two files of one name.
+// Returns false if `path` is no TetGen file, or if there is no second file.
 static bool find_partner(const char *path, char partner[static PATH_BYTES], bool *points)
 {
 	static const char *const pairs[][2] = {
@@ -86,7 +88,7 @@ static bool find_partner(const char *path, char partner[static PATH_BYTES], bool
 	return false;
 }
 
-// The first bytes, a line feed, and the second ones. Frees both.
+// Joins the two byte arrays with a line feed between them. Frees both.
 static cau_status join(char *first, size_t first_count, char *second, size_t second_count,
                        void **bytes, size_t *byte_count, cau_error *error)
 {

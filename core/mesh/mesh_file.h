@@ -5,7 +5,7 @@
 
 #include "cautery/status.h"
 
-// Reads the whole of a regular file of at most 1 GiB. TetGen's two files of one name (.node, .ele
-// or .face) are read together, whichever is named: points first, then elements. The caller frees
-// *bytes. Errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY.
+// Reads a whole regular file of at most 1 GiB. A TetGen mesh has two files of one name (.node, and
+// .ele or .face). `path` may name either file, and both are read: points first, then elements. The
+// caller frees *bytes. Errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY.
 cau_status cau_mesh_file_load(const char *path, void **bytes, size_t *byte_count, cau_error *error);

@@ -8,7 +8,7 @@
 #include "mesh/readers.h"
 
 enum {
-	LOOKED_AT_BYTES = 65536, // of a text, until its format must be clear
+	LOOKED_AT_BYTES = 65536, // bytes at the start of a text from which its format must be clear
 	STL_HEADER_BYTES = 84,
 	STL_FACET_BYTES = 50,
 };
@@ -57,8 +57,8 @@ static const cau_mesh_format nifti = {
 static const cau_mesh_format dicom = {
 	NULL, NULL, "a DICOM image: segment it, and save the segmentation as NRRD or NIfTI", false};
 
-// A binary STL may begin with any text: its length decides. `more`: bytes may follow the facets,
-// where the bytes before cannot be text.
+// Whether a file is a binary STL. Such a file may begin with any text, so its length decides.
+// `more`: bytes may follow the facets if the header cannot be text.
 static bool is_binary_stl(const unsigned char *bytes, size_t byte_count, bool more)
 {
 	if (byte_count < STL_HEADER_BYTES)
@@ -71,10 +71,10 @@ static bool is_binary_stl(const unsigned char *bytes, size_t byte_count, bool mo
 	                  (more && byte_count > whole && memchr(bytes, 0, STL_HEADER_BYTES)));
 }
 
-// The format that the first bytes tell, or NULL.
+// Returns the format that the first bytes identify, or NULL.
 static const cau_mesh_format *format_of_start(const unsigned char *bytes, size_t byte_count)
 {
-	size_t blank = 0; // before the first word of a text
+	size_t blank = 0; // white space before the first word of a text
 	while (blank < byte_count && (bytes[blank] == ' ' || (bytes[blank] >= 9 && bytes[blank] <= 13)))
 		blank++;
 	for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
@@ -95,7 +95,8 @@ static bool is_text(const unsigned char *bytes, size_t byte_count)
 	return !memchr(bytes, 0, byte_count < LOOKED_AT_BYTES ? byte_count : LOOKED_AT_BYTES);
 }
 
-// An OBJ has a line with one of its keywords; a TetGen file begins with numbers.
+// Returns the format of a text. An OBJ file has a line with one of its keywords. A TetGen file
+// begins with numbers.
 static const cau_mesh_format *format_of_text(const unsigned char *bytes, size_t byte_count)
 {
 	static const char *const keywords[] = {"v", "vn", "vt", "f", "mtllib", "usemtl", "o", "g", "s"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a definition to a clean mesh in metres.
+// Makes a clean mesh in metres from its definition.
 #include <math.h>
 
 #include "cautery/assert.h"
@@ -7,7 +7,7 @@
 #include "mesh/mesh_memory.h"
 #include "mesh/report.h"
 
-// `file` with `directory` before it unless it is absolute.
+// Joins `directory` and `file`. If `file` is absolute, `directory` is ignored.
 static cau_status join_path(const char *directory, const char *file, char path[static 600],
                             cau_error *error)
 {
@@ -69,7 +69,7 @@ static cau_status check_place(const cau_mesh_def *def, cau_error *error)
 	return CAU_OK;
 }
 
-// Scales what was read to metres, then moves it.
+// Scales a mesh that was read to metres. Then moves the mesh.
 static void place(const cau_mesh_def *def, cau_mesh *mesh)
 {
 	double unit_m = is_read(def) ? def->unit_m : 1;
@@ -78,7 +78,7 @@ static void place(const cau_mesh_def *def, cau_mesh *mesh)
 		mesh->position[i] = unit_m * mesh->position[i] + def->translate_m[i % 3];
 }
 
-// What asks for another answer than a mended mesh: a size that no tissue has, and a strict reading.
+// Fails if the mesh has a size that no tissue has, or if a strict reading finds repairs.
 static cau_status judge(const cau_mesh_def *def, const cau_mesh_report *report, cau_error *error)
 {
 	if (!is_read(def))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From bytes to a mesh and its report. The format is found from the bytes.
+// Makes a mesh and its report from the bytes of a file. The format is found from the bytes.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -8,7 +8,7 @@
 #include "mesh/mesh_memory.h"
 #include "mesh/report.h"
 
-// The readers leave room for growth.
+// Copies the mesh into arrays without spare capacity. Readers grow their arrays in larger steps.
 static cau_status copy_tight(const cau_mesh *from, cau_mesh *mesh, cau_error *error)
 {
 	CAU_ASSERT(from->vertex_count >= 0 && from->triangle_count >= 0 && from->tetrahedron_count >= 0,
@@ -43,9 +43,9 @@ static cau_status refuse_format(const char *name, const cau_mesh_format *format,
 	                name);
 }
 
-// A text whose lines end in carriage returns alone gets line feeds. Returns a copy that the caller
-// frees, or NULL where none is needed or memory ran out (the text then has one line, and is
-// refused).
+// Replaces carriage returns by line feeds in a text that has no line feeds. Returns a copy that the
+// caller frees. Returns NULL if no copy is needed, or if memory ran out. In the latter case the
+// text has one line only and is refused.
 static unsigned char *with_line_feeds(const unsigned char *bytes, size_t byte_count)
 {
 	if (memchr(bytes, '\n', byte_count) || !memchr(bytes, '\r', byte_count))
@@ -56,8 +56,8 @@ static unsigned char *with_line_feeds(const unsigned char *bytes, size_t byte_co
 	return copy;
 }
 
-// Splits the cells. Then fails where there are neither triangles nor tetrahedra, with what there
-// was instead.
+// Splits the cells. If there are neither triangles nor tetrahedra, fails with a list of what the
+// file contains instead.
 static cau_status end_reading(cau_mesh_builder *builder)
 {
 	cau_mesh_report *report = &builder->report;

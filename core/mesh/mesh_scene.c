@@ -8,10 +8,10 @@
 #include "cautery/defaults.h"
 #include "mesh/mesh.h"
 
-// Units are guessed where one alone makes an organ. From 3 to 20 units these are centimetres, as
-// millimetres make 3 to 20 mm. Beyond 20 units they are millimetres for a body, as scanners and
-// segmentations write millimetres. A sheet of 20 to 80 units may be in centimetres too, so that its
-// unit is asked for.
+// Limits for guessing a unit. A unit is guessed only if no other unit makes an organ. An extent of
+// up to 20 units is in centimetres, because millimetres would make at most 20 mm. A body beyond 20
+// units is in millimetres, which scanners and segmentations write. A sheet of 20 to 80 units may be
+// in centimetres too, so the user must give its unit.
 static const double centimetres_most = 20;
 static const double sheet_millimetres_least = 80;
 static const double ball_radius_most_m = 0.03;
@@ -65,15 +65,15 @@ static cau_status add_mesh(const cau_mesh_wish *wish, cau_scene_def *scene, cau_
 static bool may_guess(const cau_mesh_report *report)
 {
 	bool body = report->tetrahedron_count > 0 || report->opening <= CAU_NEARLY_CLOSED;
-	double longest = longest_of(report); // in units, which were taken for metres
+	double longest = longest_of(report); // in units of the file, which were read as metres
 	if (report->proposed_unit_m == 0.01)
 		return longest <= centimetres_most;
 	return report->proposed_unit_m == 0.001 &&
 	       longest >= (body ? centimetres_most : sheet_millimetres_least);
 }
 
-// Reads the mesh for its report. Where no unit was said and metres make no tissue, a unit is
-// guessed.
+// Reads the mesh for its report. Guesses the unit if none was given and the mesh in metres is too
+// large or too small for tissue.
 static cau_status read_report(const cau_mesh_wish *wish, cau_mesh_def *def, cau_mesh_report *report,
                               cau_error *error)
 {
@@ -89,7 +89,8 @@ static cau_status read_report(const cau_mesh_wish *wish, cau_mesh_def *def, cau_
 	return status;
 }
 
-// A material of its own for each region, as far as there is room, so that it can be changed alone.
+// Gives each region its own material, up to CAU_MAX_MATERIALS, so that each can be changed
+// separately.
 static void add_materials(const cau_mesh_report *report, bool fat, cau_layer_def *layer)
 {
 	int32_t listed =
@@ -135,7 +136,7 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 	return CAU_OK;
 }
 
-// The outermost tenth of a side.
+// Selects the outermost tenth of the mesh at one side.
 static void pin_side(const cau_mesh_report *report, int axis, bool high, cau_selection *pin)
 {
 	double margin_m = 0.01 * longest_of(report);
@@ -174,7 +175,8 @@ static cau_status pin_sides(const char *sides, const cau_mesh_report *report, ca
 	return CAU_OK;
 }
 
-// What was wished; else the lowest tenth, or the rim of an open sheet.
+// Adds the wanted pins. By default pins the rim of an open sheet, and the lowest tenth of any other
+// mesh.
 static cau_status add_pins(const cau_mesh_wish *wish, const cau_mesh_report *report,
                            cau_scene_def *scene, cau_error *error)
 {
@@ -189,8 +191,8 @@ static cau_status add_pins(const cau_mesh_wish *wish, const cau_mesh_report *rep
 	return CAU_OK;
 }
 
-// The ball grows with the mesh: an edge that sticks out of it on both sides stays cool at its ends
-// and never parts.
+// Adds a ball and a grasper. The ball grows with the mesh's edges. An edge that is longer than the
+// ball would stay cool at its ends and never part.
 static void add_tools(const cau_mesh_report *report, cau_scene_def *scene)
 {
 	cau_tool_def *ball = &scene->tools[scene->tool_count++];
@@ -214,7 +216,8 @@ cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_m
 {
 	CAU_ASSERT(wish->file != NULL, "a mesh of %zu bytes without a name", wish->byte_count);
 	cau_default_scene_def(scene);
-	scene->parting = CAU_PARTING_ELEMENTS; // whoever made the mesh did not make it for its edges
+	// A mesh from a file was not made to part along its edges.
+	scene->parting = CAU_PARTING_ELEMENTS;
 	memset(scene->gravity_m_s2, 0, sizeof scene->gravity_m_s2);
 	name_after_file(wish->file, scene->name);
 	cau_status status = add_mesh(wish, scene, error);

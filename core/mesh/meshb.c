@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Medit's binary form (.meshb), versions 1 to 4: libMeshb's documentation. Version 1 has floats,
-// the others doubles; from 3 on positions in the file have 8 bytes, in 4 whole numbers too.
+// Reads Medit's binary form (.meshb), versions 1 to 4: libMeshb's documentation. Version 1 has
+// floats, later versions doubles. From version 3 on, positions in the file have 8 bytes. In version
+// 4 whole numbers have 8 bytes too.
 #include "mesh/medit_kinds.h"
 #include "mesh/readers.h"
 
@@ -44,7 +45,7 @@ static void read_cells(meshb *m, const cau_medit_kind *kind)
 	}
 }
 
-// code(int), where the next block begins, then what the block holds.
+// Reads one block: code(int), the position of the next block, then the block's data.
 static bool read_block(meshb *m)
 {
 	cau_scan *scan = m->scan;

@@ -11,16 +11,16 @@ enum { MAX_REGIONS = 256, MAX_CORNERS = 1 << 20 };
 typedef struct obj {
 	cau_scan *scan;
 	cau_mesh_builder *builder;
-	double *texture; // UV of the vt lines, (texture_count x 2)
+	double *texture; // UV of each vt line, (texture_count x 2)
 	int32_t texture_count;
 	int32_t texture_capacity;
-	bool bare; // a corner without texture has been seen
+	bool bare; // a corner without texture was read
 	const char *region_keyword;
 	cau_word region_name[MAX_REGIONS];
 	int32_t region_count;
-	int32_t region;         // of the faces that follow
-	int32_t *corner_vertex; // of the face that is read, (corner_capacity)
-	double *corner_texture; // (corner_capacity x 2)
+	int32_t region;         // region of the next faces
+	int32_t *corner_vertex; // corners of the face being read, (corner_capacity)
+	double *corner_texture; // UV of the corners of the face being read, (corner_capacity x 2)
 	int32_t corner_capacity;
 } obj;
 
@@ -40,7 +40,7 @@ static void read_vertex(obj *o)
 static void read_texture(obj *o)
 {
 	double u = cau_scan_word_real(o->scan, cau_scan_word_of_line(o->scan), "a texture coordinate");
-	cau_word word = cau_scan_word_of_line(o->scan); // v may be left out
+	cau_word word = cau_scan_word_of_line(o->scan); // v may be missing
 	double v = word.length ? cau_scan_word_real(o->scan, word, "a texture coordinate") : 0;
 	if (o->texture_count == o->texture_capacity) {
 		int32_t capacity = o->texture_capacity ? 2 * o->texture_capacity : 64;
@@ -59,7 +59,7 @@ static void read_texture(obj *o)
 	o->texture_count++;
 }
 
-// Cuts the part before the next '/' off a word.
+// Removes the part before the next '/' from a word and returns that part.
 static cau_word cut_part(cau_word *word)
 {
 	const char *slash = word->length ? memchr(word->text, '/', word->length) : NULL;
@@ -69,7 +69,8 @@ static cau_word cut_part(cau_word *word)
 	return part;
 }
 
-// An index from 1, or from -1 backwards, into the `count` things so far; from 0. -1: it failed.
+// Reads an index into the `count` items read so far, and returns it counted from 0. Positive
+// indices count from 1, negative ones from the last item backwards. Returns -1 after a failure.
 static int32_t read_index(obj *o, cau_word word, const char *what, int32_t count)
 {
 	CAU_ASSERT(count >= 0, "%s among %d", what, count);
@@ -96,7 +97,8 @@ static corner read_corner(obj *o, cau_word word)
 	return read;
 }
 
-// Makes room for one corner more of a face. False: there is none, and the scan has failed.
+// Grows the arrays for one more corner of a face. Returns false if that is impossible; the scan has
+// then failed.
 static bool reserve_corner(obj *o, int32_t count)
 {
 	if (count < o->corner_capacity)
@@ -138,7 +140,7 @@ static void read_face(obj *o)
 		cau_mesh_builder_polygon(o->builder, o->corner_vertex, count, o->region, o->corner_texture);
 }
 
-// Makes the rest of the line the name of the region of the faces that follow.
+// Reads the rest of the line as the name of a region. Later faces belong to that region.
 static void read_region(obj *o)
 {
 	cau_word name = cau_scan_word_of_line(o->scan), word = name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY (Stanford polygon format) as text and in both byte orders: vertices and faces. Other elements
-// are counted.
+// Reads PLY files (Stanford polygon format), as text and in both byte orders. Vertices and faces
+// are read. All other elements are only counted.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +14,9 @@ enum { ELEMENTS_MAX = 16, PROPERTIES_MAX = 64, CORNERS_MAX = 4096 };
 typedef enum role { OTHER, X, Y, Z, CORNERS, REGION } role;
 
 typedef struct property {
-	int bytes; // of a number; negative: unsigned
+	int bytes; // bytes of one number; negative: the number is unsigned
 	bool real;
-	int list_bytes; // of the list's count; 0: no list
+	int list_bytes; // bytes of the list's count; 0: the property is no list
 	role role;
 } property;
 
@@ -159,7 +159,7 @@ static double read_number(cau_scan *scan, int bytes, bool real)
 	return bytes < 0 && number < 0 ? number + (double)(1LL << (8 * -bytes)) : number;
 }
 
-// The length of a list, of numbers that are all still to come.
+// Reads the length of a list. The numbers of the list follow.
 static int32_t read_length(cau_scan *scan, const property *of)
 {
 	double length = read_number(scan, of->list_bytes, false);
@@ -187,7 +187,7 @@ static void read_corners(ply *p, const property *of, int32_t *corner, int32_t *c
 		*corner_count = length;
 }
 
-// One element: a vertex, a face, or one that is passed over.
+// Reads one element: a vertex, a face, or an element to skip.
 static void read_one(ply *p, const element *of)
 {
 	double position[3] = {0};
@@ -219,7 +219,7 @@ static void read_elements(ply *p)
 {
 	for (int e = 0; e < p->element_count && !p->scan->status; e++) {
 		const element *of = &p->element[e];
-		if (of->property_count) // else its elements take no bytes
+		if (of->property_count) // otherwise the elements take no bytes
 			cau_scan_check_count(p->scan, of->name, of->count, 1);
 		for (int64_t i = 0; i < of->count && of->property_count && !p->scan->status; i++)
 			read_one(p, of);

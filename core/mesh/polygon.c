@@ -20,7 +20,7 @@ static bool is_fan(const double *position, const int32_t *vertex, int32_t count,
 	return true;
 }
 
-// Whether point p lies in the triangle, seen along the normal.
+// Whether point p is in the triangle, as seen along the normal.
 static bool holds_point(const double *position, const int32_t corner[3], int32_t p,
                         const double normal[3])
 {
@@ -36,7 +36,7 @@ static bool holds_point(const double *position, const int32_t corner[3], int32_t
 	return true;
 }
 
-// Whether the corner `at` of the remaining ones can be cut off.
+// Whether the corner at index `at` of the remaining corners can be cut off as a triangle.
 static bool is_ear(const double *position, const int32_t *vertex, const int32_t *left,
                    int32_t left_count, int32_t at, const double normal[3])
 {
@@ -61,7 +61,7 @@ static void cut_ears(const double *position, const int32_t *vertex, int32_t coun
 		int32_t at = 0;
 		while (at < count && !is_ear(position, vertex, left, count, at, normal))
 			at++;
-		if (at == count) // it crosses itself: any corner is as good
+		if (at == count) // the polygon crosses itself, so no corner is better than another
 			at = 1;
 		triangle[made][0] = left[(at + count - 1) % count];
 		triangle[made][1] = left[at];

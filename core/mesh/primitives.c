@@ -3,7 +3,7 @@
 
 #include "cautery/assert.h"
 
-// The rows of one kind, (count x width).
+// Checks the primitives of one kind, (count x width).
 static cau_status check_rows(const char *kind, const int32_t *row, int32_t count, int width,
                              int32_t vertex_count, cau_error *error)
 {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the edge table and the face table ask of the primitives that they are built from.
+// Checks of primitives before the edge table and the face table are built from them.
 #pragma once
 
 #include "mesh/edge_table.h"
 
-// Every index inside [0, vertex_count), no vertex twice in a primitive, and counts small enough for
-// tables of 32-bit indices. Errors: CAU_BAD_MESH naming the primitive, CAU_LIMIT.
+// Checks that every index is in [0, vertex_count), that no primitive has a vertex twice, and that
+// tables of 32-bit indices can hold all primitives. Errors: CAU_BAD_MESH, which names the
+// primitive; CAU_LIMIT.
 cau_status cau_primitives_check(const cau_primitives *primitives, cau_error *error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The readers of all formats. Each reads builder->scan into the builder. All failures go to the
-// scan, whose status is returned.
+// The readers of all formats. Each reader reads builder->scan into the builder. All failures go to
+// the scan. Each reader returns the scan's status.
 #pragma once
 
 #include "mesh/mesh_builder.h"

@@ -10,8 +10,8 @@
 #include "mesh/mesh_memory.h"
 
 // ---- regions
-// The place of a region in the list, which ascends; where it is not listed, the place it would
-// have.
+// Returns the index of a region in the ascending list. If the region is not in the list, returns
+// the index at which it would be inserted.
 static int32_t place_of(const cau_mesh_region *list, int32_t count, int32_t dimension,
                         int32_t region)
 {
@@ -32,8 +32,8 @@ static bool is_at(const cau_mesh_region *list, int32_t count, int32_t place, int
 	return place < count && list[place].dimension == dimension && list[place].region == region;
 }
 
-// The elements of one dimension. A list that is full counts the runs of regions that it has no
-// place for as one region each.
+// Counts the elements of one dimension by region. If the list is full, each run of elements of an
+// unlisted region counts as one more region.
 static void count_regions(const int32_t *region, int32_t count, int32_t dimension,
                           cau_mesh_report *report)
 {
@@ -66,7 +66,7 @@ static void count_all(const cau_mesh *mesh, cau_mesh_report *report)
 	count_regions(mesh->tetrahedron_region, mesh->tetrahedron_count, 3, report);
 }
 
-// Copies a name as far as it prints: control characters become '?', quotes around it go.
+// Copies a name without the quotes around it. Characters that cannot be printed become '?'.
 static void copy_name(cau_word word, char name[static CAU_MESH_NAME_BYTES])
 {
 	if (word.length >= 2 && word.text[0] == '"' && word.text[word.length - 1] == '"') {
@@ -95,7 +95,7 @@ void cau_mesh_report_regions(const cau_mesh_builder *builder, cau_mesh_report *r
 	}
 }
 
-// Counts again after mending; regions of which nothing is left go.
+// Counts the elements of the regions again after repairs. Removes regions without elements.
 static void recount_regions(const cau_mesh *mesh, cau_mesh_report *report)
 {
 	int32_t listed =
@@ -121,13 +121,14 @@ static int32_t root_of(int32_t *parent, int32_t vertex)
 	return vertex;
 }
 
-// Connected pieces of the elements. Returns how many vertices' trees are left.
+// Counts the connected components of the elements. `parent` is scratch for a union-find over the
+// vertices.
 static int32_t count_components(const int32_t *element, int32_t count, int corners,
                                 int32_t vertex_count, int32_t *parent)
 {
 	int32_t components = 0;
 	for (int32_t v = 0; v < vertex_count; v++)
-		parent[v] = -1; // of no element
+		parent[v] = -1; // of no element yet
 	for (size_t i = 0; i < (size_t)count * (size_t)corners; i++)
 		if (parent[element[i]] < 0) {
 			parent[element[i]] = element[i];
@@ -145,8 +146,8 @@ static int32_t count_components(const int32_t *element, int32_t count, int corne
 
 // ---- surface
 
-// Adds the vector area of what an open edge borders to that of its hole: of all edges around a hole
-// it is the hole's own, wherever the origin is.
+// Adds the vector area of an open edge to the sum of its hole. The sum over all edges around a hole
+// is the vector area of the hole, for any origin.
 static void add_to_hole(const cau_mesh *mesh, const cau_edge_table *edges, int32_t e,
                         int32_t *parent, double *hole)
 {
@@ -158,7 +159,7 @@ static void add_to_hole(const cau_mesh *mesh, const cau_edge_table *edges, int32
 	double turn = 1, area[3], from[2][3];
 	for (int k = 0; k < 3; k++)
 		turn = t[k] == end[1] && t[(k + 1) % 3] == end[0] ? -1 : turn;
-	for (int k = 0; k < 2; k++) // from a vertex of the mesh, for accuracy
+	for (int k = 0; k < 2; k++) // the first vertex of the mesh is the origin, for accuracy
 		cau_subtract3(x + 3 * (size_t)end[k], x, from[k]);
 	cau_cross3(from[0], from[1], area);
 	for (int c = 0; c < 3; c++)
@@ -171,7 +172,7 @@ static bool is_open(const cau_edge_table *edges, int32_t e)
 	return first[e + 1] - first[e] == 1;
 }
 
-// The holes' areas over the surface's.
+// Returns the total area of the holes over the area of the surface.
 static double measure_opening(const cau_mesh *mesh, const cau_edge_table *edges, int32_t *parent,
                               double *hole)
 {
@@ -228,13 +229,14 @@ static void count_quality(double quality, cau_mesh_report *report)
 	report->least_quality = fmin(report->least_quality, quality);
 }
 
-// The mean ratio: Liu and Joe, "Relationship between tetrahedron shape measures" (1994), and its
-// like for a triangle, 4 sqrt(3) A over the sum of the squares of its edges.
+// Measures quality as the mean ratio: Liu and Joe, "Relationship between tetrahedron shape
+// measures" (1994). A triangle has the corresponding ratio, 4 sqrt(3) A over the sum of the squares
+// of its edges.
 static void measure_quality(const cau_mesh *mesh, cau_mesh_report *report)
 {
 	const double *x = mesh->position;
 	bool solid = mesh->tetrahedron_count > 0;
-	double squares = 0; // of all edges, m^2
+	double squares = 0; // sum of the squares of all edges, m^2
 	report->least_quality = 1;
 	for (size_t i = 0; i < (size_t)mesh->tetrahedron_count; i++) {
 		const int32_t *t = mesh->tetrahedron + 4 * i;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report of a mesh in words: one fact a line.
+// Writes the report of a mesh as text, one fact on each line.
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 typedef struct text {
 	char *at;
-	size_t left; // with the zero
+	size_t left; // free bytes, with the terminating zero
 } text;
 
 __attribute__((format(printf, 2, 3))) static void put(text *out, const char *format, ...)
@@ -22,7 +22,7 @@ __attribute__((format(printf, 2, 3))) static void put(text *out, const char *for
 	out->left -= used;
 }
 
-// "read: 192 tetrahedra, 1 hexahedra", or "passed over: ...".
+// Writes a list of kinds, as in "read: 192 tetrahedra, 1 hexahedra" or "passed over: ...".
 static void put_kinds(const cau_mesh_report *report, bool passed, const char *title, text *out)
 {
 	const char *before = title;
@@ -109,7 +109,7 @@ void cau_mesh_report_text(const cau_mesh_report *report, char bytes[CAU_MESH_TEX
 	put(&out, ", least %.2g\n", report->least_quality);
 }
 
-// Kinds that a strict reading may pass over: they are not tissue.
+// Whether elements of this kind are tissue. A strict reading may skip only other kinds.
 static bool is_tissue(const char *kind)
 {
 	return !strstr(kind, "points") && !strstr(kind, "lines") && !strstr(kind, "vertices") &&

@@ -10,8 +10,8 @@
 #include "cautery/assert.h"
 
 enum {
-	NUMBER_BYTES = 64, // of a number as text, its zero included
-	QUOTE_BYTES = 32,  // of a word shown in a failure
+	NUMBER_BYTES = 64, // most bytes of a number as text, with the terminating zero
+	QUOTE_BYTES = 32,  // most bytes of a word in a message, with the terminating zero
 };
 
 cau_scan cau_scan_make(const void *bytes, size_t byte_count, cau_error *error)
@@ -46,7 +46,7 @@ void cau_scan_fail(cau_scan *scan, cau_status status, const char *format, ...)
 			cau_fail(scan->error, status, NULL, "line %zu: %s", line_of(scan, scan->mark), reason);
 }
 
-// A word as it may be shown: its first bytes, those that do not print as '?'.
+// Returns the first bytes of a word for a message. Bytes that cannot be printed become '?'.
 static const char *quote(cau_word word, char text[static QUOTE_BYTES])
 {
 	size_t length = word.length < QUOTE_BYTES - 1 ? word.length : QUOTE_BYTES - 1;
@@ -70,7 +70,7 @@ static bool is_blank(unsigned char byte)
 	return byte == ' ' || (byte >= '\t' && byte <= '\r');
 }
 
-// Length of a backslash and the line's end behind it, or 0.
+// Returns the length of a backslash with the end of line after it, or 0.
 static size_t joint_length(const cau_scan *scan, size_t at)
 {
 	CAU_ASSERT(at <= scan->count, "byte %zu of %zu", at, scan->count);
@@ -147,7 +147,7 @@ void cau_scan_expect(cau_scan *scan, const char *text)
 		fail_word(scan, text, word);
 }
 
-// Copies a word that can be a number. False: it is empty or too long.
+// Copies a word that may be a number. Returns false if the word is empty or too long.
 static bool copy_number(cau_word word, char text[static NUMBER_BYTES])
 {
 	if (word.length == 0 || word.length >= NUMBER_BYTES)
@@ -190,7 +190,7 @@ double cau_scan_word_real(cau_scan *scan, cau_word word, const char *what)
 		return 0;
 	char text[NUMBER_BYTES], *end = NULL;
 	if (copy_number(word, text)) {
-		// The C locale is static in the C library: nothing is allocated.
+		// the C locale is static in the C library, so newlocale allocates nothing
 		double value = strtod_l(text, &end, newlocale(LC_ALL_MASK, "C", (locale_t)0));
 		if (end != text && *end == 0)
 			return value;
@@ -199,7 +199,7 @@ double cau_scan_word_real(cau_scan *scan, cau_word word, const char *what)
 	return 0;
 }
 
-// Copies a binary number into native order. False: the bytes ended.
+// Copies a binary number into native byte order. Returns false if the bytes have ended.
 static bool take_bytes(cau_scan *scan, const char *what, unsigned char *out, int bytes)
 {
 	CAU_ASSERT(bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8, "%s of %d bytes", what, bytes);

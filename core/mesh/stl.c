@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL: triangles without shared vertices, which cleaning merges. Solids of a text are regions 1, 2,
-// ... with their names.
+// Reads STL: triangles without shared vertices. Equal vertices are merged later, when the mesh is
+// cleaned. The solids of a text file are regions 1, 2, ... with their names.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "mesh/readers.h"
 
-// Three new vertices and their triangle.
+// Adds three new vertices and their triangle.
 static void add_facet(cau_mesh_builder *builder, double position[3][3], int32_t region)
 {
 	int32_t first = builder->mesh.vertex_count;
@@ -17,8 +17,8 @@ static void add_facet(cau_mesh_builder *builder, double position[3][3], int32_t 
 		cau_mesh_builder_cell(builder, CAU_SHAPE_TRIANGLE, vertex, region, "triangles", false);
 }
 
-// facet normal x y z, outer loop, three vertices, endloop, endfacet. The normal is not looked at:
-// the order of the vertices says where the outside is.
+// Reads facet normal x y z, outer loop, three vertices, endloop, endfacet. The normal is ignored,
+// because the order of the vertices shows the outer side.
 static void read_facet(cau_mesh_builder *builder, int32_t region)
 {
 	cau_scan *scan = builder->scan;
@@ -36,7 +36,7 @@ static void read_facet(cau_mesh_builder *builder, int32_t region)
 	add_facet(builder, position, region);
 }
 
-// The rest of the line, which may be empty.
+// Reads the rest of the line, which may be empty.
 static cau_word read_name(cau_scan *scan)
 {
 	cau_word name = cau_scan_word_of_line(scan), word = name;
@@ -70,8 +70,8 @@ cau_status cau_mesh_read_stl(cau_mesh_builder *builder)
 	return scan->status;
 }
 
-// 80 bytes, number of facets (4 bytes), of each: normal and three vertices (floats), two bytes. All
-// numbers are little-endian.
+// Reads 80 bytes, then the number of facets (4 bytes), then for each facet its normal and three
+// vertices (floats) and two bytes. All numbers are little-endian.
 cau_status cau_mesh_read_stl_binary(cau_mesh_builder *builder)
 {
 	cau_scan *scan = builder->scan;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TetGen: the lines of a .node file, and behind them those of its .ele or .face file. TetGen writes
-// two files; cau_mesh_file_load puts them together. Format: TetGen's manual, "File formats".
+// Reads TetGen meshes: the lines of a .node file, followed by those of its .ele or .face file.
+// TetGen writes two files, which cau_mesh_file_load joins. Format: TetGen's manual, "File formats".
 #include "cautery/assert.h"
 #include "mesh/readers.h"
 
-// The next word; from '#' on a line is comment.
+// Reads the next word. Skips comments, which extend from '#' to the end of the line.
 static cau_word next_word(cau_scan *scan)
 {
 	cau_word word = cau_scan_word(scan);
@@ -25,7 +25,7 @@ static double next_real(cau_scan *scan, const char *what)
 	return cau_scan_word_real(scan, next_word(scan), what);
 }
 
-// The rest of a line as numbers, at most two. Returns how many.
+// Reads the rest of a line as numbers, at most two. Returns how many there are.
 static int rest_of_header(cau_scan *scan, int64_t number[2])
 {
 	for (int i = 0; i < 2; i++) {
@@ -37,8 +37,8 @@ static int rest_of_header(cau_scan *scan, int64_t number[2])
 	return 2;
 }
 
-// points, 3, attributes, 0 or 1 (a marker); of each: number x y z attributes marker. Returns the
-// number of the first, 0 or 1.
+// Reads points, 3, attributes, 0 or 1 (a marker), then for each point: number x y z attributes
+// marker. Returns the number of the first point, 0 or 1.
 static int64_t read_nodes(cau_mesh_builder *builder)
 {
 	cau_scan *scan = builder->scan;
@@ -100,8 +100,8 @@ static void read_element(cau_mesh_builder *builder, cau_shape shape, int64_t nod
 	                      reduced);
 }
 
-// .ele: elements, 4 or 10, attributes. .face: faces, 0 or 1 (a marker). The first attribute, or the
-// marker, is the region.
+// Reads elements. A .ele file has elements, 4 or 10, attributes. A .face file has faces, 0 or 1 (a
+// marker). The first attribute, or the marker, is the region.
 static void read_elements(cau_mesh_builder *builder, int64_t first)
 {
 	cau_scan *scan = builder->scan;

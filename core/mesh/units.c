@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which sizes tissue has, and which unit a file of another size is in.
+// The possible sizes of tissue, and the most likely unit of a file with another size.
 #include <math.h>
 #include <stddef.h>
 
 #include "cautery/assert.h"
 #include "mesh/mesh.h"
 
-// From a piece of a vessel's wall to a whole body.
+// Possible sizes of tissue: from a piece of a vessel's wall to a whole body.
 static const double tissue_least_m = 0.0005, tissue_most_m = 3;
-// From a gall bladder to a torso: what a file most often holds.
+// Most frequent sizes in files: from a gall bladder to a torso.
 static const double organ_least_m = 0.02, organ_most_m = 0.8;
 
 static const struct {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// USD as text (.usda): the prims UsdGeomTetMesh and UsdGeomMesh, each a region with the prim's
-// name. Where the layer says metersPerUnit, positions are scaled to metres. Transforms are passed
-// over. Schema: UsdGeom.TetMesh, UsdGeom.Mesh.
+// Reads USD as text (.usda): the prims UsdGeomTetMesh and UsdGeomMesh. Each prim is a region with
+// the prim's name. If the layer has metersPerUnit, positions are scaled to metres. Transforms are
+// skipped. Schema: UsdGeom.TetMesh, UsdGeom.Mesh.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,8 +23,8 @@ typedef struct usda {
 	cau_scan *scan;
 	cau_mesh_builder *builder;
 	double unit_m;
-	int depth;      // of braces
-	int prim_depth; // inside the prim that is read; 0: none
+	int depth;      // number of open braces
+	int prim_depth; // depth inside the prim that is being read; 0: outside all prims
 	cau_word name;
 	int32_t prims;
 	numbers value[ATTRIBUTES];
@@ -49,7 +49,7 @@ static void skip_blank(cau_scan *scan)
 	}
 }
 
-// Behind the end of a text whose quotes begin at `from`.
+// Returns the position after the end of a quoted text that begins at `from`.
 static size_t end_of_text(const cau_scan *scan, size_t from)
 {
 	unsigned char quote = scan->bytes[from];
@@ -74,7 +74,7 @@ static cau_word next_token(cau_scan *scan)
 		while (scan->at < scan->count && scan->bytes[scan->at] > ' ' &&
 		       !is_punctuation(scan->bytes[scan->at]) && scan->bytes[scan->at] != '"')
 			scan->at++;
-		scan->at += scan->at == scan->mark; // a byte that is none of these
+		scan->at += scan->at == scan->mark; // any other byte is a token by itself
 	}
 	return (cau_word){(const char *)scan->bytes + scan->mark, scan->at - scan->mark};
 }
@@ -101,11 +101,12 @@ static void add_number(usda *u, numbers *to, double number)
 	to->number[to->count++] = number;
 }
 
-// = [ (0, 0, 0), (1, 0, 0) ]: all numbers, one after the other.
+// Reads an array such as = [ (0, 0, 0), (1, 0, 0) ]. All its numbers are stored one after the
+// other.
 static void read_numbers(usda *u, numbers *to)
 {
 	if (!token_is(next_token(u->scan), '='))
-		return; // declared without a value, or with samples in time
+		return; // declared without a value, or with time samples
 	if (!token_is(next_token(u->scan), '['))
 		cau_scan_fail(u->scan, CAU_BAD_SYNTAX, "expected [");
 	to->count = 0;
@@ -121,7 +122,8 @@ static void read_numbers(usda *u, numbers *to)
 }
 
 // ---- prims
-// Number i of an attribute as a vertex behind `first`; -1: it is none, and the scan has failed.
+// Returns the vertex of number i of an attribute. Vertices of the prim begin at `first`. Returns -1
+// if there is no such vertex; the scan has then failed.
 static int32_t vertex_at(usda *u, const numbers *from, int64_t i, int32_t first)
 {
 	double index = from->number[i];
@@ -185,7 +187,7 @@ static void end_prim(usda *u)
 	u->prim_depth = 0;
 }
 
-// def TetMesh "name": what stands in its braces is read.
+// Begins a prim such as def TetMesh "name". The contents of its braces are read.
 static void begin_prim(usda *u)
 {
 	cau_word type = next_token(u->scan);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A spatial hash whose cells are `distance` wide. Only vertices that stay are entered, and they are
-// farther than `distance` from each other, so that a cell holds few.
+// Merges vertices with a spatial hash. Its cells have the width `distance`. Only kept vertices are
+// entered. They are farther than `distance` from each other, so a cell holds few of them.
 #include "mesh/vertex_merge.h"
 
 #include <math.h>
@@ -8,14 +8,14 @@
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
-static const double near = 1e-5; // of the bounding diagonal
+static const double near = 1e-5; // share of the bounding diagonal
 
 typedef struct grid {
 	const double *position;
 	const double *origin;
 	double distance;
-	int32_t *bucket; // (mask + 1): the vertex entered last, or -1
-	int32_t *next;   // (vertex_count): the vertex entered before it in the same bucket, or -1
+	int32_t *bucket; // (mask + 1): the vertex that was entered last, or -1
+	int32_t *next;   // (vertex_count): the vertex entered before in the same bucket, or -1
 	uint64_t mask;
 } grid;
 
@@ -46,7 +46,8 @@ static bool is_near(const grid *g, int32_t a, int32_t b)
 	return square < g->distance * g->distance;
 }
 
-// The lowest entered vertex near `vertex` among its cell and the 26 round it, or `vertex`.
+// Returns the lowest entered vertex that is near `vertex`, or `vertex` itself. Searches its cell
+// and the 26 cells around.
 static int32_t find_near(const grid *g, int32_t vertex, const int64_t cell[3])
 {
 	int32_t lowest = vertex;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Legacy VTK: the header and the walk over the sections. Format: "VTK File Formats", simple legacy
-// formats.
+// Reads legacy VTK: the header and the loop over the sections. Format: "VTK File Formats", simple
+// legacy formats.
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "mesh/vtk_part.h"
 #include "mesh/vtk_types.h"
 
-// Four lines: version, title, ASCII or BINARY, and the kind of DATASET.
+// Reads four lines: version, title, ASCII or BINARY, and the kind of DATASET.
 static void read_header(cau_vtk *vtk)
 {
 	static const char *const start[] = {"#", "vtk", "DataFile", "Version"};
@@ -33,7 +33,7 @@ static void read_header(cau_vtk *vtk)
 	scan->swap = binary && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__; // numbers are big-endian
 }
 
-// METADATA goes on until an empty line.
+// Skips METADATA, which end with an empty line.
 static void skip_metadata(cau_scan *scan)
 {
 	do
@@ -41,7 +41,7 @@ static void skip_metadata(cau_scan *scan)
 	while (cau_scan_word_of_line(scan).length);
 }
 
-// A section of geometry. False: the keyword is not one.
+// Reads a section of geometry. Returns false if the keyword names no such section.
 static bool read_geometry(cau_vtk *vtk, cau_word keyword)
 {
 	if (cau_word_is(keyword, "POINTS"))

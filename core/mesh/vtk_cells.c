@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points and cells of a legacy VTK file.
+// Reads points and cells of a legacy VTK file.
 #include <stdlib.h>
 
 #include "cautery/assert.h"
@@ -7,7 +7,7 @@
 #include "mesh/vtk_part.h"
 #include "mesh/vtk_types.h"
 
-// Cells as lists of points: cell i has corner[first[i]] .. corner[first[i + 1]).
+// Cells as lists of points: the points of cell i are corner[first[i]] .. corner[first[i + 1]).
 typedef struct cell_list {
 	int64_t count;
 	int64_t *first;
@@ -54,8 +54,8 @@ static int64_t *read_indices(cau_scan *scan, const char *what, int64_t count, in
 	return index;
 }
 
-// Up to version 5.0: number of cells, length of the list; then of each cell its number of corners
-// and the corners (int).
+// Reads cells up to version 5.0: number of cells, length of the list; then for each cell its number
+// of corners and the corners (int).
 static void read_old_list(cau_scan *scan, cell_list *list)
 {
 	int64_t count = cau_scan_count(scan, "number of cells", 1);
@@ -83,7 +83,7 @@ static void read_old_list(cau_scan *scan, cell_list *list)
 	}
 }
 
-// An announced array of whole numbers from version 5.1: its name, its type, its numbers.
+// Reads an announced array of whole numbers, from version 5.1 on: its name, type and numbers.
 static int64_t *read_named_indices(cau_scan *scan, const char *name, int64_t count)
 {
 	cau_scan_expect(scan, name);
@@ -94,7 +94,7 @@ static int64_t *read_named_indices(cau_scan *scan, const char *name, int64_t cou
 	return read_indices(scan, name, count, type ? type->bytes : 4);
 }
 
-// From version 5.1: number of offsets, number of corners, the offsets, the corners.
+// Reads cells from version 5.1 on: number of offsets, number of corners, the offsets, the corners.
 static void read_new_list(cau_scan *scan, cell_list *list)
 {
 	int64_t offset_count = cau_scan_count(scan, "number of offsets", 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers and attributes of a legacy VTK file. Of the attributes only the cells' region is kept.
+// Reads numbers and attributes of a legacy VTK file. Of the attributes only the region of the cells
+// is kept.
 #include <math.h>
 #include <stdlib.h>
 
@@ -70,7 +71,7 @@ bool cau_vtk_is_region_name(cau_word name)
 	return false;
 }
 
-// Passes over `count` numbers.
+// Skips `count` numbers.
 static void skip_numbers(cau_scan *scan, const cau_vtk_type *type, int64_t count)
 {
 	cau_vtk_start_numbers(scan);
@@ -117,7 +118,7 @@ static void read_regions(cau_vtk *vtk, const cau_vtk_type *type, int64_t count)
 	}
 }
 
-// An array of count items with `components` numbers each.
+// Reads an array of `count` items with `components` numbers each.
 static void read_array(cau_vtk *vtk, cau_word name, const cau_vtk_type *type, int64_t count,
                        int64_t components, bool cells)
 {
@@ -133,7 +134,7 @@ static void read_array(cau_vtk *vtk, cau_word name, const cau_vtk_type *type, in
 		skip_numbers(vtk->scan, type, count * components);
 }
 
-// SCALARS name type [components], LOOKUP_TABLE name, values.
+// Reads SCALARS: name type [components], LOOKUP_TABLE name, values.
 static void read_scalars(cau_vtk *vtk, int64_t count, bool cells)
 {
 	cau_scan *scan = vtk->scan;
@@ -149,7 +150,7 @@ static void read_scalars(cau_vtk *vtk, int64_t count, bool cells)
 	read_array(vtk, name, type, count, components, cells);
 }
 
-// FIELD name number-of-arrays, then of each: name, components, items, type, values.
+// Reads FIELD: name number-of-arrays, then for each array: name, components, items, type, values.
 static void read_field(cau_vtk *vtk, int64_t item_count, bool cells)
 {
 	cau_scan *scan = vtk->scan;
@@ -169,7 +170,7 @@ static void read_field(cau_vtk *vtk, int64_t item_count, bool cells)
 	}
 }
 
-// A colour has bytes in a binary file, fractions in text.
+// Skips colours. They are bytes in a binary file, and fractions in a text.
 static void skip_colours(cau_scan *scan, int64_t count, int64_t components)
 {
 	static const cau_vtk_type byte = {"unsigned_char", 1, CAU_VTK_UNSIGNED};
@@ -177,7 +178,7 @@ static void skip_colours(cau_scan *scan, int64_t count, int64_t components)
 		skip_numbers(scan, &byte, count * components);
 }
 
-// name, and of TEXTURE_COORDINATES also the number of components; type; values
+// Skips vectors: name; number of components (only TEXTURE_COORDINATES); type; values.
 static void skip_vectors(cau_vtk *vtk, int64_t count, int64_t components)
 {
 	cau_scan *scan = vtk->scan;

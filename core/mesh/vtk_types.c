@@ -8,8 +8,8 @@
 
 enum { VTK_PIXEL = 8, VTK_VOXEL = 11, KNOWN_TYPES = 82 };
 
-// Types by VTK's own numbers (vtkCellType.h). The corners of a cell are its first points. Shape
-// CAU_SHAPE_COUNT: passed over, or a polygon.
+// Types by VTK's own numbers (vtkCellType.h). The corners of a cell are its first points. With the
+// shape CAU_SHAPE_COUNT a cell is skipped, or is a polygon.
 static const struct {
 	const char *name;
 	cau_shape shape;
@@ -58,7 +58,8 @@ static const struct {
 	[81] = {"Bezier pyramids", CAU_SHAPE_PYRAMID},
 };
 
-// The points of a cell as vertices. False: one is not there, and the scan has failed.
+// Converts the points of a cell to vertices. Returns false if a point does not exist; the scan has
+// then failed.
 static bool take_corners(cau_mesh_builder *builder, const int64_t *corner, int64_t corners,
                          int32_t cell, int32_t *vertex)
 {
@@ -90,7 +91,7 @@ static void add_polygon(cau_mesh_builder *builder, const int64_t *corner, int64_
 	free(vertex);
 }
 
-// A strip: every second triangle is turned.
+// Adds a strip of triangles. Every second triangle of a strip has reversed orientation.
 static void add_strip(cau_mesh_builder *builder, const int64_t *corner, int64_t corners,
                       int32_t cell)
 {
@@ -112,7 +113,8 @@ static void add_known(cau_mesh_builder *builder, int64_t type, const int64_t *co
 	}
 	if (!take_corners(builder, corner, wanted, cell, vertex))
 		return;
-	if (type == VTK_PIXEL || type == VTK_VOXEL) // their corners go row by row, not around
+	if (type == VTK_PIXEL ||
+	    type == VTK_VOXEL) // their corners are ordered by rows, not around the cell
 		for (int i = 2; i < wanted; i += 4) {
 			int32_t third = vertex[i];
 			vertex[i] = vertex[i + 1];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTK's XML files: unstructured grids (.vtu) and surfaces (.vtp), all their pieces. Format: "VTK
-// File Formats", XML formats. Only as much of XML is read as these files have: tags with
+// Reads VTK's XML files: unstructured grids (.vtu) and surfaces (.vtp), with all their pieces.
+// Format: "VTK File Formats", XML formats. Only the XML of these files is supported: tags with
 // attributes.
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "mesh/vtu_data.h"
 
 typedef struct tag {
-	cau_word name;   // with '/' before it where it closes
+	cau_word name;   // with a leading '/' in a closing tag
 	cau_word inside; // the attributes
 } tag;
 
@@ -26,15 +26,15 @@ typedef struct vtu {
 	cau_mesh_builder *builder;
 	cau_vtu_coding coding;
 	section in;
-	cau_vtu_array array[PARTS]; // of the piece; of cells, or of POLYS
+	cau_vtu_array array[PARTS]; // arrays of the piece: positions, regions, and cells or POLYS
 	cau_vtu_array strip[PARTS];
 	int32_t *cell_region; // (cell_count)
 	int32_t cell_count, cell_capacity;
-	int64_t lead; // points and lines of the piece, whose data come before those of its surfaces
+	int64_t lead; // points and lines of the piece; their data come before the data of surfaces
 } vtu;
 
 // ---- XML
-// The value of an attribute; empty where there is none.
+// Returns the value of an attribute; empty if the tag does not have the attribute.
 static cau_word value_of(const tag *in, const char *name)
 {
 	const char *at = in->inside.text, *end = at + in->inside.length;
@@ -58,7 +58,7 @@ static cau_word value_of(const tag *in, const char *name)
 	return (cau_word){0};
 }
 
-// The next tag, behind which the scan stands then. False: there is none.
+// Reads the next tag and moves past its end. Returns false if there is none.
 static bool next_tag(cau_scan *scan, tag *found)
 {
 	const unsigned char *from = scan->bytes + scan->at;
@@ -175,7 +175,7 @@ static bool grow_regions(vtu *v)
 	return true;
 }
 
-// Numbers from..to of the connectivity as one cell.
+// Adds one cell of `corners` numbers of the connectivity. Points of the piece begin at `first`.
 static void add_cell(vtu *v, int64_t type, const double *corner, int64_t corners, int64_t first,
                      double region)
 {
@@ -183,7 +183,7 @@ static void add_cell(vtu *v, int64_t type, const double *corner, int64_t corners
 	if (!point)
 		cau_scan_fail(v->scan, CAU_NO_MEMORY, "no memory for a cell");
 	else if (grow_regions(v)) {
-		for (int64_t c = 0; c < corners; c++) // what is no number of a point names none
+		for (int64_t c = 0; c < corners; c++) // a number that cannot be a point becomes -1
 			point[c] = corner[c] >= 0 && corner[c] <= INT32_MAX ? first + (int64_t)corner[c] : -1;
 		v->cell_region[v->cell_count] = fabs(region) <= INT32_MAX ? (int32_t)region : 0;
 		cau_vtk_add_cell(v->builder, type, point, corners, v->cell_count++);
@@ -191,7 +191,7 @@ static void add_cell(vtu *v, int64_t type, const double *corner, int64_t corners
 	free(point);
 }
 
-// Cells of one section. Without types, all are of type `type`.
+// Adds the cells of one section. If `type` is 0, each cell has its own type in the array of types.
 static void add_cells(vtu *v, const cau_vtu_array *array, int64_t type, int64_t first,
                       const double *region, int64_t region_count)
 {
@@ -239,7 +239,7 @@ static void end_piece(vtu *v, bool surface)
 	memset(v->strip, 0, sizeof v->strip);
 }
 
-// ---- the walk
+// ---- the loop over all tags
 static void read_tag(vtu *v, const tag *at, bool *surface)
 {
 	static const struct {

@@ -9,8 +9,8 @@
 #include "mesh/mesh_memory.h"
 
 enum {
-	DEFLATE_RATIO_MAX = 1032,    // no stream of zlib grows by more
-	DATA_BYTES_MAX = 1 << 30,    // of one array
+	DEFLATE_RATIO_MAX = 1032,    // no zlib stream grows by a larger factor
+	DATA_BYTES_MAX = 1 << 30,    // most bytes of one array
 	NUMBER_TEXT_BYTES_LEAST = 2, // a digit and a blank
 };
 
@@ -36,8 +36,8 @@ static int digit_of(unsigned char byte)
 	return byte == '+' ? 62 : byte == '/' ? 63 : -1;
 }
 
-// Decodes until a byte that belongs to none. Groups may end with padding anywhere: header and data
-// are often coded apart.
+// Decodes base64 until a byte that is no base64. Groups may end with padding anywhere, because
+// header and data are often encoded separately.
 static bytes decode_base64(const cau_vtu_coding *coding, const unsigned char *text, size_t length)
 {
 	bytes out = {cau_mesh_array(length / 4 * 3 + 3, 1), 0};
@@ -100,8 +100,8 @@ static bytes copy_plain(const cau_vtu_coding *coding, const bytes *from)
 	return out;
 }
 
-// number of blocks, bytes of a block, bytes of the last one where it is shorter (else 0), and of
-// each block its compressed bytes; then the blocks.
+// Decompresses blocks. The data are: number of blocks, bytes of a block, bytes of the last block if
+// it is shorter (else 0), compressed bytes of each block; then the blocks.
 static bytes inflate_blocks(const cau_vtu_coding *coding, const bytes *from)
 {
 	bytes out = {0};
@@ -139,7 +139,7 @@ static bytes inflate_blocks(const cau_vtu_coding *coding, const bytes *from)
 	return out;
 }
 
-// The bytes that the array's numbers stand in.
+// Returns the decoded bytes of an array's numbers.
 static bytes take_bytes(const cau_vtu_coding *coding, const cau_vtu_array *array)
 {
 	bool appended = cau_word_is(array->format, "appended");
@@ -159,7 +159,7 @@ static bytes take_bytes(const cau_vtu_coding *coding, const cau_vtu_array *array
 	if (base64)
 		coded = decode_base64(coding, from, left);
 	else
-		coded = (bytes){(unsigned char *)from, left}; // only read
+		coded = (bytes){(unsigned char *)from, left}; // the bytes are only read
 	if (!coding->scan->status)
 		out = coding->zlib ? inflate_blocks(coding, &coded) : copy_plain(coding, &coded);
 	if (base64)
@@ -181,7 +181,7 @@ static double *read_text(const cau_vtu_coding *coding, const cau_vtu_array *arra
 {
 	size_t capacity = array->text_bytes / NUMBER_TEXT_BYTES_LEAST + 1;
 	double *number = cau_mesh_array(capacity, sizeof *number);
-	cau_scan scan = *coding->scan; // lines are counted from the file's start
+	cau_scan scan = *coding->scan; // so that messages count lines from the start of the file
 	scan.at = (size_t)(array->text - scan.bytes);
 	scan.count = scan.at + array->text_bytes;
 	if (!number)

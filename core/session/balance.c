@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mechanical totals, for tests and plots.
+// Total mechanical quantities (momentum, forces, energies), for tests and plots.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,14 +9,14 @@
 static cau_vec3 elastic_gradient(const cau_session *session, int32_t vertex)
 {
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
-	// the solver's gradient vector after a plain sum of the element records
+	// The solver's gradient vector holds a plain sum of the element records here.
 	double g[3];
 	session->solver.kernels->vectors->read(session->solver.gradient, vertex, g);
 	return cau_vec3_of(g);
 }
 
-// The rotations that elements keep from evaluation to evaluation, which the next step starts from:
-// copied to or from `kept`.
+// Copies the rotations that elements keep between evaluations, and from which the next step starts,
+// to `kept`, or back from it (`restore`). Returns the copied bytes.
 static size_t pass_polars(void *const *polar, int arrays, size_t array_bytes, char *kept,
                           bool restore)
 {
@@ -27,7 +27,7 @@ static size_t pass_polars(void *const *polar, int arrays, size_t array_bytes, ch
 	return (size_t)arrays * array_bytes;
 }
 
-// NULL if memory ran out.
+// Copies the rotations of all elements. The caller frees them. NULL if memory ran out.
 static char *keep_polars(const cau_elements *elements)
 {
 	size_t real = cau_real_bytes(elements->single);
@@ -58,7 +58,7 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 	char *polars = keep_polars(&solver->elements);
 	if (!polars)
 		return CAU_NO_MEMORY;
-	// residual of eq. 4 at the present state, with the present reactions
+	// Residual of eq. 4 at the present state, with the present contact reactions.
 	cau_solver_evaluate(solver);
 	return_polars(&solver->elements, polars);
 	for (int32_t i = 0; i < session->contact.row_count; i++) {
@@ -74,7 +74,7 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 	for (int32_t v = 0; v < tissue->vertex_count; v++)
 		squared += cau_dot(elastic_gradient(session, v), elastic_gradient(session, v));
 	balance->residual_n = sqrt(squared);
-	// elements alone
+	// The gradient of the elements alone.
 	solver->kernels->sum(&solver->elements, &solver->slots.incidence, 0, tissue->vertex_count,
 	                     solver->gradient);
 	balance->elastic_j = cau_solver_elastic_energy(solver);

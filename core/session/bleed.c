@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blood vessels of a session (core/vessel).
+// Connects a session to its blood vessels (core/vessel).
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 

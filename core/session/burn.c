@@ -3,8 +3,8 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// The tool's motion in equal parts: its heat grid follows, and the edges it meets are exposed (eq.
-// 18-20).
+// Divides the tool's motion in the tick into equal parts. In each part the heat grid follows the
+// tool, and the edges that the tool meets are exposed to heat (eq. 18-20).
 static void heat_edges(cau_session *session, cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;
@@ -12,8 +12,9 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 	CAU_ASSERT(parts >= 1, "a way in %d parts", parts);
 	double duration = session->solver.step_s / parts;
 	for (int part = 1; part <= parts; part++) {
-		cau_pose pose =
-			tool->state.pose; // at the end to the bit: restoring finds the surface there
+		// the last part ends exactly at the tool's pose, where a restore looks for the tool's
+		// surface
+		cau_pose pose = tool->state.pose;
 		if (part < parts)
 			pose = cau_pose_between(&tool->pose_before, &pose, (double)part / parts);
 		cau_heat_grid_advance(&tool->grid, def, &pose, tool->state.jaw, tool->state.energized,

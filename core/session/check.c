@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Range checks of everything that comes from outside, from the tables of scene.h. Paths are JSON
-// paths.
+// Range checks of all input, from the tables of scene.h. The paths in errors are JSON paths.
 #include <math.h>
 #include <string.h>
 
@@ -56,7 +55,7 @@ static cau_status finite_vector(const double *v, int count, double most, const c
 	return CAU_OK;
 }
 
-// Hands on what another room refused of the thing at `path`.
+// Returns the refusal of another module, with `path` before the path that the refusal names.
 static cau_status refuse_within(const cau_error *inner, const char *path, cau_error *error)
 {
 	CAU_ASSERT(inner->status != CAU_OK, "\"%s\" was not refused", path);
@@ -116,7 +115,8 @@ static cau_status check_shrink(const double *shrink, int count, const char *path
 	return CAU_OK;
 }
 
-// T must be symmetric positive definite: squared stretches between 1e-4 and 100.
+// The target T must be symmetric positive definite. Its eigenvalues are squared stretches, from
+// 1e-4 to 100.
 static cau_status check_target(const double eigen[3], int count, const char *path, cau_error *error)
 {
 	for (int i = 0; i < count; i++)
@@ -224,8 +224,9 @@ cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *err
 	return status;
 }
 
-// 0.01 J/K is that of 2.5 mm^3 of steel. A lighter blade would have heat divide a step into more
-// than two parts: closed jaws of 20 x 4 mm touch cells of 0.25 mm with 0.6 W/K.
+// Least heat capacity of a blade: 0.01 J/K is that of 2.5 mm^3 of steel. With a lighter blade the
+// heat step would need more than two substeps: closed jaws of 20 x 4 mm touch cells of 0.25 mm with
+// 0.6 W/K.
 static const double least_blade_j_k = 0.01;
 
 static cau_status check_blade(const cau_tool_def *tool, const char *path, cau_error *error)
@@ -257,7 +258,7 @@ cau_status cau_tool_check(const cau_tool_def *object, const char *path, double s
 		status = cau_pose_check(&object->pose, path, error);
 	if (status)
 		return status;
-	cau_error inner = {0}; // the grid knows its own stability limits
+	cau_error inner = {0}; // the heat grid checks its own stability limits
 	status = cau_heat_grid_check(object, step_s, &inner);
 	return status ? refuse_within(&inner, path, error) : CAU_OK;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands: checked when submitted, queued in order, applied at tick borders.
+// Commands are checked when submitted, queued in order, and applied at tick borders.
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "tissue/regions.h"
 
 // ---- submission
-// Region 0 means the layer's default where its mesh has no such region.
+// Region 0 is always accepted: it means the layer's default if the layer's mesh has no region 0.
 static cau_status check_material(const cau_session *session, const cau_command *command,
                                  cau_error *error)
 {
@@ -34,7 +34,8 @@ cau_status cau_command_check(const cau_session *session, const cau_command *comm
 	case CAU_COMMAND_TOOL_ADD:
 		return cau_tool_check(&command->as.definition, "definition", session->solver.step_s, error);
 	case CAU_COMMAND_TOOL_CONFIGURE: {
-		cau_tool_def named = command->as.definition; // its own name stands in `tool`
+		// The tool's name is in `tool`, not in the definition.
+		cau_tool_def named = command->as.definition;
 		memcpy(named.name, command->tool, sizeof named.name);
 		return cau_tool_check(&named, "definition", session->solver.step_s, error);
 	}
@@ -78,8 +79,8 @@ static bool is_added(const cau_session *session, const char *tool)
 	return cau_session_find_tool(session, tool) >= 0;
 }
 
-// An off or a hold that is due acts at once and needs no room (still.c). Of a tool that is not
-// there it is queued after all, for the tick to refuse it.
+// An energy-off or a hold that is due acts at once and needs no capacity in the queue (still.c). If
+// its tool does not exist, the command is queued, and the tick refuses it.
 static bool acts_at_once(cau_session *session, const cau_command *command)
 {
 	bool off = command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;
@@ -131,13 +132,13 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 	cau_command *queued = &session->command[session->command_count++];
 	*queued = *command;
 	if (queued->kind == CAU_COMMAND_TOOL_ENERGIZE && !queued->as.energized)
-		queued->as.ticks = 0; // of an enable alone
+		queued->as.ticks = 0; // only an enable has `ticks`
 	return CAU_OK;
 }
 
 // ---- application
-// Whether the heat grid and the grasp of the old definition suit the new one. They depend on these
-// members alone.
+// Whether the tool's heat grid and grasp also suit the new definition. They depend on these members
+// only.
 static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
 {
 	return now->shape == def->shape && now->hot_radius_m == def->hot_radius_m &&
@@ -147,7 +148,8 @@ static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
 	       now->diffusivity_m2_s == def->diffusivity_m2_s;
 }
 
-// Takes another shape or other sizes: the heat grid is made new and cold, and the jaws open.
+// Gives the tool another shape or other sizes. The heat grid is created again, cold, and the jaws
+// open.
 static cau_status change_form(cau_session *session, cau_tool *tool, const cau_tool_def *def,
                               cau_error *error)
 {
@@ -190,7 +192,7 @@ static cau_status apply_to_tool(cau_session *session, const cau_command *command
 	cau_tool *tool = &session->tool[index];
 	bool ends = command->kind == CAU_COMMAND_TOOL_HOLD ||
 	            (command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized);
-	if (command->sequence || !ends) // the server's own have none
+	if (command->sequence || !ends) // commands of the server itself have sequence 0
 		tool->state.sequence = command->sequence;
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_REMOVE:
@@ -231,7 +233,7 @@ static cau_status set_material(cau_session *session, const cau_command *command,
 		                changed.name);
 	if (cau_session_has_material(session, command))
 		return CAU_OK;
-	cau_matrix_update_stop(&session->update); // the factor in the making reads the materials
+	cau_matrix_update_stop(&session->update); // the factorisation in progress reads the materials
 	session->tissue.layer[index].def = changed;
 	cau_elements_set_materials(&session->solver.elements, &session->solver.slots, &session->tissue,
 	                           session->dissection.alive.element, session->shrink.shrunk);
@@ -278,7 +280,8 @@ static cau_status apply(cau_session *session, const cau_command *command, cau_er
 	}
 }
 
-// What waits for a later tick and must not undo this command goes; returns how many of `kept` stay.
+// Removes the kept commands that wait for a later tick and would undo this command. Returns how
+// many of `kept` remain.
 static int32_t void_older(cau_session *session, const cau_command *command, int32_t kept)
 {
 	CAU_ASSERT(kept >= 0 && kept <= session->command_count, "%d commands kept of %d", kept,
@@ -291,8 +294,8 @@ static int32_t void_older(cau_session *session, const cau_command *command, int3
 	return kept;
 }
 
-// A command that does not fit the present state is refused and reported; only numerical trouble and
-// a lack of memory end the step.
+// A command that does not suit the present state is refused and reported. Only a numerical error or
+// lack of memory ends the step.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 {
 	cau_status status = CAU_OK;
@@ -307,7 +310,8 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 		kept = void_older(session, &command, kept);
 		cau_status applied = apply(session, &command, &refusal);
 		if (!applied && cau_session_limit_energy(&command, session->tick, &session->command[kept]))
-			kept++; // in the place of the enable, or of one before it
+			kept++; // the end of the enable takes the queue slot of the enable, or of a command
+			        // before it
 		if (applied == CAU_NUMERICAL || applied == CAU_NO_MEMORY) {
 			status = applied;
 			if (error)

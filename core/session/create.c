@@ -53,17 +53,18 @@ static cau_status allocate_state(cau_session *session, cau_error *error)
 
 // ---- borders between the stages
 
-// About what a session takes for each vertex and element before its factor's size is known: that of
-// sheets and slabs of 10,000 to 250,000 vertices.
+// Approximate memory of a session per vertex and per element, before the factor's size is known.
+// The numbers are those of sheets and slabs of 10,000 to 250,000 vertices.
 enum { BYTES_OF_VERTEX = 1000, BYTES_OF_ELEMENT = 400 };
-// CHOLMOD keeps a number of 8 bytes and a row of 4; the packed panels and what else grows with them
-// take about as much again.
+// For each entry CHOLMOD keeps a number of 8 bytes and a row index of 4. The packed panels and the
+// other arrays of this size take about as much again.
 enum { BYTES_OF_FACTOR_ENTRY = 24 };
-// What Newton's steps keep of an entry besides: its block and its row (solve/newton.h).
+// Memory that Newton's method needs for each entry of the factor: a block and its row index
+// (solve/newton.h).
 enum { BYTES_OF_NEWTON_ENTRY = CAU_BLOCK * 8 + 4 };
 
-// What generated meshes come to; those of files are not counted before they are read. The scene is
-// checked, so that no product of cells is beyond what a mesh may have.
+// Counts the vertices and elements of generated meshes. Meshes from files are counted only when
+// they are read. The scene is checked, so the products of cells do not exceed the limits of a mesh.
 static cau_build_border foresee(const cau_scene_def *scene)
 {
 	cau_build_border border = {.next = CAU_BUILD_MESH};
@@ -99,7 +100,7 @@ static cau_build_border measure(const cau_session *session, cau_build_stage next
 	return border;
 }
 
-// Asks whoever creates the session whether to go on.
+// Asks the creator of the session, by `border`, whether the creation shall continue.
 static cau_status pass_border(const cau_session *session, const cau_session_def *def,
                               cau_build_border border, cau_error *error)
 {
@@ -202,7 +203,8 @@ static uint64_t hash_vessels(uint64_t hash, const cau_scene_def *scene)
 	return hash;
 }
 
-// What a snapshot does not hold: time, solver and the tissue at rest. Materials it does hold.
+// Hashes what a snapshot does not hold: time step, solver settings and the tissue at rest.
+// Materials are in the snapshot, so they are not hashed.
 static uint64_t hash_definition(const cau_session *session)
 {
 	const cau_scene_def *scene = session->scene;
@@ -213,22 +215,22 @@ static uint64_t hash_definition(const cau_session *session)
 	uint64_t hash = cau_hash_bytes(CAU_HASH_START, numbers, sizeof numbers);
 	hash = cau_hash_bytes(hash, choices, sizeof choices);
 	hash = cau_hash_word(hash, scene->seed);
-	if (scene->integrator != CAU_INTEGRATOR_EULER) // left out of older snapshots
+	if (scene->integrator != CAU_INTEGRATOR_EULER) // Euler is left out, as in older snapshots
 		hash = cau_hash_word(cau_hash_word(hash, UINT64_MAX), (uint64_t)scene->integrator);
-	if (scene->parting != CAU_PARTING_EDGES) // left out of older snapshots
+	if (scene->parting != CAU_PARTING_EDGES) // left out, as in older snapshots
 		hash = cau_hash_word(hash, (uint64_t)scene->parting);
-	if (scene->contact_thickness_m > 0) { // likewise
+	if (scene->contact_thickness_m > 0) { // a value of 0 is left out, as in older snapshots
 		const double contact[] = {scene->contact_thickness_m, scene->contact_friction};
 		hash = cau_hash_bytes(hash, contact, sizeof contact);
 	}
 	if (scene->energy != CAU_ENERGY_PAPER)
 		hash = hash_vessels(hash_bioheat(hash, scene), scene);
 	for (int32_t i = 0; i < scene->layer_count; i++)
-		if (scene->layers[i].coagulated_tear < 1) // 1: left out of older snapshots
+		if (scene->layers[i].coagulated_tear < 1) // a value of 1 is left out, as in older snapshots
 			hash = cau_hash_bytes(cau_hash_word(hash, (uint64_t)i),
 			                      &scene->layers[i].coagulated_tear, sizeof(double));
 	for (int32_t i = 0; i < scene->layer_count; i++)
-		if (scene->layers[i].viscosity_s > 0) // likewise
+		if (scene->layers[i].viscosity_s > 0) // a value of 0 is left out, as in older snapshots
 			hash = cau_hash_bytes(cau_hash_word(hash, (uint64_t)i), &scene->layers[i].viscosity_s,
 			                      sizeof(double));
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
@@ -244,7 +246,8 @@ static uint64_t hash_definition(const cau_session *session)
 	return hash_array(hash, t->hinge_weight, t->hinge_count, sizeof(double));
 }
 
-// Snapshots have the first part, and none has ever had which material an element has.
+// Adds the material of each element to the definition's hash. Snapshots carry the definition's hash
+// only, and no snapshot version holds which material an element has.
 uint64_t cau_session_tissue_hash(const cau_session *session)
 {
 	const cau_tissue *t = &session->tissue;
@@ -355,7 +358,7 @@ void cau_session_set_threads(cau_session *session, int32_t thread_count)
 		return;
 	cau_pool *pool = cau_pool_create(thread_count);
 	if (!pool)
-		return; // the old one still serves
+		return; // the session keeps its present pool
 	cau_pool_destroy(session->pool);
 	session->pool = session->solver.pool = pool;
 }

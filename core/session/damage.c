@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What heat has done inside a region and outside it, in volumes of the tissue at rest.
+// Heat damage inside and outside a region, as volumes of the tissue at rest.
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "session/session_internal.h"
@@ -16,7 +16,8 @@ static bool is_inside(const cau_selection *region, cau_vec3 place)
 	return true;
 }
 
-// An element with its corners, rest volume and whether it is there.
+// Adds an element to the damage on its side of the region, by its corners and rest volume. `alive`:
+// the element is not removed.
 static void add(const cau_session *session, const cau_selection *region, const int32_t *vertex,
                 int corners, double volume_m3, bool alive, cau_damage damage[2])
 {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Supports that move: pinned vertices led along a path that the caller gives, tick by tick.
+// Moving supports: pinned vertices that follow positions given by the caller, tick by tick.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double farthest_m = 1000; // as for every place that comes from outside
+static const double farthest_m = 1000; // the limit of all positions in the input
 
 static cau_status check_driven(const cau_session *session, int32_t vertex, const double at[3],
                                cau_error *error)
@@ -48,7 +48,7 @@ void cau_session_lead_driven(cau_session *session)
 	for (int32_t k = 0; k < session->driven_count; k++) {
 		double *at = session->position + 3 * (size_t)session->driven[k];
 		const double *to = session->driven_position + 3 * (size_t)k;
-		if (!session->pinned[session->driven[k]]) // a command of this tick has unpinned it
+		if (!session->pinned[session->driven[k]]) // a command of this tick has unpinned the vertex
 			continue;
 		for (int c = 0; c < 3; c++)
 			at[c] = last ? to[c] : at[c] + substep->part * (to[c] - at[c]);

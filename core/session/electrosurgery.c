@@ -10,36 +10,40 @@
 
 enum {
 	CELLS_MOST = 1 << 16,
-	ADDED_A_TICK = 1000, // cells: some half a millisecond of work
-	// Where heat arrives there are cells, while these are fewer. The others are for tools.
+	ADDED_A_TICK = 1000, // cells; they take about half a millisecond
+	// New cells follow heat only while there are fewer cells than this. The remaining capacity is
+	// for tools.
 	FOLLOWED_MOST = CELLS_MOST / 4 * 3,
-	FOLLOW_TURNS = 60, // each element is looked at once in so many ticks; heat is slow
-	ITERATIONS = 60,   // of the potential, which begins at that of the tick before
+	FOLLOW_TURNS = 60, // each element is visited once in this many ticks, because heat is slow
+	ITERATIONS = 60,   // largest number for the potential, which starts from the last tick's
 };
 
-static const double filled_m = 3e-3;      // elements so near to a hot part get cells
-static const double urgent_m = 1e-3;      // and so near at once
-static const double reach_m = 3e-3;       // of the current's cells around an electrode
-static const double residual_most = 1e-3; // of the potential
-static const double spark_v = 200;        // peak, from which a metal electrode sparks to tissue
-static const double spark_v_m = 3e6;      // breakdown of air
-// A generator finds no load below this conductance: 10 kV, the most that one has, would give 0.1
-// mW.
+static const double filled_m = 3e-3; // elements nearer than this to a hot part get cells
+// Elements nearer than this to a hot part get cells in this tick, beyond ADDED_A_TICK.
+static const double urgent_m = 1e-3;
+// Distance around an electrode within which cells carry its current.
+static const double reach_m = 3e-3;
+static const double residual_most = 1e-3; // largest residual of the potential
+static const double spark_v = 200;   // peak voltage above which a metal electrode sparks to tissue
+static const double spark_v_m = 3e6; // breakdown field of air
+// A generator measures no load below this conductance. The largest voltage of any generator, 10 kV,
+// would give 0.1 mW there.
 static const double least_conductance_s = 1e-12;
-// An arc enters tissue through a spot, of about this radius (no measurement was found). Most of the
-// resistance is there, and most of the heat.
+// Radius of the spot through which an arc enters tissue; no measurement was found. Most of the
+// resistance and most of the heat are at the spot.
 static const double spot_m = 1e-4;
-static const double cold_k = 0.01;
-static const double warm_k = 3; // above the surroundings: tissue beyond gets cells
-// Share of its water that tissue still has when it bursts. No measurement was found. Steam in
-// tissue that holds 1 MPa has 180 degC, and a sixth of such water boils at once when it is let off.
-// At most all of the water has boiled. A half is between the two.
+static const double cold_k = 0.01; // K: a blade closer to the surroundings counts as cold
+// Temperature above the surroundings; warmer tissue gets cells for its neighbours too.
+static const double warm_k = 3;
+// Share of the water that tissue still has when it bursts. No measurement was found. Steam in
+// tissue that holds 1 MPa has 180 degC. When the pressure is released, a sixth of such water boils
+// at once. At the other extreme all water has boiled. A half is between the two.
 static const double burst_share = 0.5;
 
 // ---- blades
 
-// Heat capacity of the metal at the hot part, J/K, and conductance along the shaft, W/K, of tools
-// whose definition has 0 for them. A steel wire of 1 mm and 10 mm length has 0.03 J/K. Jaws have
+// Defaults of the hot part for tools whose definition has 0: heat capacity of the metal, J/K, and
+// conductance along the shaft, W/K. A steel wire of 1 mm and 10 mm length has 0.03 J/K. Jaws have
 // more than 100 mm^3 of metal.
 static const struct {
 	double heat_capacity_j_k, cooling_w_k;
@@ -112,7 +116,7 @@ bool cau_session_has_cooled(const cau_session *session)
 	return session->cells->bioheat.cold;
 }
 
-// ---- where a tool is
+// ---- distances from a tool
 
 static bool has_hot_part(const cau_tool *tool)
 {
@@ -130,13 +134,14 @@ static double hot_distance(const cau_tool *tool, cau_vec3 point)
 	                            CAU_PART_HOT, point, NULL);
 }
 
-// The middle of a cell that touches metal is half a cell away. A fiftieth is for rounding.
+// Largest distance of a cell's middle from metal that touches the cell: half a cell, and a fiftieth
+// of that for rounding.
 static double reach_of_metal_m(const cau_session *session)
 {
 	return 0.51 * session->scene->cell_m;
 }
 
-// Distance from the hot part within which its sparks, or its metal, reach a cell's middle.
+// Distance from the hot part within which metal or sparks reach a cell's middle.
 static double touch_m(const cau_session *session, const cau_tool *tool)
 {
 	double peak_v = tool->state.definition.peak_v;
@@ -145,12 +150,12 @@ static double touch_m(const cau_session *session, const cau_tool *tool)
 
 // ---- cells around a tool
 
-// Edges near a tool's hot part are visited: their elements get cells.
+// State of a visit to the edges near a tool's hot part. The elements of these edges get cells.
 typedef struct edge_visit {
 	cau_session *session;
-	int32_t left;         // places that may still be looked at to fill elements that are not urgent
-	bool full;            // there is no room for more cells
-	cau_vec3 least, most; // box at rest around the ends
+	int32_t left; // cells that may still be added in this tick to elements that are not urgent
+	bool full;    // the capacity of cells is reached
+	cau_vec3 least, most; // box, at rest, around the ends of the edges
 } edge_visit;
 
 static bool lives(const cau_session *session, int32_t element)
@@ -168,7 +173,8 @@ static void grow(edge_visit *visit, cau_vec3 at)
 		(cau_vec3){fmax(visit->most.x, at.x), fmax(visit->most.y, at.y), fmax(visit->most.z, at.z)};
 }
 
-// `urgent`: heat or sparks may reach them in the next ticks.
+// Gives cells to the elements at the edge. `urgent`: heat or sparks may reach them in the next
+// ticks.
 static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 {
 	cau_session *session = visit->session;
@@ -186,7 +192,8 @@ static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 		}
 }
 
-// The exposure that viewers see: 0.5 for coagulated tissue, rising to 1 for dry or removed tissue.
+// Shows the heat of an edge as an exposure: 0.5 for coagulated tissue, rising to 1 for dry or
+// removed tissue.
 static void show_heat(cau_session *session, int32_t edge)
 {
 	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
@@ -216,8 +223,7 @@ static void visit_edge(edge_visit *visit, const cau_tool *tool, int32_t edge)
 	grow(visit, cau_vec3_of(session->tissue.rest + 3 * (size_t)end[1]));
 }
 
-// Gives cells to elements near the tool, some in a tick, and finds the box at rest that they are
-// in.
+// Gives cells to elements near the tool, a limited number in a tick, and finds their box at rest.
 static edge_visit look_around(cau_session *session, const cau_tool *tool)
 {
 	edge_visit visit = {.session = session,
@@ -261,8 +267,8 @@ static void follow_element(edge_visit *visit, int32_t element)
 		                     &session->solver.elements, &session->solver.slots);
 }
 
-// Gives cells to the elements that share an edge with a warm one. Otherwise heat would end 3 mm
-// from where a tool was. What heat has denatured begins to shrink.
+// Gives cells to the elements that share an edge with a warm element. Without that, heat could not
+// spread farther than 3 mm from the tool. Denatured elements begin to shrink.
 static void follow_heat(cau_session *session)
 {
 	const cau_tissue_cells *cells = session->cells;
@@ -284,7 +290,8 @@ static bool is_in_box(const cau_cells *grid, int32_t cell, const edge_visit *vis
 	       place[2] * side <= visit->most.z + side && (place[2] + 2) * side >= visit->least.z;
 }
 
-// Through the half cell that lies between the electrode and the middle of a cell that it touches.
+// Returns area over length, m, of the tissue between an electrode and the middle of a cell that
+// touches the electrode: half a cell.
 static double contact_over_length(const cau_session *session, int32_t cell, double distance_m)
 {
 	double side = session->scene->cell_m;
@@ -305,17 +312,19 @@ static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 	double right = cau_pose_to_local(&tool->state.pose, at).x;
 	current->electrode[current->electrode_count++] = (cau_electrode_cell){
 		.cell = cell, .over_length_m = over, .potential = is_bipolar(tool) && right < 0 ? 0 : 1};
-	// Sparks reach farther than heat goes from metal to tissue.
+	// Sparks reach farther than the distance over which heat flows from metal to tissue.
 	bool pressed = distance <= reach_of_metal_m(session);
 	if (bioheat->contact_count < bioheat->cells.capacity)
 		bioheat->contact[bioheat->contact_count++] =
 			(cau_contact_cell){.blade = index, .cell = cell, .over_length_m = pressed ? over : 0};
 }
 
-// A tick updates the pull-back of every eighth cell: deformation changes little from tick to tick.
+// Each tick updates the pull-back of every eighth cell, because deformation changes little from
+// tick to tick.
 enum { STRETCH_TURNS = 8 };
 
-// Arcs jump between all cells within their reach. Over a tick each cell has a share of one spot.
+// Arcs jump to all cells within their reach. Averaged over a tick, the cells share one spot
+// equally.
 static void strike(cau_current *current)
 {
 	for (int32_t k = 0; k < current->electrode_count; k++)
@@ -331,7 +340,7 @@ static bool may_reach(const cau_session *session, const cau_tool *tool, int32_t 
 	return hot_distance(tool, middle) <= radius + reach;
 }
 
-// Most elements have all their cells one after another, so each is asked once.
+// Most elements have their cells one after another, so each element is tested only once.
 static void find_touched(cau_session *session, int32_t index, const edge_visit *visit)
 {
 	cau_tissue_cells *cells = session->cells;
@@ -355,7 +364,7 @@ static void find_touched(cau_session *session, int32_t index, const edge_visit *
 
 // ---- power
 
-// An ultrasonic blade is heated by the tissue that it rubs.
+// Heats an ultrasonic blade by the friction of the tissue at the blade.
 static void rub(const cau_session *session, cau_tool *tool)
 {
 	double power = session->cells->current.electrode_count ? tool->state.definition.power_w : 0;
@@ -363,14 +372,14 @@ static void rub(const cau_session *session, cau_tool *tool)
 	tool->state.delivered_w = power;
 }
 
-// Advanced bipolar: as tissue dries, its load rises from its least. Then the generator has ended,
-// until energy goes off and on again.
+// Whether an advanced bipolar generator has ended. As tissue dries, its load rises above the least
+// load. At the given rise the generator ends, until energy goes off and on again.
 static bool has_ended(const cau_tool *tool)
 {
 	return tool->state.definition.load_rise_off > 0 && tool->least_ohm < 0;
 }
 
-// Whether the tool sparks.
+// Whether the tool's generator, mode and shape produce sparks now.
 static bool sparks(const cau_tool *tool)
 {
 	return tool->state.energized && !has_ended(tool) && tool->state.definition.peak_v >= spark_v &&
@@ -425,7 +434,7 @@ static void energize(cau_session *session, cau_tool *tool)
 // ---- removal
 
 // Removes the cells within reach of sparks that have lost enough water. Returns whether there were
-// any, and the box of their places.
+// any, and the box of their grid positions.
 static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
 {
 	cau_bioheat *bioheat = &session->cells->bioheat;
@@ -454,7 +463,7 @@ static void lose_element(cau_session *session, int32_t element, uint32_t *layers
 	cau_dissection_lose_element(&session->dissection, primitive, index);
 }
 
-// Removes the elements with cells in the box that are separated now.
+// Removes the elements that have cells in the box and whose vertices are no longer joined by cells.
 static void part(cau_session *session, const int32_t least[3], const int32_t most[3],
                  uint32_t *layers)
 {
@@ -467,8 +476,9 @@ static void part(cau_session *session, const int32_t least[3], const int32_t mos
 	}
 }
 
-// What is left of the elements that were removed in this tick, torn ones too, is the lips of a cut:
-// tissue that a mesh of whole elements has lost, and that still conducts heat and current.
+// Reassigns the cells of elements that were removed in this tick, also of torn ones. These cells
+// are the lips of the cut: the mesh has lost their elements whole, but they still conduct heat and
+// current.
 static void keep_lips(cau_session *session)
 {
 	for (int32_t k = 0; k < session->dissection.removed_count; k++)

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy that a tick makes out of nothing: kinetic, elastic and gravitational energy at its end
-// beyond those at its start and the work done on the tissue in it. Implicit Euler loses energy, so
-// a converged step reads zero or less; more is what the iteration has left undone.
+// Energy gain of a tick: kinetic, elastic and gravitational energy at its end, less those at its
+// start and less the work done on the tissue in it. Implicit Euler loses energy, so a converged
+// step has a gain of 0 or less. A positive gain is the error of unfinished iterations.
 //
-// Work is force times the way of what it acts on: gravity and the forces of commands, reactions of
-// tools, drag in char, and supports that are led. What a tick changes after its solve (elements
-// parted or on their way to shrink) changes the elastic energy without force: the shares of the
-// local step that have such elements are evaluated again where they are, for the next tick to start
-// from. Plastic flow and friction of tissue on tissue count as loss. Laws without an energy have
-// none to compare: nothing is told. Where the solver spared itself the look at where a step ended,
-// the elastic energy there is what eq. 4 comes to without its inertia.
+// Work is force times displacement of the point where it acts. It includes gravity, forces of
+// commands, reactions of tools, drag in char, and moved supports. Changes after a tick's solve
+// (elements that part or shrink) change the elastic energy without work. So the shares of the local
+// step that contain such elements are evaluated again at the present positions. The next tick
+// starts from that energy. Plastic flow and friction between tissue count as loss. A material law
+// without an energy has no gain; nothing is reported. If the solver skipped the evaluation at the
+// step's end, the elastic energy there is computed from the objective (eq. 4) less inertia and
+// viscosity.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-enum { SUMS = 4 }; // of a chunk: work, kinetic energy before and after, inertia's part of eq. 4
+// Sums of a chunk: work, kinetic energy before and after, inertia's part of eq. 4.
+enum { SUMS = 4 };
 
 cau_status cau_session_make_energy(cau_session *session, cau_error *error)
 {
@@ -33,7 +35,7 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error)
 
 // ---- shares whose laws have changed
 
-// The share of a slot: shares of a kind are in the order of their slots.
+// Returns the share of a slot. The shares of a kind are in the order of their slots.
 static int32_t share_of(const cau_element_slots *slots, int kind, int32_t slot)
 {
 	CAU_ASSERT(slots->work_count > 0, "slot %d of kind %d in no share", slot, kind);
@@ -67,17 +69,18 @@ void cau_session_mark_changed(cau_session *session)
 	for (int32_t k = 0; k < session->dissection.removed_count; k++)
 		mark(session, session->dissection.removed[k].kind, session->dissection.removed[k].element);
 	if (session->shrink.active_count == session->shrink.active_capacity)
-		session->energy.stale = true; // what found no room has arrived at once
+		session->energy.stale = true; // an element for which the list was full has shrunk at once
 	for (int32_t k = 0; k < session->shrink.active_count; k++)
 		mark(session, session->shrink.active[k].kind, session->shrink.active[k].element);
 }
 
-// Rotations that a set keeps from evaluation to evaluation; reading energies may not move them.
+// Copies of the rotations that a share's elements keep between evaluations. Reading energies must
+// not change them.
 enum { MOST_POLARS = 6 };
 typedef struct kept_polars {
 	int count;
 	void *const *array;
-	double bytes[MOST_POLARS][CAU_SHARE]; // room for either precision
+	double bytes[MOST_POLARS][CAU_SHARE]; // large enough for either precision
 } kept_polars;
 
 static void keep_polars(const cau_elements *elements, const cau_local_work *work, kept_polars *kept)
@@ -118,7 +121,7 @@ static void share_part(void *context, int32_t index)
 	return_polars(&solver->elements, work, &kept);
 }
 
-// Elastic energy where the tissue is now, under the laws of now.
+// Finds the elastic energy of the present positions, under the present material laws.
 void cau_session_begin_energy(cau_session *session)
 {
 	cau_energy *energy = &session->energy;
@@ -127,7 +130,8 @@ void cau_session_begin_energy(cau_session *session)
 		return;
 	bool anew = energy->stale || energy->marked;
 	if (anew) {
-		energy->stale |= solver->spared; // then no share is of where the tissue is
+		// After a skipped evaluation no share belongs to the present positions.
+		energy->stale |= solver->spared;
 		cau_solver_displace(solver);
 		cau_pool_run(session->pool, solver->slots.work_count, share_part, session);
 		memset(energy->dirty, 0, (size_t)solver->slots.work_count);
@@ -136,9 +140,9 @@ void cau_session_begin_energy(cau_session *session)
 	energy->stale = energy->marked = false;
 }
 
-// ---- work and motion of a tick, before velocities are brought up to date
+// ---- work and motion of a tick, before velocities are updated
 
-// Of a support that was led: the elements' pull on it, against which it went its way.
+// Returns the work done at a moved support: the support's motion against the elements' forces.
 static double support_work(const cau_session *session, int32_t vertex, const double move[3])
 {
 	CAU_ASSERT(session->fixed[vertex], "vertex %d is no support", vertex);
@@ -159,7 +163,7 @@ static void vertex_part(void *context, int32_t chunk)
 	const cau_step_solver *solver = &session->solver;
 	const double *x = session->position, *start = session->position_start;
 	const double *velocity = session->velocity, *force = session->external;
-	const double *push = session->substep.push; // of a first substep
+	const double *push = session->substep.push; // tools' force in the first substep, or NULL
 	const double *gravity = session->scene->gravity_m_s2;
 	double work = 0, before = 0, after = 0, inertia = 0;
 	double scale = cau_session_velocity_scale(session);
@@ -237,12 +241,13 @@ static void measure_gain(cau_session *session)
 	energy->scale_j = energy->elastic_j + kinetic_j + touching_j + fabs(work_j) + fabs(of_tools_j);
 }
 
-// Of the energy of a tick with two substeps. Iterations that leave such a tick far from its
-// solution may feed a swing.
+// Largest energy gain of a tick with two substeps, as a share of the tick's energy. Iterations that
+// leave such a tick far from its solution could otherwise feed an oscillation.
 static const double most_gain = 1e-4;
 
-// Takes so much of the tick's mean velocity that nothing is gained, where that has less energy:
-// kinetic energy is convex, so the share that a straight line between both gives is enough.
+// Mixes the tick's mean velocity into the velocities until the gain is 0, if the mean has less
+// energy. The share is that of linear interpolation, which suffices because kinetic energy is
+// convex.
 static void take_gain_off(cau_session *session)
 {
 	double gain_j = session->energy.gain_j;

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What touches nothing in a tick, though tissue keeps from tissue (collide/collide.h). What jaws
-// hold has no room to keep apart. What goes faster than the legs of a first guess lead can only be
-// followed at a price that nobody waits for. What is inside out has its surface inside: what it
-// touched would keep it there. And what came to cross something while it was one of these is looked
-// for when it is to touch again, and left alone until it has found its way out.
+// Vertices that are excluded from tissue contact in a tick (collide/collide.h), by reason:
+// - Vertices held by jaws: between jaws there is no space for the contact thickness.
+// - Vertices of inverted tetrahedra: their surface is inside out, and contact would keep it so.
+// - Diverged vertices: the substeps of the first guess cannot follow so far a motion at a useful
+//   cost.
+// - Vertices that cross tissue: crossings are searched when vertices return to contact. The
+//   vertices stay excluded until they no longer cross.
 #include <string.h>
 
 #include "session/session_internal.h"
 
-// Where more of the tetrahedra are inside out, tissue touches nothing at all: it has to find its
-// way back first, and takes its elasticity alone for that.
+// Largest share of inverted tetrahedra with tissue contact. Above this share contact is off for all
+// tissue, so that elasticity alone can restore the shape.
 static const double most_inverted_share = 0.01;
 
 static void exempt_held(cau_session *session)
@@ -19,18 +21,18 @@ static void exempt_held(cau_session *session)
 		for (int32_t k = 0; k < session->tool[i].grasp_count; k++) {
 			const cau_grasp *grasp = &session->tool[i].grasp[k];
 			for (int c = 0; c < 3; c++)
-				if (grasp->vertex[c] >= 0) // one, or a face's corners
+				if (grasp->vertex[c] >= 0) // a vertex, or the corners of a face
 					exempt[grasp->vertex[c]] = 1;
 		}
 }
 
-// Returns whether too much is inside out.
+// Excludes the vertices of inverted tetrahedra. Returns true if there are too many of these.
 static bool exempt_inverted(cau_session *session)
 {
 	const cau_tissue *tissue = &session->tissue;
 	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
 	int32_t count = 0;
-	if (!session->inversion.count) // the last tick ended with none
+	if (!session->inversion.count) // the last tick ended without inverted tetrahedra
 		return false;
 	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
 		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
@@ -43,7 +45,7 @@ static bool exempt_inverted(cau_session *session)
 	return count > most_inverted_share * tissue->tetrahedron_count;
 }
 
-// Returns whether anything is thrown.
+// Excludes the diverged vertices. Returns whether there are any.
 static bool exempt_thrown(cau_session *session, const double *guess, double most_m)
 {
 	const cau_surface_parts *surface = &session->collide.surface.vertices;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What jaws take hold of: vertices between them (touch.c), and where there are none, as between the
-// vertices of cells that are larger than the jaws, points of faces. A hold on a point pulls at the
-// face's corners by their shares, as contact does (solve/contact.h), so what is pulled moves with
-// the jaws from where it was when they closed: nothing jumps.
+// What jaws grasp: vertices between the jaws (touch.c) or, if there are none, points of faces. Jaws
+// that are smaller than the elements may have no vertex between them. A hold on a point pulls at
+// the corners of its face by their weights, as contact does (solve/contact.h). So the tissue moves
+// with the jaws from its position at closing, and nothing jumps.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"
@@ -60,14 +60,14 @@ bool cau_session_hold_is_left(const cau_session *session, const cau_grasp *grasp
 
 // ---- faces between the jaws
 
-// Points are looked for at the nodes of a grid of so many steps along each edge of a face: jaws of
-// a millimetre find a face of ten.
+// Steps of the search grid along each edge of a face. With 20 steps, jaws of a millimetre find a
+// point of a face of ten millimetres.
 enum { STEPS = 20 };
 
 typedef struct holding {
 	const cau_session *session;
 	cau_tool *tool;
-	double reach_m; // of all that is between the jaws, from the tip
+	double reach_m; // m; every point between the jaws is nearer to the tip
 } holding;
 
 static void weights_at(int i, int j, double weight[3])
@@ -86,8 +86,9 @@ static cau_vec3 local_point(const holding *h, const int32_t vertex[3], const dou
 	return cau_pose_to_local(&h->tool->state.pose, sum);
 }
 
-// The points between jaws that are open so far which are furthest from each other along them and
-// across: two, so that what is held does not turn about one. Returns how many there are.
+// Finds the two points of a face between jaws of this opening that are farthest apart along and
+// across the jaws. Two points keep the face from turning about one. Returns how many points there
+// are.
 static int find_points(const holding *h, const int32_t vertex[3], double jaw, double weight[2][3])
 {
 	double least = HUGE_VAL, most = -HUGE_VAL;
@@ -111,8 +112,8 @@ static void hold_face(holding *h, int32_t face)
 {
 	const int32_t *vertex = h->session->tissue.faces.vertex + 3 * (size_t)face;
 	double weight[2][3];
-	int count =
-		find_points(h, vertex, 0, weight); // what closed jaws press, else what goes into them
+	// points at the faces of closed jaws first, then points between the open jaws
+	int count = find_points(h, vertex, 0, weight);
 	if (!count)
 		count = find_points(h, vertex, h->tool->state.jaw, weight);
 	for (int p = 0; p < count && h->tool->grasp_count < CAU_MAX_GRASPED; p++) {
@@ -128,7 +129,7 @@ static void hold_face(holding *h, int32_t face)
 	}
 }
 
-// Whether a corner is held already, or cannot move.
+// Whether a corner of the face is already held or cannot move.
 static bool is_held(const holding *h, const int32_t vertex[3])
 {
 	for (int k = 0; k < 3; k++) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tetrahedra that are inside out. A step may leave some, and the next steps usually mend them. The
-// energy of StVK has a minimum there, so that law can keep them for good, and every number stays
-// finite. Those that stay are counted by layer, and the session reports them.
+// Inverted tetrahedra. A step may leave some, and the next steps usually restore them. The energy
+// of StVK has a minimum at an inverted shape, so this law can keep them inverted with every number
+// finite. Tetrahedra that stay inverted are counted by layer, and the session reports the counts.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Inversions of a fast motion last for some ticks. After half a second they are no part of it.
+// Inversions of a fast motion last for some ticks. An inversion of half a second has another cause.
 static const double long_s = 0.5;
 
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error)
@@ -28,7 +28,8 @@ bool cau_session_is_inverted(const double *position, const int32_t vertex[4])
 	cau_vec3 from = cau_vec3_of(position + 3 * (size_t)vertex[0]), side[3];
 	for (int k = 0; k < 3; k++)
 		side[k] = cau_sub(cau_vec3_of(position + 3 * (size_t)vertex[k + 1]), from);
-	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0); // at rest it is (mesh/mesh.h)
+	// at rest the volume is positive (mesh/mesh.h)
+	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0);
 }
 
 void cau_session_forget_inversion(cau_session *session)

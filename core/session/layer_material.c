@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A layer's definition takes the material that a command sets, or has it already.
+// Sets a command's material in a layer's definition, or finds that the layer has it already.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Where the region's material stands; the first, which is the default, if the region has none.
+// Index of the region's material; 0 (the default) if the region has none.
 static int32_t find_material(const cau_layer_def *def, bool fat, int32_t region)
 {
 	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",
@@ -37,7 +37,7 @@ bool cau_layer_take_material(cau_layer_def *def, const cau_command *command)
 }
 
 // ---- whether it has the material already
-// By fields: the bytes between them may differ.
+// Compares field by field, because the padding bytes between fields may differ.
 
 #define SAME(name, ...) &&a->name == b->name
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands that state a level: where a tool is led, whether it is on, what a material is. Stated
-// again while it holds, a level changes nothing: drivers repeat themselves, and a connection that
-// was lost may send a command twice. So such a command neither acts again nor wakes tissue that
-// rests.
+// Commands that state a level: a tool's commanded pose, its energy, a material. A command that
+// repeats the present level changes nothing. Drivers send levels repeatedly, and a lost connection
+// may send a command twice. So a repeated level neither acts again nor wakes resting tissue.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -27,7 +26,7 @@ static bool has_pose(const cau_session *session, const cau_tool *tool, const cau
 	       (tool->state.grasping || command->as.move.jaw == tool->jaw_target);
 }
 
-// A tool that is not there is changed by nothing: its commands are refused.
+// A command for a tool that does not exist changes nothing, because it will be refused.
 static bool has_tool_level(const cau_session *session, const cau_command *command)
 {
 	int32_t index = cau_session_find_tool(session, command->tool);

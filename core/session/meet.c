@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue against tissue, from tick to tick: what touches is looked for where the tick began, and
-// the first guess goes no further than it may (collide/collide.h).
+// Contact between tissue and tissue. As a tick begins, touching pairs are found at the start
+// positions, and the first guess is stopped where it would make tissue cross (collide/collide.h).
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-enum { MOST_LEGS = 16 }; // of the first guess: it goes on where it came to the end of its reach
+// Substeps of the first guess. Each continues from the end of the reach of the one before.
+enum { MOST_LEGS = 16 };
 
 cau_status cau_session_make_collide(cau_session *session, cau_error *error)
 {
@@ -37,7 +38,8 @@ static void ask_for(cau_session *session, const double *from, const double *to)
 			session->collide.step[i] = to[i] - from[i];
 }
 
-// Where a vertex is let go; supports that are led are where they are led to.
+// Adds the filtered step to the vertices of the surface. Supports keep the position that they are
+// led to.
 static void go(cau_session *session, double *position)
 {
 	const cau_collide *collide = &session->collide;
@@ -49,8 +51,8 @@ static void go(cau_session *session, double *position)
 	}
 }
 
-// Where the guess would lead through tissue: on in legs, each filtered, from where the last one
-// ended.
+// Moves the vertices towards the guess in several substeps, if the guess would lead through tissue.
+// Each substep starts where the last one ended, and is filtered.
 static void go_in_legs(cau_session *session, const double *guess, double *at)
 {
 	cau_collide *collide = &session->collide;
@@ -63,7 +65,7 @@ static void go_in_legs(cau_session *session, const double *guess, double *at)
 	}
 }
 
-// The first guess as far as tissue lets it go.
+// Replaces the first guess by its part that tissue contact permits.
 static void stop_guess(cau_session *session, double *guess)
 {
 	cau_step_solver *solver = &session->solver;
@@ -95,5 +97,6 @@ void cau_session_begin_collide(cau_session *session)
 	cau_collide_begin(collide, session->pool, session->position_start);
 	if (cau_collide_filter(collide, session->pool, session->position_start, true))
 		stop_guess(session, guess);
-	cau_collide_see(collide, session->pool, guess); // from here on steps are short
+	// from here on the filter allows short steps only
+	cau_collide_see(collide, session->pool, guess);
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How vertices move through a tick: predicted before the solve, their velocities after it.
+// Motion of the vertices in a tick: their prediction before the solve, and their velocities after
+// it.
 #include <math.h>
 
 #include "session/session_internal.h"
 
-// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v; with implicit Euler both
-// turned where nothing holds (spin.c). With two substeps dt is the h of both (substep.c).
+// Predicts s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v. With implicit
+// Euler both are rotated for pieces that turn freely (spin.c). With two substeps, dt is the h of
+// each substep (substep.c).
 void cau_session_predict(cau_session *session)
 {
 	double dt = session->solver.inertia_s;
@@ -32,7 +34,7 @@ double cau_session_velocity_scale(const cau_session *session)
 	return exp(-session->scene->damping_per_s * dt) / dt;
 }
 
-// v = (x - x_t) / dt (eq. 2), or of two substeps, damped by exp(-c dt).
+// Sets v = (x - x_t) / dt (eq. 2), or the velocity after two substeps, damped by exp(-c dt).
 void cau_session_update_velocities(cau_session *session)
 {
 	double scale = cau_session_velocity_scale(session);

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Jaws stop at what lies between them. They turn towards where they are asked to be, and what they
-// hold goes with their faces: first it is pushed to where both touch it, then it is pressed
-// together evenly, between the faces, about the hinge. The holds are springs in the solve
-// (solve/hold.c), so the tissue answers with its own stiffness, and the work of their reactions
-// along that way is the moment that the jaws press against. They stand where it is that of
-// close_force_n at their tips.
+// Jaws stop at the tissue between them. They turn towards their commanded opening. The held tissue
+// moves with the faces of the jaws. First a face pushes the tissue until both faces touch it. Then
+// the tissue is pressed evenly between the faces, about the hinge. The holds are springs in the
+// solve (solve/hold.c), so the tissue answers with its own stiffness. The work of the holds'
+// reactions per angle is the moment against which the jaws press. The jaws stop when this moment is
+// that of close_force_n at their tips.
 //
-// A tick turns them as far as the holds' own springs would let them if the tissue behind did not
-// yield at all. It does, so they come to rest without ever pressing harder, whatever it is.
+// In each tick the jaws turn as far as the springs of the holds would permit if the tissue behind
+// did not yield at all. Tissue does yield, so the jaws come to rest without pressing harder than
+// close_force_n, whatever the tissue is.
 //
-// Tissue that is squeezed far resists far more than these laws say: the stress in organs between a
-// grasper's jaws grows exponentially, and livers and kidneys fail at about half their thickness and
-// some 0.3 MPa, which is what 8 N are on such faces (J. Rosen et al. 2008). So nothing is pressed
-// to less than a share of its thickness, a sheet's own among it, and jaws do not close whole on it.
+// Strongly squeezed tissue resists far more than these laws say. The stress in organs between a
+// grasper's jaws grows exponentially. Livers and kidneys fail at about half their thickness and at
+// some 0.3 MPa, which is 8 N on such faces (J. Rosen et al. 2008). So tissue is never pressed below
+// a share of its thickness. The thickness of a sheet counts too: jaws do not close completely on a
+// sheet.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"
 
-static const double jaw_per_s = 8; // a full stroke takes an eighth of a second
-static const double least_share = 0.4;
+static const double jaw_per_s = 8;     // a full stroke takes an eighth of a second
+static const double least_share = 0.4; // of the tissue's thickness when jaws grasped it
 
-typedef struct extent { // of what is held, or of the room between the faces
+typedef struct extent { // angles of the held points, or of the faces of the jaws
 	double low, high;   // rad
 } extent;
 
@@ -35,7 +37,8 @@ static double angle_of(const cau_tool_jaws *jaws, const cau_grasp *grasp)
 	return cau_tool_jaw_angle(jaws, cau_vec3_of(grasp->local));
 }
 
-// What is inside a jaw's body, where it has sunk in or slipped to, stays as far beyond its face.
+// Returns the angles of the held points. A point inside a jaw's body, which has sunk in or slipped,
+// counts as a point on the face. Its depth in the jaw stays as it is.
 static extent extent_held(const cau_tool *tool, const cau_tool_jaws *jaws, extent faces)
 {
 	CAU_ASSERT(tool->grasp_count > 0, "%d points are held", tool->grasp_count);
@@ -53,7 +56,7 @@ static double open_now(const cau_tool *tool)
 	return tool->state.jaw * tool->state.definition.jaw_open_rad;
 }
 
-// ---- taking hold
+// ---- grasping
 
 static double thickness_m(const cau_session *session, const cau_grasp *grasp)
 {
@@ -84,16 +87,18 @@ void cau_session_begin_pinch(const cau_session *session, cau_tool *tool)
 	double thickest = 0;
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		const cau_grasp *grasp = &tool->grasp[k];
-		double arm = fmax(jaws.hinge_m - grasp->local[2], jaws.hinge_m / 2); // not at the hinge
+		// at least half the jaw's length, so that the angle stays finite at the hinge
+		double arm = fmax(jaws.hinge_m - grasp->local[2], jaws.hinge_m / 2);
 		thickest = fmax(thickest, thickness_m(session, grasp) / arm);
 	}
 	double least = least_share * (held.high - held.low + thickest);
-	tool->least_open_rad = fmin(least, open_now(tool)); // they need not open for it
+	tool->least_open_rad = fmin(least, open_now(tool)); // a grasp does not open the jaws
 }
 
-// ---- what is pressed
+// ---- pressing
 
-// Where a hold goes as the jaws close, m per rad: 0 for all until both faces touch.
+// Motion of a grasped point per angle of the jaws, m/rad. It is 0 for all points until both faces
+// touch the tissue.
 static cau_vec3 way_of(const cau_tool_jaws *jaws, extent held, extent faces, const cau_grasp *grasp)
 {
 	double width = held.high - held.low;
@@ -125,13 +130,13 @@ void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index)
 	tool->state.jaw_force_n = fmax(moment, 0) / tool->state.definition.tip_length_m;
 }
 
-// By how much the jaws may turn on, rad: less than 0 where they press harder than they can.
+// Returns the angle, rad, by which the jaws may still close. It is below 0 if they press too hard.
 static double yield_of(const cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;
 	cau_tool_jaws jaws = cau_tool_describe_jaws(def);
 	extent faces = faces_at(tool, open_now(tool)), held = extent_held(tool, &jaws, faces);
-	double stiffness = 0; // N m/rad, of the holds alone
+	double stiffness = 0; // N m/rad, of the holds' springs alone
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		cau_vec3 way = way_of(&jaws, held, faces, &tool->grasp[k]);
 		stiffness += def->grasp_stiffness_n_m * cau_dot(way, way);
@@ -140,7 +145,7 @@ static double yield_of(const cau_tool *tool)
 	return stiffness > 0 ? left / stiffness : HUGE_VAL;
 }
 
-// What is held goes with the faces, which were open by `before`.
+// Moves the held points with the faces of the jaws, which were open by `before`, rad.
 static void squeeze(cau_tool *tool, double before)
 {
 	cau_tool_jaws jaws = cau_tool_describe_jaws(&tool->state.definition);
@@ -150,7 +155,7 @@ static void squeeze(cau_tool *tool, double before)
 	double share = width > room ? room / width : 1;
 	double low = fmin(fmax(held.low, faces.low), faces.high - share * width);
 	if (share == 1 && low == held.low)
-		return; // the faces have not come to it yet
+		return; // no face touches the tissue yet
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		cau_grasp *grasp = &tool->grasp[k];
 		double angle = angle_of(&jaws, grasp);
@@ -159,7 +164,7 @@ static void squeeze(cau_tool *tool, double before)
 		cau_vec3 was = cau_vec3_of(grasp->local),
 				 is = cau_tool_turn_with_jaw(&jaws, was, angle + by);
 		cau_vec3_to(is, grasp->local);
-		// what it is pressed is no way that it slipped
+		// the motion by pressing is not part of the slip
 		cau_vec3_to(cau_add(cau_vec3_of(grasp->start), cau_sub(is, was)), grasp->start);
 	}
 }
@@ -170,7 +175,7 @@ static double towards(double from, double to, double most)
 	return fabs(way) <= (1 + 1e-9) * most ? to : from + (way > 0 ? most : -most);
 }
 
-// A part of the tick alone turns them by that part.
+// Turns the jaws in a `part` of the tick.
 void cau_session_turn_jaws(cau_tool *tool, double step_s, double part)
 {
 	cau_tool_state *state = &tool->state;

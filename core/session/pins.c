@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pinning at run time. Pinned vertices are eliminated rows, so a new set means a new pattern: the
-// system is analysed and factored anew within the tick (tens of milliseconds for 30,000 tetrahedra,
-// once).
+// Changes of pinned vertices at run time. Pinned vertices have no rows in the system, so a new set
+// of pins changes the pattern of the matrix. The system is analysed and factored again within the
+// tick. This takes tens of milliseconds for 30,000 tetrahedra, once for each change.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -15,16 +15,17 @@ cau_status cau_session_rebuild_system(cau_session *session, cau_error *error)
 	cau_matrix_update_finish(&session->update);
 	cau_solver_finish(solver);
 	memset(&session->update, 0, sizeof session->update);
-	// a system without rows was taken for a diagonal one
+	// a system without rows was marked as diagonal; use the scene's choice again
 	solver->diagonal = session->scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->factor_version++;
 	solver->factor_epoch++;
-	// a pinned vertex has no row any more, and nothing writes its part of these from now on
+	// A pinned vertex has no row any more. From now on nothing writes its part of these arrays.
 	size_t bytes = 4 * (size_t)session->tissue.vertex_count * solver->kernels->vectors->real_bytes;
 	memset(solver->increment, 0, bytes);
 	memset(solver->history.last_increment, 0, bytes);
 	memset(session->contact.solution, 0, bytes);
-	// the last rebuilt system goes: however often pins change, a session holds two at most
+	// Frees the last rebuilt system. However often pins change, a session holds at most two
+	// systems.
 	cau_arena *arena = &session->rebuilt_arena;
 	cau_arena_finish(arena);
 	cau_status status =

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States that no tissue can have. A step that ends in one faults its session, with the tick and the
-// layer: shown as if it were tissue it would be worse than no step. The bounds lie far beyond what
-// tissue bears and what any tool or burnt strip does here, so that they tell a solver that has gone
-// astray and forces that nothing could stand, and nothing else:
+// States that no tissue can have. A step that ends in such a state faults its session, with the
+// tick and the layer. Showing the state as tissue would be worse than no step. The bounds are far
+// beyond what tissue resists and what any tool or parted strip does here. So only a diverged solver
+// or an impossible force exceeds them:
 //
-// - a vertex flies faster than sound does in tissue. Recoil is a wave, and no wave is faster; a
-//   strip that has burnt through snaps back at some ten metres a second.
-// - a living edge is drawn to fifty times its length and to twice the size of all tissue. Collagen
-//   tears at 1.2 times its length, fat below 3; tissue here does not tear, and what a grasper that
-//   never slips draws out by a decimetre gets forty times as long in a mesh of 2 mm. A finer one
-//   gets longer, a mesh of a few elements larger: hence both.
-// - nine tenths of all tetrahedra are inverted. Half of them were under a grasper that was driven
-//   a decimetre through the floor that they are pinned to, and recovered.
+// - A vertex moves faster than sound in tissue. Recoil is a wave, and no wave is faster. A strip
+//   that heat has parted snaps back at some ten metres a second.
+// - A living edge is longer than fifty times its rest length and than twice the size of all tissue.
+//   Collagen tears at 1.2 times its length, fat below 3. Tissue here does not tear: a grasper that
+//   never slips and pulls a decimetre stretches a mesh of 2 mm by forty. A finer mesh is stretched
+//   more, and a mesh of few elements has longer edges. Hence both bounds.
+// - Nine tenths of all tetrahedra are inverted. Half of them were inverted under a grasper that was
+//   driven a decimetre through the floor to which they are pinned, and they recovered.
 //
-// Edges are looked at when one may be too long: each look leaves the least distance by which any
-// could yet grow, and the farthest move of each tick eats twice of it.
+// Edges are checked only when one may be too long. Each check finds the least length by which an
+// edge may still grow. Each tick subtracts twice the farthest motion of a vertex from that length.
 #include <math.h>
 #include <string.h>
 
@@ -77,7 +77,8 @@ static const char *layer_of_share(const cau_session *session, const cau_local_wo
 	return layer_of_vertex(session, tissue->hinge_vertex[4 * (size_t)element_at[work->first]]);
 }
 
-// Elements whose energy is no number, else a vertex that is at no place, say where it went wrong.
+// Adds to *error the layer of an element whose energy is not finite. If there is none, adds the
+// layer of a vertex whose position is not finite.
 cau_status cau_session_locate(const cau_session *session, cau_error *error)
 {
 	char reason[sizeof error->reason];
@@ -109,7 +110,7 @@ static void motion_part(void *context, int32_t chunk)
 		for (int c = 0; c < 3; c++)
 			move2 += (x[3 * v + c] - start[3 * v + c]) * (x[3 * v + c] - start[3 * v + c]);
 		farthest2 = move2 > farthest2 ? move2 : farthest2;
-		// true for what is not a number; supports go as fast as they are led
+		// true if move2 is not a number; supports may move at any finite speed
 		if (!(move2 <= most * most) && astray < 0 && !(session->fixed[v] && isfinite(move2)))
 			astray = v;
 	}
@@ -139,7 +140,7 @@ static double length_m(const double *position, const int32_t *edge)
 	                          cau_vec3_of(position + 3 * (size_t)edge[0])));
 }
 
-// The layer of a living element on the edge, or NULL: then it holds nothing.
+// Returns the layer of a living element at the edge, or NULL if no living element has the edge.
 static const char *living_layer(const cau_session *session, int32_t edge)
 {
 	CAU_ASSERT_INDEX(edge, session->tissue.edges.edge_count);

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tool has a pose that is asked and a pose that is. A driver leads the first within the tool's
-// speed limits (tool_motion.c). The second hangs on it by a spring (solve/coupling.h): a tick
-// begins with a guess of it, by which contacts are looked for, and takes it from the solve.
+// A tool has a commanded pose and an actual pose. A driver leads the commanded pose within the
+// tool's speed limits (tool_motion.c). The actual pose is coupled to it by a spring
+// (solve/coupling.h). A tick begins with a guess of the actual pose, with which contacts are found.
+// The solve then returns the actual pose.
 //
-// Where a step finds no way to hold the tissue that a tool would pass, the tool was to go too far
-// for one tick: the spring's anchor, which is where the tool is asked to be, stays behind, and the
-// tick is solved again. It follows in shorter ways, as far as tissue yields. A tool that is left
-// behind farther than a driver can mean lets go: it is where it is asked to be at once, and belongs
-// on no side of the tissue that it is in there.
+// If a step cannot hold tissue that a tool would pass, the tool would move too far for one tick.
+// Then the spring's anchor, which is normally at the commanded pose, stays behind, and the tick is
+// solved again. The anchor follows in shorter motions, as far as the tissue yields. A tool that is
+// too far behind its commanded pose jumps to it at once and releases its grasp. The tool then
+// belongs on no side of the tissue that is around it.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 #include "solve/coupling.h"
 
-static const double most_behind_m = 0.04; // ten times as far as the spring is pulled out at most
+static const double most_behind_m = 0.04; // ten times the spring's greatest extension
+// A tool that was stopped tries an eighth of its way, and twice as much after each tick without a
+// stop: three ticks bring it back to full speed. least_pace is an eighth of an eighth of an
+// eighth: a tool that is stopped again and again still tries.
 static const double slower = 1.0 / 8, faster = 2, least_pace = 1.0 / 512;
 
 static cau_vec3 offset_of(const cau_pose *pose, const cau_pose *anchor)
@@ -22,8 +26,8 @@ static cau_vec3 offset_of(const cau_pose *pose, const cau_pose *anchor)
 	return cau_sub(cau_vec3_of(pose->position_m), cau_vec3_of(anchor->position_m));
 }
 
-// The anchor goes a share of its way, and with it the tool; but one that pushes with all it has
-// stays where it is.
+// Moves the anchor by a share of its motion, and the tool with it. A tool that pushes with its full
+// force stays where it is.
 static void lead(cau_tool *tool, double share)
 {
 	const double nearly_m = 0.9 * cau_coupling_reach_m;
@@ -75,8 +79,8 @@ bool cau_session_hold_back(cau_session *session, int attempt)
 		tool->pace = fmax(slower * tool->pace, least_pace);
 		lead(tool, attempt == CAU_ATTEMPTS - 1 ? 0 : tool->pace);
 	}
-	// Supports stay where they are led. What is frozen goes back too: a column that lags behind its
-	// freezing may have moved it.
+	// Supports stay where they are led. Frozen vertices return to the tick's start too: while the
+	// freeze of a column is delayed, the step may have moved them.
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count && any; v++)
 		if (!session->pinned[v])
 			memcpy(session->position + 3 * v, session->position_start + 3 * v, 3 * sizeof(double));
@@ -105,7 +109,7 @@ void cau_session_take_poses(cau_session *session)
 	CAU_ASSERT(!session->tool_count || set->tool_count == session->tool_count, "%d tools of %d",
 	           set->tool_count, session->tool_count);
 	for (int32_t i = 0; i < session->tool_count; i++) {
-		if (!set->row_count) // nothing was solved that could hold it
+		if (!set->row_count) // no contact constraint was solved that could hold the tool back
 			memset(set->tool[i].offset, 0, sizeof set->tool[i].offset);
 		session->tool[i].state.pose =
 			cau_coupling_pose(&set->tool[i].anchor, cau_vec3_of(set->tool[i].offset));

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces that a tool meets between vertices, or has passed within a tick.
+// Contact with faces: faces that a tool meets between vertices, or has passed within a tick.
 //
-// Vertices near a tool are rows of every step (touch.c). A tool that is smaller than the mesh's
-// cells, or so fast that a tick takes it to the other side, would slip through between them: so
-// when the step is solved each face that is drawn is followed from where it was at the tick's start
-// to where it is now, as seen from the tool, in steps that no face can outrun (conservative
-// advancement, B. Mirtich 1996). Where it first touches, the distance's gradient says on which side
-// of the face the tool is. A face that ended beyond the tool, or deep inside, becomes a row
-// (solve/contact.h), and the step goes on. Sides are those of the face, not of the tool: as the
-// tool slides on, a face that was before it is below and then behind it, and belongs elsewhere as
-// seen from the tool.
+// Every step has contact constraints for the vertices near a tool (touch.c). A tool that is smaller
+// than the elements could pass between these vertices. A fast tool could pass a face within one
+// tick. So after each solve, each drawn face is followed along its motion in the tick, relative to
+// the tool (conservative advancement, B. Mirtich 1996). At first contact, the gradient of the
+// distance says on which side of the face the tool is. A face that ended beyond the tool, or deep
+// inside it, becomes a contact constraint (solve/contact.h), and the step continues. The side is
+// stored relative to the face. A side relative to the tool would change while the tool slides along
+// the face.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,21 +17,27 @@
 #include "session/session_internal.h"
 #include "tool/face_distance.h"
 
-static const double touch_m = 1e-5; // nearer is touching
-// A face that dips in deeper is a row from the next step on, and stands no deeper than it may: so
-// much a flat face and a round tip may differ. Held at its very surface it would be pressed as if
-// the tip were larger.
-static const double dip_m = 6e-5, dip_share = 0.3;      // of the tip's radius at most
-static const double stand_m = 8e-5, stand_share = 0.03; // likewise
-static const double beside_m = 2e-5;      // of the tip beside a row: no other is needed there
-static const double same_m = 1e-5;        // points that are no farther apart are one
-static const double most_margin_m = 2e-3; // a face that was pushed and is further away is let go of
+static const double touch_m = 1e-5; // a face nearer than this touches the tool
+// A face that is deeper in the tool than `dip` gets a contact constraint from the next step on. The
+// constraint still permits a depth of `stand`, because a flat face and a round tip may differ by
+// that. A face held exactly at the surface would be pressed as if the tip were larger. Each is the
+// smaller of a length and a share of the tip's radius.
+static const double dip_m = 6e-5, dip_share = 0.3;
+static const double stand_m = 8e-5, stand_share = 0.03;
+// A face needs no second constraint nearer than the distance at which a round tip has curved away
+// by this.
+static const double beside_m = 2e-5;
+static const double same_m = 1e-5; // points closer together than this count as one
+// A pushed face that is farther away than this is released.
+static const double most_margin_m = 2e-3;
+// STEPS_ON_WAY bounds a grazing approach, whose steps get ever shorter. After it the face counts as
+// not reached in this tick.
 enum { CANDIDATES = 4 * CAU_MAX_POINT_ROWS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {
 	cau_contact_row row;
-	double depth; // m: the deepest are taken first
-	bool kept;    // its side was known
+	double depth; // m; the deepest candidates get constraints first
+	bool kept;    // the side of the face was known before
 } cau_candidate;
 
 typedef struct reach {
@@ -41,19 +46,19 @@ typedef struct reach {
 	const cau_tool_def *def;
 	int32_t index;
 	cau_tool_part part;
-	double most_way; // m
-	double turning;  // m for each m that a point is further from the tool than its parts reach
+	double most_way; // m, farthest motion of a point of the tissue, relative to the tool
+	double turning;  // m more for each m that a point is farther away than the tool's own size
 	int32_t count;
-	bool kept_missed;    // a face whose side was known is among them
+	bool kept_missed;    // the list contains a face whose side was known before
 	cau_candidate *list; // (CANDIDATES)
 } reach;
 
-// A face or a vertex on its way, in the tool's frame.
+// The motion of a face in the tick, in the tool's frame.
 typedef struct passage {
 	cau_vec3 start[3], end[3];
 	double weight[3];
-	double way;      // m, of the corner that goes furthest
-	cau_vec3 normal; // unit, as the tick began; 0 of a face without an area
+	double way;      // m, of the corner that moves farthest
+	cau_vec3 normal; // unit normal at the tick's start; 0 if the face has no area
 } passage;
 
 static double distance_at(const reach *r, const passage *p, double when, double weight[3],
@@ -82,14 +87,14 @@ static void follow(const reach *r, const cau_contact_row *row, passage *p)
 	p->normal = cau_unit_or(p->normal, (cau_vec3){0, 0, 0});
 }
 
-// What is kept of a face that was inside the tool, or pushed by it, at the last step's end; NULL:
-// it was neither.
+// Returns the memory of a face that was inside the tool, or pushed by it, at the last step's end.
+// NULL: the face was neither.
 static const cau_contact_memory *remembered(const reach *r, int32_t face)
 {
 	return cau_contact_recall(&r->session->contact, r->index, face);
 }
 
-// Where the face has to go to be out of the tool: away from the side on which the tool belongs.
+// Direction that takes the face out of the tool: away from the tool's side.
 static cau_vec3 way_back(const passage *p, int32_t above)
 {
 	return cau_scale(-above, p->normal);
@@ -107,7 +112,7 @@ static void place(const reach *r, const passage *p, int32_t above, double start_
 	memcpy(row->weight, p->weight, sizeof row->weight);
 }
 
-// How far a point of the face would have to go back to the side on which it belongs.
+// Returns how far a point of the face would have to move, along `side`, to be outside the tool.
 static double way_out(const reach *r, const passage *p, const double weight[3], cau_vec3 side,
                       double most_m)
 {
@@ -117,12 +122,13 @@ static double way_out(const reach *r, const passage *p, const double weight[3], 
 	return cau_tool_way_out(r->def, r->tool->state.jaw, r->part, point, side, most_m, &gradient);
 }
 
-// Where the face first touches on its way, from outside: its weights at that time, and on which of
-// its sides the tool is. 0: it touches nowhere, or with an edge, which tells no side.
+// Follows the face until it first touches the tool from outside. p->weight gets the point of
+// contact. Returns the side of the face on which the tool is: 1 or -1. Returns 0 if the face does
+// not touch, or touches with an edge, which has no side.
 static int32_t find_touch(const reach *r, passage *p, double distance, cau_vec3 gradient)
 {
 	CAU_ASSERT(p->way >= 0, "a way of %g m", p->way);
-	const double least_share = 0.3; // of the gradient along the normal
+	const double least_share = 0.3; // least share of the gradient along the normal
 	double when = 0;
 	for (int step = 0; step < STEPS_ON_WAY && distance > touch_m && when < 1; step++) {
 		when = fmin(when + distance / p->way, 1);
@@ -134,18 +140,19 @@ static int32_t find_touch(const reach *r, passage *p, double distance, cau_vec3 
 	return along < 0 ? 1 : -1;
 }
 
-// Follows a face through the tick and keeps its side where it ends inside or beyond the tool.
-// Returns whether that is deep: then its row is where it was touched first, or where it is deepest.
+// Follows a face through the tick, and stores the side of a face that ends inside or beyond the
+// tool. Returns whether the face is deep. Then its constraint is at the point of first contact, or
+// at the deepest point if that is deeper.
 static bool is_missed(reach *r, cau_candidate *c)
 {
 	passage p;
 	cau_vec3 gradient;
 	follow(r, &c->row, &p);
 	double start = distance_at(r, &p, 0, p.weight, &gradient);
-	if (!(start <= p.way + touch_m)) // nor is one that is nowhere
+	if (!(start <= p.way + touch_m)) // also for a position that is not a number
 		return false;
 	const cau_contact_memory *kept = remembered(r, c->row.face);
-	int32_t above = 0; // as of tissue that was inside when the tool began to push: it has no side
+	int32_t above = 0; // 0: no side, as for tissue that was inside when the tool began to push
 	if (kept)
 		above = kept->above;
 	else if (start >= -touch_m)
@@ -172,8 +179,8 @@ static bool is_missed(reach *r, cau_candidate *c)
 	return true;
 }
 
-// Fills in what the row knows of its corners. Where none of them can move, the tool gives way.
-// False: some can, and a face that hangs on those that cannot may have nowhere to go.
+// Fills in the constraint's members about its corners. If no corner can move, the tool yields.
+// Returns false if only some corners can move: a face that is partly fixed may have nowhere to go.
 static bool describe_corners(const reach *r, cau_contact_row *row)
 {
 	const cau_session *session = r->session;
@@ -190,7 +197,7 @@ static bool describe_corners(const reach *r, cau_contact_row *row)
 	return free_count == 0 || free_count == 3;
 }
 
-// Square of how far (m) apart two points are.
+// Squared distance, m^2, of two points.
 static double apart2(const reach *r, const cau_contact_row *a, const cau_contact_row *b)
 {
 	cau_vec3 off = cau_sub(cau_contact_point(a, r->session->position_start),
@@ -198,8 +205,8 @@ static double apart2(const reach *r, const cau_contact_row *a, const cau_contact
 	return cau_dot(off, off);
 }
 
-// Whether a row pushes at that point already, as of another face on the same edge, or on the same
-// face so near it that the tip, round as it is, is no deeper beside it than makes a difference.
+// Whether a constraint already acts at that point, as for another face at the same edge. On the
+// same face a constraint at a small distance suffices, because a round tip is hardly deeper there.
 static bool has_row(const reach *r, const cau_contact_row *row)
 {
 	const double near2 = 2 * r->def->hot_radius_m * beside_m;
@@ -214,9 +221,10 @@ static bool has_row(const reach *r, const cau_contact_row *row)
 	return false;
 }
 
-// Rows of a face that was pushed in the last step: where it was pushed, and where it is nearest
-// now, unless that is near. None: it is away. Points that moved with what is nearest would make
-// tissue at rest tilt to and fro.
+// Adds the constraints of a face that was pushed in the last step: at the points where it was
+// pushed, and at its present nearest point if that is not close to them. A face that is too far
+// away gets none. The old points are kept, because points that follow the nearest point would make
+// resting tissue tilt to and fro.
 static void take_up(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
 {
 	passage p;
@@ -261,7 +269,7 @@ static bool is_drawn(const cau_session *session, int32_t face)
 	return !(session->dissection.face_mask[face >> 5] >> (face & 31) & 1);
 }
 
-// Where the middle of the box is, and how far from there its corners are.
+// Returns the middle of the box; *half_m gets the distance of its corners from there.
 static cau_vec3 middle_of(const cau_box *box, double *half_m)
 {
 	cau_vec3 middle, half;
@@ -284,7 +292,7 @@ bool cau_session_may_meet(const cau_tool *tool, cau_tool_part part, const cau_bo
 	return !(distance > half_m + margin_m);
 }
 
-// A face's middle, and how far (m) its corners are from there at most.
+// Returns the face's middle; *radius_m gets the greatest distance, m, of its corners from there.
 static cau_vec3 middle_of_face(const double *position, const int32_t *vertex, double *radius_m)
 {
 	cau_vec3 corner[3], middle = {0, 0, 0};
@@ -307,9 +315,10 @@ static double distance_of(const reach *r, const cau_pose *pose, cau_vec3 point)
 	return cau_tool_distance_at(r->def, pose, r->tool->state.jaw, r->part, point, NULL);
 }
 
-// Whether the face was as near at the tick's start as it can have come since: whatever is further
-// is_missed refuses, after a search. A corner that is further from the tool than its parts reach is
-// taken further where the tool turns. Then whether it may have been as far from where it is now.
+// Whether the face can have met the tool in the tick. First test: its distance at the tick's start
+// is within the greatest motion since. When the tool turns, a corner beyond the tool's own size
+// moves farther. Second test: the same from the present position. Faces that fail would be refused
+// by is_missed, after a longer search.
 static bool may_be_met(const reach *r, int32_t face)
 {
 	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;
@@ -332,8 +341,8 @@ static void search_block(reach *r, int32_t block)
 			offer(r, near->face[i]);
 }
 
-// By turns in four numbers, none of which waits for the one before; their sums are not numbers
-// where one way is not.
+// Uses four independent maxima and sums, so that no operation waits for the one before. The sums
+// detect a motion that is not a number.
 double cau_session_farthest(const cau_session *session)
 {
 	const double *position = session->position, *start = session->position_start;
@@ -351,7 +360,7 @@ double cau_session_farthest(const cau_session *session)
 	return isnan(all) ? all : sqrt(low > high ? low : high);
 }
 
-// How far a point of the tissue goes at most, seen from the tool.
+// Finds the greatest motion, relative to the tool, that a point of the tissue may have in the tick.
 static void find_most_way(reach *r, double reach_m)
 {
 	const cau_pose *from = &r->tool->pose_before, *to = &r->tool->state.pose;
@@ -419,7 +428,8 @@ void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part)
 			search_block(&r, b);
 	session->contact.tool[index].passing = r.count > 0;
 	qsort(r.list, (size_t)r.count, sizeof *r.list, compare);
-	// Faces that touch only because others were passed tell a wrong side: first those are held.
+	// A face that touches only because the tool passed other faces may get a wrong side. So faces
+	// of known side are held first.
 	for (int32_t k = 0; k < r.count; k++)
 		if (r.list[k].kept || !r.kept_missed)
 			cau_contact_add(&session->contact, &r.list[k].row);

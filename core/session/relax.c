@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene with built-in tension is brought to its equilibrium at creation,
-// so that tick 0 is at rest: steps whose velocity is thrown away, until nothing moves.
+// Brings a scene with built-in tension to its equilibrium at creation, so that tick 0 is at rest.
+// It makes steps and sets the velocity to 0 after each, until nothing moves.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -67,9 +67,10 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 	double gravity[3], accuracy = session->solver.accuracy.wanted,
 					   enough = still * mean_edge_m(&session->tissue);
 	memcpy(gravity, session->scene->gravity_m_s2, sizeof gravity);
-	if (!is_pinned(session)) // a free body relaxes without falling
+	if (!is_pinned(session)) // without pins a body would fall
 		memset(session->scene->gravity_m_s2, 0, sizeof gravity);
-	session->solver.accuracy.wanted = 0; // fewer steps that are right beat more that are nearly so
+	// Exact steps need fewer steps in all than approximate ones.
+	session->solver.accuracy.wanted = 0;
 	cau_status status = CAU_OK;
 	for (int step = 0; step < MOST_STEPS && !status; step++) {
 		memcpy(session->position_start, session->position, n * sizeof(double));

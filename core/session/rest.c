@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rest. Tissue that has stopped is held where it is, and its steps cost nothing, until something
-// wakes it. It cannot be left to stop by itself: rounding and rotations that are found anew keep
-// the last digits moving for ever, and so does what little of a step an iteration leaves undone.
+// Rest. Tissue that no longer moves is kept in place, and its steps cost nothing, until something
+// wakes it. Tissue does not stop completely by itself: rounding, rotations that are found again,
+// and the error that iterations leave in each step keep changing the last digits.
 //
-// Rest is a change of state that every run makes at the same tick, not a shortcut that some take:
-// velocities become zero and positions stay, to the bit. So it is part of snapshots.
+// Rest is a change of state that every run makes at the same tick, not an optional shortcut.
+// Velocities become zero and positions stay exactly the same. So rest is part of snapshots.
 //
-// Tissue rests when for half a second
-// - no vertex was further than a micrometre from where it stood when that began. What still creeps
-//   then does so at 2 um/s at most, where the streams' steps are 50 um. It is the place that counts
-//   and not the way, as noise about a place is none; and half a second, as a swing is slow at its
-//   turn, but not for so long.
-// - every tool stood still and dark, with its grid at ambient (0.01 degC): heat goes on to part
-//   edges, and viewers see it spread.
-// - no tool's filtered force still followed its raw one. A filter of long force_filter_s therefore
-//   makes the half second longer: at rest both forces stay as they are.
-// - nothing was cut, nothing shrank, no cut waited for the factor, no factor was in the making,
-// - no step was cut short lest tissue cross tissue.
+// Tissue rests when all of this held for half a second:
+// - No vertex was farther than a micrometre from its position at the start of the half second. Any
+//   motion left is then at most 2 um/s, while the streams' steps are 50 um. The test is on the
+//   position, not the path, because noise around a position is no motion. Half a second is longer
+//   than the slow turning point of an oscillation.
+// - Every tool was still and had energy off, with its heat grid at ambient (0.01 degC). Heat
+//   continues to part edges, and viewers see it spread.
+// - No tool's filtered force was still following its raw force. A filter of long force_filter_s
+//   makes the wait longer, because at rest both forces stay as they are.
+// - Nothing was cut, nothing shrank, no cut waited for the factor, and no factor was being
+//   computed.
+// - No step was shortened to keep tissue from crossing tissue.
 //
-// It wakes at a command that is due, and where supports are led; but not at one that states what is
-// so already (level.c), as a tool's pose, which drivers send at the rate of their screens.
+// A command that is due wakes the tissue, and so does a moved support. A command that repeats the
+// present level does not (level.c): drivers send a tool's pose at the rate of their screens.
 #include <math.h>
 #include <string.h>
 
@@ -27,11 +28,11 @@
 #include "session/session_internal.h"
 
 static const double quiet_s = 0.5;
-// A filter that still follows is off by 0.02 % of the last change after so many time constants, in
-// ticks of 1/60 s. The default force_filter_s asks for less than quiet_s.
+// Wait for a filter, in time constants. After this time a filtered force differs by 0.02 % of the
+// last change, in ticks of 1/60 s. With the default force_filter_s this is less than quiet_s.
 static const double filter_constants = 10;
 static const double still_m = 1e-6;
-static const double still_share = 1e-5; // of the tissue's size, where that is less
+static const double still_share = 1e-5; // of the tissue's size; the smaller limit holds
 
 cau_status cau_session_make_rest(cau_session *session, cau_error *error)
 {
@@ -51,14 +52,14 @@ static int32_t ticks_to_rest(const cau_session *session)
 	return (int32_t)ceil(wait_s / session->solver.step_s);
 }
 
-// ---- falling asleep
+// ---- coming to rest
 
 static bool is_same_pose(const cau_pose *a, const cau_pose *b)
 {
 	return cau_pose_is_same_place(a, b) && cau_pose_is_same_turn(a, b);
 }
 
-// A tool that touches quivers with the tissue that it stands on.
+// Whether the tool kept its pose in the tick. A tool in contact trembles with the tissue below it.
 static bool has_stayed(const cau_tool *tool)
 {
 	if (is_same_pose(&tool->state.pose, &tool->state.asked_pose))
@@ -69,7 +70,7 @@ static bool has_stayed(const cau_tool *tool)
 	       cau_pose_is_same_turn(&tool->state.pose, &tool->pose_before);
 }
 
-// What jaws hold gives way to them ever less.
+// Whether the jaws kept their opening. Held tissue yields to them less and less.
 static bool have_jaws_stayed(const cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;
@@ -85,7 +86,7 @@ static bool is_still(const cau_tool *tool)
 	       is_same_pose(&tool->anchor, &tool->target) && has_stayed(tool);
 }
 
-// Whether nothing but the tissue itself could move it.
+// Whether nothing outside the tissue could move it.
 static bool is_left_alone(const cau_session *session)
 {
 	const cau_matrix_update *update = &session->update;
@@ -107,8 +108,8 @@ static double most_m(const cau_session *session)
 	return fmin(still_m, still_share * session->size_m);
 }
 
-// Whether the tick moved a vertex farther than tissue at rest may go in all (possible.c has
-// looked).
+// Whether the tick moved a vertex farther than the limit for tissue at rest. possible.c has
+// computed these motions.
 static bool has_moved(const cau_session *session)
 {
 	double most = most_m(session);
@@ -179,7 +180,8 @@ cau_status cau_session_rest_tick(cau_session *session, cau_error *error)
 	solver->iterations_done = solver->backtracks = 0;
 	solver->residual = solver->accuracy.error = session->energy.gain_j = 0;
 	cau_dissection_begin(&session->dissection);
-	cau_status status = cau_session_apply_commands(session, error); // their numbers are told on
+	// Refusals and sequence numbers are reported as in every tick.
+	cau_status status = cau_session_apply_commands(session, error);
 	cau_frame_stand_still(&session->frame);
 	session->tick++;
 	return status;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory that sessions of equal tissue have in common: most of what one is made of never changes,
-// and much of the rest not before its first cut (base/image.h).
+// Memory shared by sessions of equal tissue. Most of a session's memory never changes, and much of
+// the rest does not change before the first cut (base/image.h).
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole state at a tick border as bytes, and back.
+// Writes the whole state at a tick border as bytes, and restores it.
 //
-// A downdated factor differs in its last bits from a fresh one, so a snapshot holds what the factor
-// was made of: the ordered updates since the last canonical factorisation, and what is to follow.
-// A snapshot is read and checked as a whole (snapshot_read.c) before anything is touched.
+// A downdated factor differs in its last bits from a factor computed anew. So a snapshot holds the
+// history of the factor: the ordered updates since the last canonical factorisation, and those that
+// still wait. The whole snapshot is read and checked (snapshot_read.c) before the session is
+// changed.
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,7 +48,7 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 	return CAU_OK;
 }
 
-// ---- restoring the parts
+// ---- restoring the parts of the state
 
 static void take_counts(cau_session *session, const snapshot_head *head)
 {
@@ -143,7 +144,7 @@ static void take_reals(void *const *to, void *const *from, int count, int32_t sl
 		memcpy(to[i], from[i], (size_t)slots * cau_real_bytes(single));
 }
 
-// Weights and laws by the materials, then what has changed since.
+// Sets weights and laws from the materials, then what has changed since.
 static void take_elements(cau_session *session, const snapshot_state *state)
 {
 	cau_elements *to = &session->solver.elements;
@@ -193,7 +194,7 @@ static void take_contact(cau_session *session, const snapshot_state *state)
 	memcpy(set->memory, state->memory, (size_t)set->memory_count * sizeof *set->memory);
 }
 
-// The tools, with their grids, which the state gives up.
+// Takes the tools with their heat grids from `state`.
 static void take_tools(cau_session *session, snapshot_state *state)
 {
 	while (session->tool_count)
@@ -213,8 +214,9 @@ static void take_tools(cau_session *session, snapshot_state *state)
 
 // ---- the factor
 
-// Elements of the last canonical factorisation: those that live, wait or were taken out since. Of
-// the one in the making: those that live or were removed since it began.
+// Restores the lists of the matrix update. The last canonical factorisation had the elements that
+// live now, wait, or were removed from the factor since. A factorisation in progress has the
+// elements that live now or were removed since it began.
 static void take_lists(cau_session *session, const snapshot_state *state)
 {
 	cau_matrix_update *update = &session->update;
@@ -238,8 +240,8 @@ static void take_lists(cau_session *session, const snapshot_state *state)
 		update->canonical[update->operation[k].kind][update->operation[k].element] = 1;
 }
 
-// The canonical factor, unless that is what there is: its bits depend on the matrix alone, whose
-// values are those that it was last made from.
+// Computes the canonical factor, unless the present factor is that one already. The factor's bits
+// depend on the matrix values only, so the values are compared.
 static cau_status make_canonical(cau_session *session, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
@@ -257,11 +259,12 @@ static cau_status make_canonical(cau_session *session, cau_error *error)
 	return same ? CAU_OK : cau_factor_refactor(solver->factor, matrix, error);
 }
 
-// Takes the elements of one recorded update, from operation[k] on, out of the factor; *k is the
-// first of the next.
+// Removes the elements of one recorded update from the factor, beginning at operation[k]. *k gets
+// the first operation of the next update.
 static cau_status replay_group(cau_matrix_update *update, int32_t *k, cau_error *error)
 {
-	cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements between pins fill a group, not its rank
+	cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements with pinned vertices count in a group, but
+	                                         // add no rank
 	int32_t count = 0, group = update->operation[*k].group;
 	for (; *k < update->operation_count && update->operation[*k].group == group; ++*k) {
 		CAU_ASSERT_INDEX(count, CAU_DOWNDATES_AT_MOST);
@@ -273,7 +276,7 @@ static cau_status replay_group(cau_matrix_update *update, int32_t *k, cau_error 
 	return status;
 }
 
-// The factor as it was: canonical, then the recorded updates in their groups.
+// Restores the factor: the canonical factor, then the recorded updates in their groups.
 static cau_status replay_factor(cau_session *session, const snapshot_head *head, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
@@ -291,7 +294,8 @@ static cau_status replay_factor(cau_session *session, const snapshot_head *head,
 	return status;
 }
 
-// A system of other pins is analysed again; its order follows from the pins alone.
+// Sets the pinned vertices. If they differ, the system is analysed again; its order depends on the
+// pins only.
 static cau_status take_pins(cau_session *session, const uint8_t *pinned, cau_error *error)
 {
 	size_t n = (size_t)session->tissue.vertex_count;
@@ -302,7 +306,7 @@ static cau_status take_pins(cau_session *session, const uint8_t *pinned, cau_err
 	return same ? CAU_OK : cau_session_rebuild_system(session, error);
 }
 
-// ---- all of it
+// ---- the whole snapshot
 
 static cau_status take(cau_session *session, snapshot_state *state, cau_error *error)
 {
@@ -333,13 +337,13 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
                                bool *exact, cau_error *error)
 {
 	snapshot_state state;
-	cau_matrix_update_await(&session->update); // checks read the session
+	cau_matrix_update_await(&session->update); // the checks read the session
 	cau_status status = cau_snapshot_read(session, bytes, byte_count, &state, error);
 	if (!status) {
 		if (exact)
 			*exact = cau_snapshot_is_exact(session, &state.head);
 		status = take(session, &state, error);
-		if (status) // half restored: say so instead of going on
+		if (status) // the state is half restored, so the session must not continue
 			session->faulted = true;
 	}
 	cau_snapshot_drop(&state);
@@ -364,7 +368,7 @@ uint64_t cau_session_hash(const cau_session *session)
 	if (session->vessels)
 		hash = cau_vessels_hash(session->vessels, hash);
 	const cau_tears *tears = &session->dissection.tears;
-	if (tears->over_count) // what tears nothing has the hash that it had before there were tears
+	if (tears->over_count) // a session without tears has the same hash as before tears existed
 		hash = cau_hash_bytes(hash, tears->over, (size_t)tears->over_count * sizeof *tears->over);
 	for (int i = 0; i < 6; i++)
 		hash = cau_hash_bytes(hash, elements->fat.plastic_strain[i],

@@ -12,7 +12,8 @@ void cau_snapshot_refuse(snapshot_archive *archive, const char *what)
 		archive->wrong = what;
 }
 
-// Where the next `count` numbers of `size` bytes are; NULL where there is nothing to write or read.
+// Returns the position of the next `count` numbers of `size` bytes. NULL if there is nothing to
+// write, or nothing left to read.
 static unsigned char *take(snapshot_archive *archive, const char *what, size_t count, size_t size)
 {
 	if (archive->wrong)
@@ -28,7 +29,7 @@ static unsigned char *take(snapshot_archive *archive, const char *what, size_t c
 	return archive->mode == SNAPSHOT_COUNT ? NULL : archive->bytes + at;
 }
 
-// One number of each width, to and from its bytes.
+// For each width: functions that write a number to bytes and read it from bytes.
 #define PASS_WORD(bits)                                                                            \
 	static void put##bits(unsigned char *to, uint##bits##_t word)                                  \
 	{                                                                                              \
@@ -105,8 +106,8 @@ static int64_t get_long(const unsigned char *from)
 	return (int64_t)get64(from);
 }
 
-// Passes numbers i = 0 to count - 1, each at `place`; those that `allowed` does not hold for are
-// refused.
+// Passes the numbers i = 0 to count - 1, each at `place`. When reading, a number for which
+// `allowed` is false is refused.
 #define PASS_NUMBERS(type, put, get, place, allowed)                                               \
 	unsigned char *bytes = take(archive, what, count, sizeof(type));                               \
 	if (!bytes)                                                                                    \

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bytes of a snapshot. Every number has its own width and little-endian order, and a range: the
-// same walk over the state (snapshot_state.c) counts bytes, writes them, or reads them and refuses
-// a number outside its range.
+// The bytes of a snapshot. Every number has a fixed width, little-endian order and an allowed
+// range. The same walk over the state (snapshot_state.c) counts bytes, writes them, or reads them
+// and refuses a number outside its range.
 #pragma once
 
 #include <stdbool.h>
@@ -12,16 +12,16 @@ typedef enum snapshot_mode { SNAPSHOT_COUNT, SNAPSHOT_WRITE, SNAPSHOT_READ } sna
 
 typedef struct snapshot_archive {
 	snapshot_mode mode;
-	unsigned char *bytes; // READ does not change them; NULL for COUNT
+	unsigned char *bytes; // not changed by READ; NULL for COUNT
 	size_t at, capacity;
-	const char *wrong; // READ: the first number that was refused; NULL: none. Reading then ends
+	const char *wrong; // READ: name of the first refused number, where reading ends; NULL: none
 } snapshot_archive;
 
-// Any finite number that the state may hold; far below what overflows when squared in double.
+// Limit for any finite number in the state. Its square is far from overflow in double.
 #define SNAPSHOT_ANY 1e30
 
-// Each passes `count` numbers at `value`, named `what` in a refusal. least to most are allowed,
-// both included; NaN never is.
+// Each function passes `count` numbers at `value`; `what` is their name in a refusal. Numbers from
+// least to most are allowed, both included; NaN is not.
 void cau_snapshot_doubles(snapshot_archive *archive, const char *what, double *value, size_t count,
                           double least, double most);
 void cau_snapshot_floats(snapshot_archive *archive, const char *what, float *value, size_t count,
@@ -38,15 +38,16 @@ void cau_snapshot_octets(snapshot_archive *archive, const char *what, uint8_t *v
                          uint8_t most);
 void cau_snapshot_bool(snapshot_archive *archive, const char *what, bool *value);
 
-// A real of the session's precision for each of `count` elements; element e stands in slot
-// slot_of[e] of `array` (floats if `single`, else doubles).
+// Passes a number for each of `count` elements, in the session's precision. The number of element e
+// is in slot slot_of[e] of `array` (floats if `single`, else doubles).
 void cau_snapshot_slots(snapshot_archive *archive, const char *what, void *array, bool single,
                         const int32_t *slot_of, size_t count, double least, double most);
-// `count` reals, one after the other.
+// Passes `count` consecutive numbers in the session's precision.
 void cau_snapshot_reals(snapshot_archive *archive, const char *what, void *array, bool single,
                         size_t count);
 
-// `size` bytes of text with at least one zero; what follows the first zero is written as zeros.
+// Passes `size` bytes of text with at least one zero. The bytes after the first zero are written as
+// zeros.
 void cau_snapshot_text(snapshot_archive *archive, const char *what, char *text, size_t size);
 
 // Ends reading with a refusal that names `what`.

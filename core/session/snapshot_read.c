@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a snapshot into copies, and what its parts must be to each other. A snapshot may come
-// from another machine: nothing in it is believed because its hash is right.
+// Reads a snapshot into copies, and checks that its parts are consistent. A snapshot may come from
+// another machine. A right hash is no reason to trust its content.
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,7 +41,7 @@ static void *array(copier *copies, size_t count, size_t size)
 	return made;
 }
 
-// A copy of what the session has, so that padding is there too.
+// Copies the session's arrays, so that the padding has values too.
 static void copy_reals(copier *copies, void **reals, int count, int32_t slots, bool single)
 {
 	for (int i = 0; i < count; i++) {
@@ -78,8 +78,8 @@ static void make_columns(copier *copies, const cau_session *session, snapshot_st
 		state->column[i] = array(copies, n, cau_real_bytes(state->elements.single));
 }
 
-// Arrays of the sizes that the head announces, which cau_snapshot_read has compared with what the
-// session has room for.
+// Allocates the arrays with the sizes in the head. cau_snapshot_read has compared these sizes with
+// the session's capacities.
 static cau_status make_copies(const cau_session *session, snapshot_state *state, cau_error *error)
 {
 	copier copies = {.arena = &state->copies};
@@ -158,10 +158,10 @@ static cau_status check_head(const cau_session *session, const snapshot_head *he
 	return CAU_OK;
 }
 
-// ---- what goes together
+// ---- consistency of the parts
 
-// No vertex is farther from its rest position than strays are stopped at (stray.c), nor is on a way
-// of more than that in a tick.
+// Whether a vertex is within the distance from its rest position at which strays are stopped
+// (stray.c). Its velocity must not lead farther than twice that distance in a tick.
 static bool is_near(const cau_session *session, const snapshot_state *state, int32_t vertex)
 {
 	const double rounding = 1 + 1e-9;
@@ -183,7 +183,8 @@ static bool are_vertices_right(const cau_session *session, const snapshot_state 
 	return free_count > 0;
 }
 
-// Elements by kind: 1 while they live by what has parted. The caller frees them.
+// Finds the living elements by kind, from what has parted: 1 for a living element. Returns their
+// memory, which the caller frees.
 static uint8_t *find_alive(const cau_session *session, const snapshot_state *state,
                            uint8_t *alive[CAU_ELEMENT_KINDS])
 {
@@ -201,7 +202,8 @@ static uint8_t *find_alive(const cau_session *session, const snapshot_state *sta
 	return marks;
 }
 
-// An element that left the factor, or is to, is dead, and is listed once. Marks it.
+// Marks an element that left the factor, or will leave it. Returns false if the element lives or
+// was marked before, because such an element must be dead and listed once.
 static bool takes(uint8_t *const alive[CAU_ELEMENT_KINDS], int32_t kind, int32_t element)
 {
 	bool dead = !alive[kind][element];
@@ -209,7 +211,7 @@ static bool takes(uint8_t *const alive[CAU_ELEMENT_KINDS], int32_t kind, int32_t
 	return dead;
 }
 
-// Marks in `alive`, which is scratch from then on, what is listed.
+// Checks the lists, and marks the listed elements in `alive`. Afterwards `alive` is scratch memory.
 static bool are_lists_right(const snapshot_state *state, uint8_t *const alive[CAU_ELEMENT_KINDS])
 {
 	for (int32_t k = 0; k < state->head.waiting_count; k++)
@@ -259,7 +261,7 @@ static bool is_shrinkage_right(const snapshot_state *state)
 	return once;
 }
 
-// A load moves no pinned vertex.
+// Whether a column moves a pinned vertex, which no load can do.
 static bool moves_a_pin(const cau_session *session, const snapshot_state *state, int32_t column)
 {
 	const cau_vectors *vectors = session->solver.kernels->vectors;
@@ -269,7 +271,7 @@ static bool moves_a_pin(const cau_session *session, const snapshot_state *state,
 	return false;
 }
 
-// Columns are of different vertices that have a row.
+// Whether the columns belong to different vertices, none of them pinned.
 static bool are_columns_right(const cau_session *session, const snapshot_state *state)
 {
 	uint8_t *taken = calloc((size_t)session->tissue.vertex_count + 1, 1);
@@ -333,7 +335,7 @@ static bool is_grasp_right(const cau_session *session, const cau_grasp *grasp)
 	return sum > 0.99 && sum < 1.01;
 }
 
-// A pose that is no turn is refused as a command's would be.
+// Whether all poses of the tool have valid rotations, as commands require.
 static bool are_poses_right(const cau_tool *tool)
 {
 	const cau_pose *poses[] = {&tool->state.pose, &tool->state.asked_pose, &tool->target,
@@ -415,7 +417,7 @@ static cau_status make_grids(const cau_session *session, snapshot_state *state, 
 	return status;
 }
 
-// ---- all of it
+// ---- the whole snapshot
 
 static cau_status read_arrays(const cau_session *session, snapshot_archive *archive,
                               snapshot_state *state, cau_error *error)

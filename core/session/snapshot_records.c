@@ -5,12 +5,13 @@
 
 #include "cautery/assert.h"
 
-// Ranges that no member of the state leaves. Where a scene's tables have a range (scene.h), the
-// checks of scenes and commands follow a reading; these are for what has none.
-static const double farthest_m = 1e6;  // of any point in the world
+// Ranges for members without a range in the scene's tables (scene.h). No member of the state
+// exceeds them. Members with a range in the tables are also checked as those of scenes and
+// commands, after reading.
+static const double farthest_m = 1e6;  // of any point from the world's origin
 static const double most_force = 1e12; // N, N m
 static const double coldest_c = -1e4, warmest_c = 1e5;
-static const double most_cells = 1e10; // of a heat grid's origin from the world's
+static const double most_cells = 1e10; // cells from the world's origin to a heat grid's origin
 static const double most_turn = 100;   // jaws: rad, or a share
 
 static void pass_any(snapshot_archive *archive, const char *what, double *value, size_t count)
@@ -31,7 +32,7 @@ static void pass_choice(snapshot_archive *archive, const char *what, int *value,
 	*value = choice;
 }
 
-// Members of a table with ranges (scene.h).
+// Passes a member of a table with ranges (scene.h).
 #define PASS_FIELD(field, default_, least, most, unit, meaning)                                    \
 	cau_snapshot_doubles(archive, #field, &object->field, 1, least, most);
 
@@ -104,7 +105,7 @@ static void pass_definition(snapshot_archive *archive, cau_tool_def *object)
 	pass_pose(archive, "first pose of a tool", &object->pose);
 }
 
-// What the last tick made of the tool; frames show it.
+// Passes the tool's measurements of the last tick, which frames show.
 static void pass_measured(snapshot_archive *archive, cau_tool_state *state)
 {
 	pass_int(archive, "contact_vertices", &state->contact_vertices, 0, INT32_MAX);

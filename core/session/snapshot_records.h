@@ -6,11 +6,12 @@
 #include "session/session_internal.h"
 #include "session/snapshot_bytes.h"
 
-// All of a tool but its heat grid. `session` has the tissue that it holds.
+// Passes a tool without its heat grid. `session` has the tissue that the tool holds.
 void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *session, cau_tool *tool);
-// Origin and temperatures of a grid that has been made.
+// Passes origin and temperatures of a created grid.
 void cau_snapshot_pass_grid(snapshot_archive *archive, cau_heat_grid *grid);
-// A command that waits. Of its values only those of its kind are passed; read, the rest are zero.
+// Passes a waiting command. Only the values of its kind are passed; reading sets the others to
+// zero.
 void cau_snapshot_pass_command(snapshot_archive *archive, cau_command *command);
-// The materials of a layer: those of its kind.
+// Passes the materials of a layer, of the layer's kind.
 void cau_snapshot_pass_layer(snapshot_archive *archive, cau_layer_def *layer);

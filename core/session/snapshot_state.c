@@ -79,7 +79,8 @@ bool cau_snapshot_is_exact(const cau_session *session, const snapshot_head *head
 	       !strcmp(head->instruction_set, session->solver.kernels->instruction_set);
 }
 
-// Of what goes on counting: half of what an integer holds, so that no count overflows soon.
+// Largest value of a growing counter: half of an integer's range, so that no counter overflows
+// soon.
 enum { MOST_COUNTED = INT32_MAX / 2 };
 
 static void pass_counts(snapshot_archive *archive, snapshot_head *head)
@@ -150,7 +151,7 @@ void cau_snapshot_pass_head(snapshot_archive *archive, snapshot_head *head)
 
 void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapshot_state *state)
 {
-	cau_session *own = (cau_session *)(uintptr_t)session; // only read: see the header
+	cau_session *own = (cau_session *)(uintptr_t)session; // the view is only read: see the header
 	for (int32_t i = 0; i < session->tissue.layer_count; i++)
 		layer[i] = session->tissue.layer[i].def;
 	*state = (snapshot_state){.pinned = own->pinned,
@@ -226,7 +227,7 @@ static void pass_dissection(snapshot_archive *archive, const cau_session *sessio
 	}
 }
 
-// The kinds of elements that shrink: triangles and tetrahedra.
+// Passes the shrunk elements: triangles and tetrahedra are the kinds that shrink.
 static void pass_shrinking(snapshot_archive *archive, const cau_session *session,
                            snapshot_state *state)
 {
@@ -251,7 +252,7 @@ static void pass_shrinking(snapshot_archive *archive, const cau_session *session
 	}
 }
 
-// A mark of a whole batch, for each of its elements.
+// Passes, for each element, the mark of its whole batch.
 static void pass_marks(snapshot_archive *archive, const char *what, uint8_t *mark,
                        const int32_t *slot_of, int32_t count)
 {
@@ -323,7 +324,8 @@ static void pass_update(snapshot_archive *archive, const cau_session *session,
 	}
 }
 
-// S is symmetric: the lower triangle, by columns' places.
+// Passes the columns. Their compliance matrix S (`inverse`) is symmetric, so only the lower
+// triangle is passed, in the columns' order.
 static void pass_columns(snapshot_archive *archive, const cau_session *session,
                          snapshot_state *state)
 {
@@ -373,7 +375,8 @@ static void pass_filled(snapshot_archive *archive, cau_tissue_cells *cells)
 	}
 }
 
-// The elements that cells move with. They differ from those that made them where elements are gone.
+// Passes the element with which each cell moves. It is not the element that created the cell if
+// that element was removed.
 static void pass_owners(snapshot_archive *archive, cau_tissue_cells *cells)
 {
 	int32_t most = cau_tissue_cells_elements(cells);
@@ -385,7 +388,8 @@ static void pass_owners(snapshot_archive *archive, cau_tissue_cells *cells)
 	}
 }
 
-// Which cells there are follows from the elements in their order. Reading makes them.
+// Passes the cells. Which cells exist follows from the elements and their order; reading creates
+// them.
 static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 {
 	static const double coldest_c = -100, hottest_c = 1e5;
@@ -414,7 +418,7 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 	for (size_t i = 0; i < sizeof energy / sizeof *energy; i++)
 		cau_snapshot_doubles(archive, "energy", energy[i], 1, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 	if (archive->mode == SNAPSHOT_READ)
-		bioheat->boiled_w = 0; // of no step yet
+		bioheat->boiled_w = 0; // there is no step yet
 }
 
 static void pass_vessels(snapshot_archive *archive, const cau_vessels *vessels,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds of tools, energy and waiting commands as a step begins, in every build. Where it does
-// not hold, this program made a mistake, and stepping on could heat tissue by it. The step faults
-// its session instead, alone, and says what was found.
+// Checks the invariants of tools, energy and waiting commands as a step begins, in every build. A
+// violation is an error in this program, and a further step could heat tissue by mistake. So the
+// step faults its session, only that session, and reports what it found.
 #include <math.h>
 #include <string.h>
 

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rotation of pieces that nothing holds. Where a piece turns by an angle a in a tick, x + dt v lies
-// on the tangent and v is the last chord, so that implicit Euler (eq. 4) leaves it 1 - a^2 of its
-// angular momentum. Here its target s is turned about its centre of mass by as much as is wanting,
-// some 2/3 a^3.
+// Rotation of pieces that nothing holds. If a piece turns by an angle a in a tick, x + dt v is on
+// the tangent, and v is the last chord. So implicit Euler (eq. 4) leaves the piece 1 - a^2 of its
+// angular momentum. Here the piece's target s is turned about its centre of mass by the missing
+// angle, some 2/3 a^3.
 //
-// With c the centre of mass, r = x_t - c, u the velocity less its mean, C = sum m r r^T: forces
-// inside a piece have no torque, so that the step's solution x' has sum m x' x (s - c) = 0, and its
-// angular momentum is sum m r x (x' - c) / dt. A piece that keeps its shape has x' - c = R r. So R
-// is the rotation for which sum m r x R r = dt L, L = sum m r x u, and Q the one for which
-// sum m R r x Q (r + dt u) = 0. s becomes c' + Q (r + dt u) + dt^2 f / m. The energy of motion is
-// not to grow by it: R may not take more than u has. The first guess is c' + R (P r + dt u), the
-// way of a rigid piece whose last tick undid P: sum m r x P r = -dt L.
+// Notation: c is the centre of mass, r = x_t - c, u the velocity less its mean, C = sum m r r^T.
+// Forces inside a piece have no torque, so the step's solution x' has sum m x' x (s - c) = 0. Its
+// angular momentum is sum m r x (x' - c) / dt. A piece that keeps its shape has x' - c = R r. R is
+// the rotation with sum m r x R r = dt L, where L = sum m r x u. Q is the rotation with sum m R r x
+// Q (r + dt u) = 0. Then s becomes c' + Q (r + dt u) + dt^2 f / m. The kinetic energy must not grow
+// by it, so R may not have more than u has. The first guess is c' + R (P r + dt u): the motion of a
+// rigid piece whose last tick was undone by P, with sum m r x P r = -dt L.
 //
-// A piece is what living elements join; it is found anew after cuts. What hangs on anything, or has
-// no extent but along a line, is left alone, and so is what turns by less than a milliradian in a
-// tick (which loses 1e-6 of its momentum in it) or so fast that no chord has that momentum.
+// A piece is the tissue that living elements connect. Pieces are found again after cuts. A piece
+// that is attached to anything, or that extends only along a line, is not corrected. Nor is a piece
+// that turns by less than a milliradian in a tick (it loses 1e-6 of its momentum), or so fast that
+// no chord has its momentum.
 #include <math.h>
 #include <string.h>
 
@@ -22,9 +23,10 @@
 #include "session/session_internal.h"
 
 static const double least_turn = 1e-3; // rad in a tick
-static const double thinnest = 1e-9;   // det of the inertia, relative to the cube of its trace
+// Least determinant of the inertia, relative to the cube of its trace.
+static const double thinnest = 1e-9;
 
-typedef double matrix[3][3]; // [row][column]
+typedef double matrix[3][3]; // m[row][column]
 
 cau_status cau_session_make_spin(cau_session *session, cau_error *error)
 {
@@ -41,7 +43,8 @@ cau_status cau_session_make_spin(cau_session *session, cau_error *error)
 
 // ---- pieces
 
-// The least vertex that is known to hang together with this one; ways are halved as they are gone.
+// Returns the least vertex known to be connected with this one. It shortens the paths that it
+// follows (union-find with path halving).
 static int32_t least_of(int32_t *piece, int32_t vertex)
 {
 	while (piece[vertex] != vertex) {
@@ -69,7 +72,7 @@ static void join(int32_t *piece, const int32_t *vertex, int count)
 static void join_elements(cau_session *session)
 {
 	const cau_tissue *tissue = &session->tissue;
-	// hinges join nothing that their two triangles do not
+	// A hinge connects only vertices that its two triangles connect already.
 	const struct {
 		int kind, corners;
 		int32_t count;
@@ -88,8 +91,8 @@ static void join_elements(cau_session *session)
 	}
 }
 
-// Members of each piece, by vertex; pieces in the order of their least vertex. A vertex without
-// elements is a piece of its own.
+// Finds the members of each piece, in the order of vertices. Pieces are ordered by their least
+// vertex. A vertex without elements is a piece of its own.
 static void find_pieces(cau_session *session)
 {
 	cau_spin *spin = &session->spin;
@@ -98,7 +101,8 @@ static void find_pieces(cau_session *session)
 		spin->piece[v] = v;
 	join_elements(session);
 	memset(spin->first, 0, ((size_t)n + 1) * sizeof *spin->first);
-	for (int32_t v = 0; v < n; v++) { // the least comes first: it has its number before the others
+	// The least vertex of a piece gets the piece's number before the other vertices.
+	for (int32_t v = 0; v < n; v++) {
 		int32_t least = least_of(spin->piece, v);
 		spin->member[v] = least == v ? count++ : spin->member[least];
 	}
@@ -109,7 +113,7 @@ static void find_pieces(cau_session *session)
 	for (int32_t p = 0; p < count; p++)
 		spin->first[p + 1] += spin->first[p];
 	CAU_ASSERT(spin->first[count] == n, "%d of %d vertices in pieces", spin->first[count], n);
-	for (int32_t v = n - 1; v >= 0; v--) // the ends move down to be the beginnings
+	for (int32_t v = n - 1; v >= 0; v--) // each end is counted down until it is the beginning
 		spin->member[--spin->first[spin->piece[v] + 1]] = v;
 	memmove(spin->first, spin->first + 1, (size_t)count * sizeof *spin->first);
 	spin->first[count] = n;
@@ -150,13 +154,13 @@ static cau_vec3 apply(matrix a, cau_vec3 v)
 	                  a[2][0] * v.x + a[2][1] * v.y + a[2][2] * v.z};
 }
 
-// sum b x a of a matrix sum a b^T
+// Returns sum b x a of a matrix sum a b^T.
 static cau_vec3 axial(matrix a)
 {
 	return (cau_vec3){a[2][1] - a[1][2], a[0][2] - a[2][0], a[1][0] - a[0][1]};
 }
 
-// The rotation by |turn| about turn (Rodrigues).
+// Sets `out` to the rotation by the angle |turn| about the axis `turn` (Rodrigues).
 static void rotation_of(cau_vec3 turn, matrix out)
 {
 	double angle2 = cau_dot(turn, turn), angle = sqrt(angle2);
@@ -169,7 +173,8 @@ static void rotation_of(cau_vec3 turn, matrix out)
 			out[i][j] = (i == j) * (1 - two * angle2) + one * cross[i][j] + two * t[i] * t[j];
 }
 
-// trace(a) 1 - a: how the axial vector changes as a is turned; the inertia, for a symmetric one.
+// Sets `out` to trace(a) 1 - a: the derivative of the axial vector when a is turned. For a
+// symmetric a this is the inertia.
 static void inertia_of(matrix a, matrix out)
 {
 	double sum = trace(a);
@@ -184,7 +189,7 @@ static double determinant(matrix a)
 	return cau_dot(row[0], cau_cross(row[1], row[2]));
 }
 
-// a^-1 b by Cramer's rule; a is not singular.
+// Returns a^-1 b by Cramer's rule; a must not be singular.
 static cau_vec3 solve(matrix a, cau_vec3 b)
 {
 	double det = determinant(a);
@@ -195,8 +200,8 @@ static cau_vec3 solve(matrix a, cau_vec3 b)
 	return cau_scale(1 / det, cau_add_scaled(sum, b.z, cau_cross(row[0], row[1])));
 }
 
-// The rotation, near none, that gives a turned by it this axial vector: Newton's method. Returns
-// false where none is found.
+// Finds, by Newton's method, the rotation near the identity for which the turned matrix a has the
+// axial vector `wanted`. Returns false if none is found.
 static bool turn_until(matrix a, cau_vec3 wanted, matrix rotation)
 {
 	enum { TRIES = 20 };
@@ -224,7 +229,7 @@ static bool turn_until(matrix a, cau_vec3 wanted, matrix rotation)
 typedef struct motion {
 	double mass;
 	cau_vec3 centre, velocity; // of the centre of mass
-	matrix spread;             // C = sum m r r^T, kg m^2
+	matrix spread;             // velocity of the centre of mass
 	matrix flow;               // sum m u r^T, kg m^2/s
 	double kinetic_j;          // sum m u^2 / 2
 } motion;
@@ -259,7 +264,7 @@ static void measure_motion(const cau_session *session, int32_t first, int32_t la
 	}
 }
 
-// Less of the rotation, so that the energy of its chords is at most what there is.
+// Reduces the rotation r, so that the energy of its chords is at most the present kinetic energy.
 static void keep_energy(motion *m, double dt, matrix r)
 {
 	matrix turned;
@@ -268,13 +273,14 @@ static void keep_energy(motion *m, double dt, matrix r)
 	CAU_ASSERT(m->kinetic_j >= 0, "an energy of %g J", m->kinetic_j);
 	if (!(chords_j > m->kinetic_j))
 		return;
-	cau_vec3 axis = axial(r); // twice its sine
+	cau_vec3 axis = axial(r); // its length is twice the sine of the angle
 	double sine = cau_length(axis) / 2, angle = atan2(sine, (trace(r) - 1) / 2);
 	if (sine > 0)
 		rotation_of(cau_scale(angle * sqrt(m->kinetic_j / chords_j) / (2 * sine), axis), r);
 }
 
-// R, P and Q as above; false where the piece is left alone.
+// Finds the rotations R, P and Q of the comment above. Returns false if the piece is not to be
+// corrected.
 static bool find_turn(motion *m, double dt, matrix r, matrix p, matrix q)
 {
 	matrix inertia, ahead, seen;
@@ -296,7 +302,8 @@ static bool find_turn(motion *m, double dt, matrix r, matrix p, matrix q)
 	times(ahead, back, seen);
 	if (!turn_until(seen, (cau_vec3){0, 0, 0}, q))
 		return false;
-	return cau_length(axial(q)) / 2 < cau_length(turn); // else it does not turn as a whole
+	// Otherwise the piece does not turn as a whole.
+	return cau_length(axial(q)) / 2 < cau_length(turn);
 }
 
 static void turn_piece(cau_session *session, int32_t first, int32_t last)
@@ -324,10 +331,10 @@ static void turn_piece(cau_session *session, int32_t first, int32_t last)
 
 // ---- ticks with two substeps
 
-// The end of the second substep, about the piece's centre of mass.
+// The state at the end of the second substep, about the piece's centre of mass.
 typedef struct ending {
 	cau_vec3 centre;
-	cau_vec3 momentum; // kg m^2/s, by v2
+	cau_vec3 momentum; // kg m^2/s, computed with v2
 	matrix spread;     // sum m r2 r2^T, kg m^2
 } ending;
 
@@ -356,9 +363,10 @@ static void measure_ending(const cau_session *session, int32_t first, int32_t la
 	}
 }
 
-// Both stages have forces without a torque about the places where they act, and a1 of a piece that
-// turns is half of what holds it on its circle, since v is along the circle and v1 along a chord.
-// So sum m x2 x v2 is not the L that the tick began with. v2 gets the rotation that makes it so.
+// In both substeps the forces have no torque about the positions where they act. For a turning
+// piece, a1 is half of the acceleration that holds the piece on its circle, because v is along the
+// circle and v1 along a chord. So sum m x2 x v2 differs from the angular momentum L at the tick's
+// start. This function adds to v2 the rotation that restores L.
 static void keep_momentum(cau_session *session, int32_t first, int32_t last)
 {
 	motion m;
@@ -386,7 +394,8 @@ static void turn_pieces(cau_session *session,
                         void (*turn)(cau_session *session, int32_t first, int32_t last))
 {
 	cau_spin *spin = &session->spin;
-	if (session->scene->solver == CAU_SOLVER_DIAGONAL) // as printed
+	// The paper's diagonal solver has no such correction.
+	if (session->scene->solver == CAU_SOLVER_DIAGONAL)
 		return;
 	if (spin->stale || spin->removed != session->dissection.elements_removed)
 		find_pieces(session);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One tick. cau_session_step is the table of contents; each line names the stage and where its
-// equations live.
+// One tick. cau_session_step lists all stages; each line names the stage and the file of its
+// equations.
 #include <stdatomic.h>
 #include <string.h>
 
@@ -38,7 +38,7 @@ static void settle_part(void *context, int32_t index)
 	                                         solver->displacement));
 }
 
-// Plastic flow and the count of inverted tetrahedra (plasticity_kernel.h).
+// Computes plastic flow and counts the inverted tetrahedra (plasticity_kernel.h).
 void cau_session_settle(cau_session *session)
 {
 	const cau_step_solver *solver = &session->solver;
@@ -50,7 +50,8 @@ void cau_session_settle(cau_session *session)
 	           session->tissue.tetrahedron_count);
 }
 
-// Vertices whose last element is gone keep their row and stay where they are.
+// Freezes vertices whose last element was removed. They keep their row in the system and their
+// position.
 static void freeze_isolated(cau_session *session)
 {
 	if (!session->dissection.removed_count)
@@ -72,8 +73,8 @@ static void do_nothing(void *context)
 	(void)context;
 }
 
-// The first local step; beside the tick's first, what the last ticks cut leaves the factor (section
-// 7.2).
+// Makes the first local step. In the tick's first substep, also removes the elements from the
+// factor that were cut in the last ticks (section 7.2).
 static cau_status begin_solve(cau_session *session, cau_error *error)
 {
 	cau_matrix_update *update = &session->update;
@@ -94,10 +95,11 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 	return status;
 }
 
-// Tissue that is pushed aside may meet the tool elsewhere: then the step goes on with that too.
-// What is not held by then is tried with the tool led less far; where it stands still at last, more
-// rounds are worth their time, as there is a place where tissue was. What these leave deep in the
-// tool goes on in the next tick; what they leave beyond it is let through.
+// Tissue that is pushed aside may meet the tool elsewhere. Then the step continues with these
+// contacts too: one more round. If tissue is still not held, the tick is solved again with a
+// shorter motion of the tool. On the last attempt the tool does not move. More rounds are useful
+// there, because a solution exists: the tissue was outside the tool. Tissue that is then still deep
+// in the tool is handled in the next tick. Tissue beyond the tool loses its constraints and passes.
 enum { MOST_ROUNDS = 2, LAST_ROUNDS = 8 };
 
 static cau_status descend(cau_session *session, cau_error *error)
@@ -110,7 +112,8 @@ static cau_status descend(cau_session *session, cau_error *error)
 	return cau_fail(error, status, NULL, "%s", refusal.reason);
 }
 
-// Returns whether tools would pass tissue in what it ends with, or have thrown it about.
+// Solves the step in at most `rounds` rounds. Returns whether tools would pass tissue in the
+// result, or the tissue diverged.
 static bool hold(cau_session *session, int rounds, cau_status *status, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
@@ -135,7 +138,8 @@ static void begin_again(cau_session *session)
 	solver->objective = cau_solver_evaluate(solver);
 }
 
-// What lies between them is out of one only into the other.
+// Whether a tool has open jaws. Tissue between open jaws cannot leave one jaw without entering the
+// other, so the last, longer attempt is skipped.
 static bool has_open_jaws(const cau_session *session)
 {
 	for (int32_t i = 0; i < session->tool_count; i++) {
@@ -192,7 +196,7 @@ static cau_status fault(cau_session *session, cau_status status)
 	return status;
 }
 
-// The solver's time, split into its local and contact shares and the rest.
+// Splits the solver's time into its local share, its contact share and the rest.
 static void end_solve_stages(cau_session *session)
 {
 	cau_session_stage_end(session, CAU_STAGE_GLOBAL);
@@ -201,7 +205,7 @@ static void end_solve_stages(cau_session *session)
 	session->stage_s[CAU_STAGE_GLOBAL] -= session->solver.local_s + session->solver.contact_s;
 }
 
-// The tick's motion, in one or two substeps (substep.c).
+// Computes the tick's motion, in one or two substeps (substep.c).
 static cau_status move(cau_session *session, cau_status status, cau_error *error)
 {
 	for (int32_t k = 0; k < session->substep.count; k++) {
@@ -230,14 +234,14 @@ static cau_status move(cau_session *session, cau_status status, cau_error *error
 	return status;
 }
 
-// The way of one step: each stage in order, and nothing else.
+// One tick: calls every stage in order.
 cau_status cau_session_step(cau_session *session, cau_error *error)
 {
 	if (session->faulted)
 		return cau_fail(error, CAU_FAULTED, NULL, "the session is faulted: restore a snapshot");
 	cau_status sound = cau_session_check_sound(session, error); // sound.c
 	if (sound) {
-		session->faulted = true; // and nothing of it is touched
+		session->faulted = true; // the faulted session is not changed any more
 		return sound;
 	}
 	if (cau_session_rests(session)) // rest.c

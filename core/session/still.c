@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy off, and a tool that is held where it is: calls that cannot fail and need no room. They
-// act at once, not at the next tick. Commands that wait for a later tick must not undo them, so
-// those are taken out of the queue: enables by an off, everything about the tool by a hold and a
-// removal.
+// Energy off and hold: calls that cannot fail and need no capacity in the queue. They act at once,
+// not at the next tick. Commands that wait for a later tick must not undo them, so these are
+// removed from the queue. An energy-off removes enables. A hold, or the removal of the tool,
+// removes every command about the tool.
 //
-// cau_session_submit of such a command that is due does the same, so a log that holds it replays to
-// the same bits.
+// cau_session_submit does the same for such a command that is due. So a log that contains the
+// command replays with the same bits.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// ---- commands that wait
+// ---- waiting commands
 
 static bool is_about(const cau_command *command, const char *tool)
 {
@@ -21,7 +21,8 @@ static bool is_about(const cau_command *command, const char *tool)
 	return about_tool && strcmp(command->tool, tool) == 0;
 }
 
-// The end of an enable's ticks waits in the queue, in the place that the enable had.
+// Whether a command is the automatic end of an enable with `ticks`. It waits in the enable's queue
+// slot.
 static bool is_limit(const cau_command *command)
 {
 	return command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized &&
@@ -70,7 +71,7 @@ bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_comm
 	return true;
 }
 
-// ---- what cannot fail
+// ---- calls that cannot fail
 
 static void disturb(cau_session *session)
 {
@@ -126,7 +127,7 @@ void cau_session_hold_still(cau_session *session, const char *tool, uint64_t seq
 		held->state.sequence = sequence;
 }
 
-// ---- who may heat
+// ---- which tools may heat
 
 static bool is_among(const char *name, const char *const *names, int32_t count)
 {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What has been cut free falls for ever. Far away, single precision no longer tells an element's
-// corners apart, and the noise of their energy would drown the objective of all the tissue that is
-// still there. So a vertex that has gone many times the tissue's size is stopped there, like one
-// that has no element left.
+// Tissue that was cut free falls for ever. Far away, single precision cannot distinguish an
+// element's corners. The noise of such energies would dominate the objective of all the other
+// tissue. So a vertex that is many tissue sizes away is stopped there, like a vertex without
+// elements.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double farthest_sizes = 200; // single precision: 1e-5 of the size, far below an edge
+// In tissue sizes; single precision is 1e-5 of a size there, far below an edge.
+static const double farthest_sizes = 200;
 
 double cau_session_size(const cau_session *session)
 {
@@ -60,7 +61,7 @@ void cau_session_stop_strays(cau_session *session)
 	}
 	if (!stopped)
 		return;
-	session->watch.left_m = 0; // they were moved: the edges are looked at again
+	session->watch.left_m = 0; // vertices were moved, so the edges are checked again
 	session->energy.stale = true;
 	cau_session_drop_frozen_grasps(session);
 }

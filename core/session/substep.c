@@ -7,18 +7,19 @@
 //     second  x2 = s2 + h^2 M^-1 f(x2),  s2 = x + q v1 + h (v + q a1),  q = (1 - gamma) dt
 //             v2 = (x2 - x - q v1) / h
 //
-// The first is an implicit Euler step to gamma dt. So nothing is explicit, and no force at the
-// tick's start is needed: a cut leaves no force of elements that are gone. TR-BDF2 has the same
-// stability function, and such a force (core/EXPERIMENTS.md).
+// The first substep is an implicit Euler step to gamma dt. So nothing is explicit, and no force at
+// the tick's start is needed. After a cut, no force of a removed element remains. TR-BDF2 has the
+// same stability function, but needs such a force (core/EXPERIMENTS.md).
 //
-// Tools and led supports go their way in two parts, and each substep leads from where the one
-// before has ended. What tools feel are the forces of the second, which their poses belong to.
+// Tools and moved supports make their motion in two parts. Each substep begins where the one before
+// ended. The tools' reported forces are those of the second substep, to which their poses belong.
 //
-// A method of second order makes an impact rebound: a stop within the first substep is carried on
-// as a force, and a mass that came at 1 m/s leaves at 1.4 m/s. So what tools push leaves them no
-// faster than they move: v + q a1 and v2 lose what would part the tissue from the tool, and with
-// friction v2 along the tool is the mean of the substep. Where a substep was cut short, v2 is the
-// mean of the tick, as with implicit Euler; where the tick gained energy, in part (energy.c).
+// A method of second order makes an impact rebound: a stop within the first substep is continued as
+// a force. A mass that came at 1 m/s leaves at 1.4 m/s. So tissue pushed by a tool may not leave
+// faster than the tool moves: v + q a1 and v2 lose the part of the velocity that would separate
+// tissue and tool. With friction, v2 along the tool is the mean of the substep. If a substep was
+// shortened, v2 is the mean velocity of the tick, as with implicit Euler. If the tick gained
+// energy, v2 is mixed with that mean (energy.c).
 #include <math.h>
 #include <string.h>
 
@@ -55,7 +56,8 @@ void cau_session_begin_substeps(cau_session *session)
 	substep->disturbed = false;
 }
 
-// Where a step was cut short, or tools passed tissue, a substep does not end at its solution.
+// Notes whether the substep did not end at its solution, because a step was shortened or tools
+// passed tissue.
 static void note_disturbance(cau_session *session)
 {
 	const cau_collide *collide = session->solver.collide;
@@ -76,7 +78,8 @@ static cau_vec3 velocity_at(const cau_contact_row *row, const double *place, con
 	return cau_scale(1 / h, cau_sub(at, from));
 }
 
-// Changes places so that the point goes there by the way, its corners by their shares and masses.
+// Moves the constraint's point by `way`, by changing `place` at its corners according to their
+// weights and masses.
 static void move_point(const cau_session *session, const cau_contact_row *row, cau_vec3 way,
                        double *place)
 {
@@ -92,8 +95,8 @@ static void move_point(const cau_session *session, const cau_contact_row *row, c
 	}
 }
 
-// Velocities are (place - base) / h. Of what tools push they lose what parts it from them;
-// `sticks`: and with friction, their part along the tool is the substep's mean.
+// Velocities are (place - base) / h. Changes `base` so that pushed tissue does not move away from
+// the tool. `sticks`: with friction, the velocity along the tool becomes the substep's mean.
 static void stay_at_tools(const cau_session *session, double *place, double *base, bool sticks)
 {
 	double h = session->solver.inertia_s, length_s = session->substep.length_s;
@@ -122,7 +125,7 @@ static void stay_at_tools(const cau_session *session, double *place, double *bas
 
 // ---- from the first substep to the second
 
-// s2 without the push of h^2 in `predicted`, and x + q v1 in `base`.
+// Sets `base` to x + q v1 and `predicted` to s2, still without the forces' part (h^2).
 static void carry_on(cau_session *session)
 {
 	cau_substep *substep = &session->substep;
@@ -192,7 +195,7 @@ static void add_statistics(const cau_substep *substep, cau_step_solver *solver)
 	solver->local_s += substep->local_s;
 	solver->contact_s += substep->contact_s;
 	solver->residual = fmax(solver->residual, substep->residual);
-	// an error of x2 is so many times as large in v2
+	// An error of x2 is larger in v2 by 1 / gamma.
 	solver->accuracy.error = fmax(solver->accuracy.error, substep->error) / CAU_SDIRK2_GAMMA;
 }
 
@@ -226,8 +229,9 @@ void cau_session_predict_on(cau_session *session)
 			size_t i = 3 * (size_t)v + (size_t)c;
 			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
 			session->solver.predicted[i] += h * h * push;
-			// s2 with the first substep's acceleration in place of the second's. Where anything
-			// touches, this would lead too far for contact: there it is the first one's speed.
+			// The guess is s2 with the first substep's acceleration in place of the second's. If
+			// there is any contact, that would lead too far, so the guess follows the first
+			// substep's velocity.
 			double speed = (substep->base[i] - substep->tick_start[i]) / rest_s;
 			double rate = (speed - session->velocity[i]) / h;
 			if (session->fixed[v])
@@ -255,7 +259,7 @@ void cau_session_end_substeps(cau_session *session)
 	       3 * (size_t)session->tissue.vertex_count * sizeof(double));
 	if (!substep->disturbed)
 		cau_session_keep_momentum(session); // spin.c
-	// tick_start has served: it keeps base from here on
+	// tick_start is not needed any more. From here on it stores `base`.
 	memcpy(substep->tick_start, substep->base,
 	       3 * (size_t)session->tissue.vertex_count * sizeof *substep->base);
 	if (substep->disturbed)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tick's stretch tears (dissect/tears.c), by the way of what heat parts: out of the local
-// step at once, and of the factor as its turn comes. Nothing shrinks beside a tear.
+// Tears the elements that a tick's stretch breaks (dissect/tears.c). As with parted elements, a
+// torn element leaves the local step at once and the factor in its turn. Nothing shrinks beside a
+// tear.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Whether the step's stretches are those of its solution: an iterate on the way may be far beyond.
+// Whether the step has converged. Stretches of an unfinished iterate may be far too large.
 static bool has_converged(const cau_session *session)
 {
 	const cau_accuracy *accuracy = &session->solver.accuracy;

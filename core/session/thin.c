@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which of too many vertices at a tool become rows, where there is room for a part of them only.
+// Selects the vertices that get a contact constraint, if a tool has more vertices than the
+// capacity.
 //
-// Those that are only near have rows as long as these are few: they may come to touch within the
-// tick. Past that only what is drawn and touches has one. And where even that is too much: the
-// deepest alone would be a heap in the middle: what lies round it would sink in unheld, and the
-// tool with it. So rows are spread over all that touches: the first in van der Corput's order (the
-// places along the Morton curve with their bits reversed), of which any beginning is spread evenly,
-// and most of which stay as others come and go. Between them tissue holds itself up.
+// Near vertices that do not touch may come to touch within the tick, so they have constraints while
+// there is capacity. Otherwise only drawn vertices that touch have one. If these are still too
+// many, the constraints are spread over all that touch. The deepest alone would be crowded in the
+// middle, and the tissue around them would sink in with the tool. The spread order is van der
+// Corput's: positions along the Morton curve with their bits reversed. Any first part of this order
+// is spread evenly, and most of it stays the same as vertices come and go. The tissue's elasticity
+// holds the vertices between.
 #include <math.h>
 #include <stdlib.h>
 
@@ -14,9 +16,9 @@
 #include "session/session_internal.h"
 
 static const double least_margin_m = 5e-4, most_margin_m = 2e-3;
-static const double touching_m = 2e-4; // nearer is touching; others are only near
-// Touching vertices for each row, up to which it is better to leave the least deep out, round the
-// rim, than to leave holes between rows.
+static const double touching_m = 2e-4; // a vertex nearer than this touches; others are only near
+// Touching vertices per constraint. Up to this ratio the least deep vertices, around the rim, are
+// left out. That is better than gaps between constraints. Above it the constraints are spread.
 static const int32_t most_crowded = 2;
 
 double cau_session_margin(const cau_tool_def *def)
@@ -48,7 +50,7 @@ static int compare_spread(const void *a, const void *b)
 	return (first > second) - (first < second);
 }
 
-// Brings those that are drawn and touch to the front; returns how many they are.
+// Moves the vertices that are drawn and touch to the front. Returns their number.
 static int32_t part_touching(const cau_session *session, cau_touching *list, int32_t count)
 {
 	int32_t touching = 0;

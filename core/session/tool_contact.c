@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact of each tool, linear about a tick, for clients that render force between ticks
-// (cautery/channels.h, cau_tool_contact). It is computed after a step while it is watched, from the
-// solved contact constraints. It changes no state.
+// The contact of each tool, linearised about a tick, for clients that render forces between ticks
+// (cautery/channels.h, cau_tool_contact). While it is watched, it is computed after each step from
+// the solved contact constraints. It changes no state.
 //
-// Compliance: a load that is spread over the contact constraints as their reactions are moves its
-// own place by that. The answer is the one of the tissue's elements (solve/tangent.h). The virtual
-// coupling is in series.
+// Compliance: displacement of a load's own position by a unit load, which is distributed over the
+// contact constraints like their reactions. It is the tissue's answer (solve/tangent.h). The
+// virtual coupling is in series with it.
 //
-// Planes: constraints with nearly the same normal are one plane. Its offset is where the linear
-// contact would let go, so that it gives the tick's force at the tick's commanded pose.
+// Planes: constraints with nearly the same normal form one plane. The plane's offset is where the
+// linear contact would end. With this offset, the plane gives the tick's force at the tick's
+// commanded pose.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,7 @@
 #include "solve/tangent.h"
 
 enum { MOST_LOADS = 3 * CAU_MAX_CONTACTS };
-static const double alike = 0.9; // cosine of normals that are one plane: 26 degrees
+static const double alike = 0.9; // cosine between normals that form one plane: 26 degrees
 
 struct cau_contact_watch {
 	cau_tangent tangent;
@@ -32,13 +33,13 @@ void cau_session_watch_contact(cau_session *session, bool watched)
 	cau_contact_watch *watch = session->contact_watch;
 	cau_error error;
 	if (!watched || watch) {
-		if (!watched && watch) // its records are too old when contact is watched again
+		if (!watched && watch) // the old records must not be shown when contact is watched again
 			memset(watch->record, 0, sizeof watch->record);
 		return;
 	}
 	watch = calloc(1, sizeof *watch);
 	if (!watch)
-		return; // no record is valid
+		return; // no record becomes valid
 	if (cau_tangent_create(&watch->tangent, &session->solver, &error)) {
 		free(watch);
 		return;
@@ -62,21 +63,22 @@ void cau_session_forget_contact(cau_session *session)
 
 // ---- compliance
 
-// N along the normal; 0 of a constraint that does not push.
+// Force along the normal, N; 0 for a constraint that does not push.
 static double push_of(const cau_contact_row *row)
 {
 	return row->attached ? 0
 	                     : fmax(cau_dot(cau_vec3_of(row->reaction), cau_vec3_of(row->normal)), 0);
 }
 
-// Which constraints carry a load, and along what.
+// The constraints that carry a load, and the load's direction.
 typedef struct carried {
 	int32_t count;
-	double share[CAU_MAX_CONTACTS]; // of each constraint; their sum is 1
-	double along[3];                // unit
+	double share[CAU_MAX_CONTACTS]; // share of each constraint in the load; their sum is 1
+	double along[3];                // unit vector
 } carried;
 
-// Those that push, else the nearest; or those of the grasp.
+// Chooses the constraints that carry the load: those that push; if none pushes, the nearest.
+// `held`: those of the grasp.
 static void choose(const cau_session *session, int32_t index, bool held, carried *out)
 {
 	const cau_contact_set *set = &session->contact;
@@ -106,7 +108,7 @@ static void choose(const cau_session *session, int32_t index, bool held, carried
 	cau_vec3_to(cau_unit_or(push, (cau_vec3){0, 0, 1}), out->along);
 }
 
-// The answer of the tissue to a load.
+// Returns the motion of the tissue under a load.
 static cau_tangent_answer answer_of(cau_session *session, const carried *by)
 {
 	cau_contact_watch *watch = session->contact_watch;
@@ -129,15 +131,16 @@ static cau_vec3 normal_of(const cau_contact_plane *plane)
 	return cau_vec3_of(plane->normal);
 }
 
-// Speed of the tissue at a constraint, along a direction.
+// Returns the speed of the tissue at a constraint, along a direction.
 static double speed_of(const cau_session *session, const cau_contact_row *row, cau_vec3 along)
 {
 	cau_vec3 velocity = cau_contact_point(row, session->velocity);
 	return cau_dot(velocity, along);
 }
 
-// While planes are made, a plane's normal is the sum of its constraints' reactions, its velocity
-// the sum of their speeds by force; its offset is the gap of one that does not push.
+// Adds a pushing constraint to the plane of its normal, or to a new plane. Until all are added, a
+// plane's normal is the sum of reactions, and its velocity the sum of speeds times forces. Its
+// offset is the gap of a constraint that does not push.
 static void take_pushing(const cau_session *session, const cau_contact_row *row,
                          cau_tool_contact *out)
 {
@@ -168,7 +171,8 @@ static void take_near(const cau_session *session, const cau_contact_row *row, ca
 		cau_contact_plane *plane = &out->plane[i];
 		if (cau_dot(normal_of(plane), normal) < alike)
 			continue;
-		plane->offset_m = fmin(plane->offset_m, fmax(row->gap, 0)); // of one that pushes it is 0
+		// The gap of a pushing constraint is 0.
+		plane->offset_m = fmin(plane->offset_m, fmax(row->gap, 0));
 		return;
 	}
 	if (out->plane_count == CAU_CONTACT_PLANES)
@@ -234,7 +238,7 @@ static void describe(cau_session *session, int32_t index, cau_tool_contact *out)
 	const cau_tool_state *state = &session->tool[index].state;
 	carried by;
 	double coupling = session->contact.tool[index].compliance;
-	if (!(coupling > 0)) // nothing was near any tool yet
+	if (!(coupling > 0)) // no tissue was near any tool yet
 		coupling = cau_coupling_reach_m / state->definition.force_max_n;
 	*out = (cau_tool_contact){
 		.valid = true,
@@ -264,7 +268,7 @@ static bool are_finite(const double *numbers, size_t count)
 	return true;
 }
 
-// Whether every number of a record is one. Columns that lag far behind cuts may give others.
+// Whether all numbers of a record are finite. Columns that are far behind cuts may give others.
 static bool is_finite(const cau_tool_contact *record)
 {
 	bool finite = are_finite(record->force_n, 3) && are_finite(record->compliance_m_n, 6) &&
@@ -277,7 +281,7 @@ static bool is_finite(const cau_tool_contact *record)
 	return finite;
 }
 
-// A record with the tool's name and poses that is not valid.
+// Makes an invalid record with the tool's name and poses.
 static void show_nothing(const cau_tool_state *state, cau_tool_contact *record)
 {
 	*record = (cau_tool_contact){.asked_pose = state->asked_pose, .pose = state->pose};
@@ -306,7 +310,8 @@ const cau_tool_contact *cau_session_show_contact(const cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_contact *record = &watch->record[i];
 		const cau_tool_state *state = &session->tool[i].state;
-		if (strcmp(record->name, state->name) != 0) // added, or not computed yet
+		// The tool was added, or its contact is not computed yet.
+		if (strcmp(record->name, state->name) != 0)
 			show_nothing(state, record);
 		record->time_s = (double)session->tick * session->solver.step_s;
 	}

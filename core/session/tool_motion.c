@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools follow their drivers, within their speed limits: a command that leaps is followed, not
-// obeyed.
+// Tools follow their drivers within their speed limits. A commanded pose that is far away is
+// approached at the greatest speed, not reached at once.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -44,7 +44,7 @@ void cau_session_drop_tool(cau_session *session, int32_t index)
 	CAU_ASSERT_INDEX(index, session->tool_count);
 	cau_heat_grid_finish(&session->tool[index].grid);
 	session->tool_count--;
-	session->contact.memory_count = 0; // its rows know tools by their places
+	session->contact.memory_count = 0; // its constraints refer to tools by index
 	memmove(&session->tool[index], &session->tool[index + 1],
 	        (size_t)(session->tool_count - index) * sizeof *session->tool);
 }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools that touch: which vertices are in contact, held or dragged, and
-// what force the tools feel. The constraints themselves are in solve/contact.c.
+// Contact of tools: which vertices are in contact, held or dragged, and what force the tools feel.
+// The contact constraints themselves are in solve/contact.c.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
+// Greatest drag, as a share of a vertex's diagonal entry in A.
+static const double drag_share = 0.25;
 
-// Cold parts push. The hot part pushes too while it is off, and with energy `tissue` always: it is
-// the tissue there that goes.
+// Returns the part of the tool that pushes. Cold parts always push. The hot part pushes with energy
+// off, and with energy `tissue` always, because there the tissue is removed instead.
 static cau_tool_part pushing_part(const cau_session *session, const cau_tool *tool)
 {
 	return tool->state.energized && !session->cells ? CAU_PART_COLD : CAU_PART_BOTH;
@@ -29,14 +30,14 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	double start_m = cau_tool_distance(&tool->state.definition, tool->state.jaw,
 	                                   pushing_part(session, tool), local, &side);
 	if (cau_session_feels_faces(tool) && start_m > 0)
-		cau_vec3_to(side, row.side); // else it may leave as it can
+		cau_vec3_to(side, row.side); // otherwise the vertex may leave in any direction
 	row.slack_m = cau_contact_slack(start_m, session->substep.length_s);
 	row.way_m = cau_length(cau_sub(cau_pose_to_local(&tool->state.pose, start), local)) +
 	            2 * tool->state.definition.hot_radius_m;
 	return row;
 }
 
-// Whether a vertex can neither move nor hold what it belongs to: the last of its elements is gone.
+// Whether a vertex is left over: it is fixed, and its last element was removed.
 static bool is_left_over(const cau_session *session, int32_t vertex)
 {
 	return session->fixed[vertex] && !session->dissection.live_elements[vertex];
@@ -52,9 +53,10 @@ static bool is_grasped(const cau_tool *tool, int32_t vertex)
 	return false;
 }
 
-// Signed distance to the pushing part at the tick's end of where a vertex is guessed to be, or of
-// where it was if that is nearer and may be within the margin: what was pushed out in the last tick
-// is guessed to fly on, and would be let go of by turns.
+// Returns the signed distance from the pushing part to a vertex at the tick's end: at its guessed
+// position, or at its start if that is nearer and within the margin. A vertex that was pushed out
+// in the last tick is guessed to move on. With the guess alone its constraint would be lost in
+// every second tick.
 static double least_gap(const cau_session *session, const cau_tool *tool, int32_t vertex,
                         double margin_m)
 {
@@ -66,15 +68,15 @@ static double least_gap(const cau_session *session, const cau_tool *tool, int32_
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	cau_vec3 start = cau_vec3_of(session->position_start + at);
 	double way = cau_length(cau_sub(cau_vec3_of(session->position + at), start));
-	if (least > 2 * margin_m + way) // it was as far away but for its way
+	if (least > 2 * margin_m + way) // the start is not nearer than the margin either
 		return least;
 	double was =
 		cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part, start, NULL);
 	return was < least ? was : least;
 }
 
-// Puts it behind the others or, where there is no room, in the place of the one that is least deep,
-// unless that is itself.
+// Adds a vertex to the list. If the list is full, replaces the least deep vertex, unless the new
+// one is less deep.
 static void list_touching(cau_session *session, cau_touching *list, int32_t *count,
                           cau_touching touching)
 {
@@ -91,10 +93,10 @@ static void list_touching(cau_session *session, cau_touching *list, int32_t *cou
 		list[least] = touching;
 }
 
-static const double in_float_m = 1e-6; // that boxes are off by less than
+static const double in_float_m = 1e-6; // boxes in single precision are off by less than this
 
-// Collects the vertices within the margin of the pushing part: those that are held too, where the
-// tool is what gives way.
+// Collects the vertices within the margin of the pushing part. Fixed vertices are included: there
+// the tool yields.
 static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 {
 	const cau_tool *tool = &session->tool[index];
@@ -115,7 +117,7 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 			if (is_left_over(session, v) || is_grasped(tool, v))
 				continue;
 			double gap = least_gap(session, tool, v, margin);
-			if (!(gap <= margin)) // nor is a vertex near that is nowhere
+			if (!(gap <= margin)) // also for a position that is not a number
 				continue;
 			list_touching(session, list, &count, (cau_touching){v, i, gap});
 		}
@@ -134,7 +136,8 @@ static void add_attachments(cau_session *session, int32_t index)
 	}
 }
 
-// Energized surfaces do not push: they drag what is in them along, viscously, while it chars.
+// Adds drag. Energized surfaces do not push. They drag the tissue inside them along, viscously,
+// while it chars.
 static void add_drag(cau_session *session, int32_t index)
 {
 	const cau_tool *tool = &session->tool[index];
@@ -173,7 +176,7 @@ static void describe_tools(cau_session *session)
 	session->contact.tool_count = session->tool_count;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
-		bool held_back = session->contact.tool[i].held_back; // of the attempt before
+		bool held_back = session->contact.tool[i].held_back; // from the attempt before
 		session->contact.tool[i] = (cau_contact_tool){
 			.held_back = held_back,
 			.def = &tool->state.definition,
@@ -184,7 +187,8 @@ static void describe_tools(cau_session *session)
 	cau_session_couple(session);
 }
 
-// Rows of the vertices at a tool. They leave room for faces, which are what a tool would pass.
+// Adds the constraints of the vertices at a tool. They leave capacity for faces, which a tool could
+// otherwise pass.
 static void add_vertices(cau_session *session, int32_t index)
 {
 	cau_touching list[CAU_MAX_TOUCHING];
@@ -236,10 +240,10 @@ static void keep_unheld(cau_session *session, int32_t rows)
 		memcpy(set->begun_offset[i], set->tool[i].offset, sizeof set->begun_offset[i]);
 }
 
-static const double missed_m = 1e-4; // a face deeper than this at its row is not held yet
+static const double missed_m = 1e-4; // a face deeper than this at its constraint is not held yet
 
-// Whether tissue is where it cannot have come: then the step goes on with the faces that the tools
-// met and no row told of, and with the rows that it ended inside of.
+// Whether tissue is where it cannot have come. Then the step continues with constraints for the
+// missed faces, and for the constraints inside which it ended.
 bool cau_session_find_missed(cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
@@ -276,7 +280,8 @@ bool cau_session_find_thrown(cau_session *session)
 		return false;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
-		cau_vec3 from = cau_vec3_of(tool->anchor_before.position_m); // it may be thrown, too
+		// The actual pose may have diverged, so the anchor's motion is used.
+		cau_vec3 from = cau_vec3_of(tool->anchor_before.position_m);
 		double way = cau_length(cau_sub(cau_vec3_of(tool->anchor.position_m), from));
 		room = fmax(room, way + 2 * tool->state.definition.hot_radius_m);
 	}
@@ -303,16 +308,17 @@ void cau_session_let_through(cau_session *session)
 
 // ---- after the solve
 
-// Whether it bears all that tissue at one point does, and would be torn out.
+// Whether a constraint carries the greatest force that tissue bears at one point, and would be torn
+// out.
 static bool bears_too_much(const cau_contact_row *row)
 {
 	const double nearly = 0.999;
 	return cau_length(cau_vec3_of(row->reaction)) > nearly * cau_most_at_a_point_n;
 }
 
-// An attachment at its slip force gives way: its anchor follows the vertex so far that the force
-// stays; past the length of the jaws it is lost. So is, at once and however firm the jaws are, one
-// that bears more than tissue at one point does.
+// Lets an attachment slip that is at its slip force: its anchor follows the vertex so far that the
+// force stays the same. The attachment is lost beyond the length of the jaws. It is also lost at
+// once, however firm the jaws are, if it carries more than tissue bears at one point.
 static void slip(cau_tool *tool, const cau_contact_row *row, const double *position)
 {
 	const cau_tool_def *def = &tool->state.definition;
@@ -337,8 +343,8 @@ static void add_force(cau_tool_state *state, cau_vec3 force, cau_vec3 at)
 	            state->raw_torque_nm);
 }
 
-// One tick of a low-pass filter of first order, by the implicit Euler method. Its value is `most`
-// long at most. With a time constant tau_s of 0 the value is the raw one, to the bit.
+// Advances a low-pass filter of first order by one tick, by the implicit Euler method. The result
+// is at most `most` long. With a time constant tau_s of 0 the result is the raw value, to the bit.
 static void filter(double filtered[3], const double raw[3], double tau_s, double most, double dt)
 {
 	CAU_ASSERT(dt > 0 && most > 0, "a filter of ticks of %g s, up to %g", dt, most);

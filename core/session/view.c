@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What callers see of a session: its constant parts, and the last tick's frame.
+// Returns a session's constant parts and the last tick's frame.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -53,7 +53,7 @@ void cau_session_describe(const cau_session *session, cau_session_info *info)
 	describe_layers(session, info);
 }
 
-// Layer and texture of every face; fat faces take the layer of their first owner.
+// Finds layer and texture coordinates of every face. Fat faces get the layer of their first owner.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 {
 	const cau_tissue *tissue = &session->tissue;
@@ -93,7 +93,7 @@ static void heat_vertices(cau_session *session)
 		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
 }
 
-// With energy `tissue` the tools' grids stay at ambient.
+// Shows the cells' temperatures. With energy `tissue` the tools' heat grids stay at ambient.
 static void heat_by_cells(cau_session *session)
 {
 	for (int32_t v = 0; session->cells && v < session->tissue.vertex_count; v++)
@@ -122,8 +122,8 @@ static void make_blood(cau_session *session)
 		session->frame.blood[v] = (float)cau_blood_depth(&session->vessels->blood, v);
 }
 
-// How a scalar is made while somebody watches it: from the state alone, and after a step that
-// followed such a state. A scalar without a row is part of every step (cau_frame_update).
+// How a watched scalar is computed: `make` from the state alone, `follow` after a step from such a
+// state. A scalar without an entry is part of every step (cau_frame_update).
 typedef struct scalar_source {
 	void (*make)(cau_session *session);
 	void (*follow)(cau_session *session);

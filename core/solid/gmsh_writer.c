@@ -6,7 +6,8 @@
 
 #include "cautery/assert.h"
 
-enum { TETRAHEDRON = 4, TAGS = 2 }; // Gmsh's number of the kind; physical group and entity
+// Gmsh's number of tetrahedra; number of tags: physical group and entity.
+enum { TETRAHEDRON = 4, TAGS = 2 };
 
 static void put_whole(FILE *out, int32_t value)
 {
@@ -37,7 +38,7 @@ static void put_names(FILE *out, const cau_volume *volume)
 static void put_file(FILE *out, const cau_tets *tets, const cau_volume *volume)
 {
 	fputs("$MeshFormat\n2.2 1 8\n", out);
-	put_whole(out, 1); // for readers of another byte order
+	put_whole(out, 1); // shows the byte order
 	fputs("\n$EndMeshFormat\n", out);
 	put_names(out, volume);
 	fprintf(out, "$Nodes\n%d\n", tets->vertex_count);

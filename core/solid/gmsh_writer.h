@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A solid as a file: Gmsh 2.2, binary, with a physical group for each label.
+// Writes a solid as a file: Gmsh 2.2, binary, with a physical group for each label.
 #pragma once
 
 #include "solid/tets.h"
 
-// A region is the label's value, or 1 without labels. The caller frees *bytes.
+// Writes the file. The region of a tetrahedron is its label's value, or 1 without labels. The
+// caller frees *bytes.
 cau_status cau_gmsh_write(const cau_tets *tets, const cau_volume *volume, unsigned char **bytes,
                           size_t *byte_count, cau_error *error);

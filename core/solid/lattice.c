@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The body-centred cubic lattice: corners of cubic cells and their centres. Two centres over a face
-// and an edge of that face make a tetrahedron; all are alike.
+// The body-centred cubic lattice: the corners and the centres of cubic cells. Two neighbouring
+// centres and an edge of the face between them make a tetrahedron. All tetrahedra have the same
+// shape.
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,21 +9,22 @@
 #include "solid/tets.h"
 
 static const double cells_most = 16e6;
-// Cells of a block along an axis. Of 2, 3, 4 and 8, blocks of 2 ask most boxes, those of 8 most
-// places; 3 and 4 take the same time for balls, shells and slivers.
+// Cells of a block along an axis. Measured for 2, 3, 4 and 8: blocks of 2 query most boxes, blocks
+// of 8 most points. Blocks of 3 and 4 take the same time for balls, shells and slivers.
 enum { BLOCK = 4 };
-enum { STACK = 64 }; // spans: 16 million cells are halved 24 times, and once more along each axis
+// Most boxes on the stack; 16 million cells are halved 24 times, and once more along each axis.
+enum { STACK = 64 };
 
 typedef struct grid {
 	const cau_domain *domain;
 	double spacing, origin[3];
 	int64_t cells[3], blocks[3];
 	bool *empty;        // (blocks): no cell of the block has a tetrahedron
-	uint8_t *label[2];  // of corners, of centres
-	int32_t *vertex[2]; // their numbers from 1; 0: not used yet
+	uint8_t *label[2];  // labels of the corners and of the centres
+	int32_t *vertex[2]; // vertices of the corners and of the centres, from 1; 0: not used yet
 } grid;
 
-// Cells, or blocks, of a box.
+// A box of cells or blocks.
 typedef struct span {
 	int64_t begin[3], end[3];
 } span;
@@ -44,8 +46,9 @@ static void position_of(const grid *of, int kind, const int64_t index[3], double
 }
 
 // ---- labels
-// The corners and centres that belong to some cells: those at the cells' low sides, and at the end
-// of the lattice also those at its high side. `label` < 0: each place is asked for.
+// Labels the corners and centres of some cells. A cell has the corners at its low sides. The last
+// cells of the lattice also have the corners at their high sides. If `label` < 0, the domain gives
+// the label of each point.
 static void label_cells(grid *of, const span *cells, int32_t label)
 {
 	for (int kind = 0; kind < 2; kind++) {
@@ -82,8 +85,8 @@ static void mark_empty(grid *of, const span *blocks)
 				of->empty[block_of(of, block)] = true;
 }
 
-// Whether all places have one label that the tetrahedra of some blocks' cells may use. These reach
-// to the centres of the next cells.
+// Whether all points that the tetrahedra of some blocks can use have one label. These tetrahedra
+// reach to the centres of the next cells.
 static bool blocks_are_uniform(const grid *of, const span *cells, int32_t *label)
 {
 	double least[3], most[3], next[3];
@@ -95,7 +98,8 @@ static bool blocks_are_uniform(const grid *of, const span *cells, int32_t *label
 	return of->domain->is_uniform(of->domain, least, most, label);
 }
 
-// By halves, down to blocks: the cost follows the surface of the tissue, and not the box around it.
+// Labels all points. Boxes are halved until they are uniform or single blocks. So the cost depends
+// on the surface of the tissue, not on the volume of the box around it.
 static void label_all(grid *of)
 {
 	span stack[STACK] = {{.end = {of->blocks[0], of->blocks[1], of->blocks[2]}}};
@@ -140,8 +144,8 @@ static int32_t vertex_at(grid *of, int kind, const int64_t index[3], cau_tets *t
 	return *number - 1;
 }
 
-// The four tetrahedra around the edge from the centre of a cell to that of the next one along an
-// axis.
+// Adds the four tetrahedra around the line from the centre of a cell to the centre of the next cell
+// along an axis.
 static void add_around(grid *of, const int64_t cell[3], int axis, cau_tets *tets)
 {
 	int64_t next[3] = {cell[0], cell[1], cell[2]}, corner[4][3];
@@ -184,7 +188,8 @@ static void add_all(grid *of, cau_tets *tets)
 			}
 }
 
-// A cell more on each side than the domain needs, so that no tetrahedron is missing at its border.
+// Sets the number of cells and the origin. The lattice has one more cell on each side than the
+// domain needs, so that no tetrahedron is missing at its border.
 static cau_status lay_out(grid *of, cau_error *error)
 {
 	double cells = 1;
@@ -203,7 +208,7 @@ static cau_status lay_out(grid *of, cau_error *error)
 	return CAU_OK;
 }
 
-// All is zero at first: pages of empty blocks are then never touched.
+// Allocates zeroed arrays, so that the memory pages of empty blocks are never used.
 static bool make_arrays(grid *of)
 {
 	size_t blocks = 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NIfTI 1 and 2 (nifti.nimh.nih.gov), as one file. Its frame is right, front, head already.
+// Reads NIfTI 1 and 2 (nifti.nimh.nih.gov), as one file. The axes of its frame are already right,
+// front, head.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,7 @@
 
 enum { NIFTI1_BYTES = 348, NIFTI2_BYTES = 540 };
 
-// Where the members of a header are.
+// Byte positions of the members in a header.
 typedef struct places {
 	int dim, dim_bytes, datatype, pixdim, real_bytes, vox_offset, offset_is_whole;
 	int slope, inter, qform, sform, code_bytes, quatern, qoffset, srow, units, units_bytes;
@@ -55,7 +56,7 @@ static double real_at(const head *of, int place, int width)
 	return (double)value;
 }
 
-// Which header it is. False: none.
+// Finds out which header a file has. Returns false if there is none.
 static bool find_head(const unsigned char *bytes, size_t byte_count, head *of)
 {
 	*of = (head){.bytes = bytes};
@@ -142,7 +143,7 @@ static cau_status read_sizes(const head *of, cau_volume *volume, cau_error *erro
 	return CAU_OK;
 }
 
-// The rows of the affine matrix.
+// Reads the rows of the affine matrix.
 static void read_rows(const head *of, cau_volume *volume)
 {
 	int width = of->at->real_bytes;
@@ -153,8 +154,8 @@ static void read_rows(const head *of, cau_volume *volume)
 	}
 }
 
-// The rotation of a unit quaternion, and spacings; the first of these holds the sign of the third
-// axis.
+// Reads the rotation of a unit quaternion, and the spacings. The first item of pixdim has the sign
+// of the third axis.
 static void read_quaternion(const head *of, cau_volume *volume)
 {
 	int width = of->at->real_bytes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NRRD (teem.sourceforge.net/nrrd/format.html), and the names of segments that 3D Slicer adds to
-// it.
+// Reads NRRD (teem.sourceforge.net/nrrd/format.html), and the names of segments that 3D Slicer
+// adds.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,15 +11,16 @@
 
 enum { LINE_BYTES = 1024 };
 
-// A header under way.
+// A header that is being read.
 typedef struct header {
 	cau_volume *volume;
 	cau_voxels *voxels;
 	int dimension;
 	double spacing[3];
 	bool has_directions, has_spacing, has_sizes, has_type, has_encoding;
-	double turn[3]; // of each axis of the file's frame: 1, or -1 to reach right, front, head
-	double unit_mm; // of the frame
+	// Sign for each axis of the file's frame that makes it point right, front, head: 1 or -1.
+	double turn[3];
+	double unit_mm; // mm in one unit of the frame
 	cau_error *error;
 } header;
 
@@ -36,7 +37,7 @@ static cau_status fail(header *of, const char *format, const char *word)
 static cau_status read_type(header *of, const char *text)
 {
 	static const struct {
-		const char *words; // all names of a type, with a bar around each
+		const char *words; // all names of a type, each between bars
 		cau_voxels is;
 	} types[] = {
 		{"|signed char|int8|int8_t|", {.kind = CAU_VOXEL_SIGNED, .bytes = 1}},
@@ -103,7 +104,7 @@ static cau_status read_sizes(header *of, const char *text)
 	return CAU_OK;
 }
 
-// Three numbers in brackets, or `none`. Returns the place behind, or NULL.
+// Reads three numbers in brackets. Returns the position after them, or NULL for `none`.
 static const char *read_vector(const char *text, double vector[3])
 {
 	const char *at = strchr(text, '(');
@@ -139,14 +140,14 @@ static cau_status read_space(header *of, const char *text)
 	char words[64], *rest = words;
 	double turn[3];
 	snprintf(words, sizeof words, "%.60s", text);
-	if (strlen(words) == 3) // RAS, LPS
+	if (strlen(words) == 3) // such as RAS or LPS
 		snprintf(words, sizeof words, "%s-%s-%s", strpbrk(text, "Ll") ? "left" : "right",
 		         strpbrk(text, "Pp") ? "posterior" : "anterior",
 		         strpbrk(text, "Ii") ? "inferior" : "superior");
 	for (int c = 0; c < 3; c++) {
 		const char *word = strtok_r(c ? NULL : words, "-", &rest);
 		if (!word || (strcasecmp(word, to_mesh[c][0]) != 0 && strcasecmp(word, to_mesh[c][1]) != 0))
-			return CAU_OK; // scanner-xyz and the like: where right and left are is not known
+			return CAU_OK; // scanner-xyz and similar: the direction of right and left is unknown
 		turn[c] = strcasecmp(word, to_mesh[c][0]) == 0 ? 1 : -1;
 	}
 	memcpy(of->turn, turn, sizeof turn);
@@ -212,7 +213,7 @@ static const struct {
 	{"byteskip", refuse_skip},
 };
 
-// Segment3_Name:=liver and Segment3_LabelValue:=4. All other keys are passed over.
+// Reads Segment3_Name:=liver and Segment3_LabelValue:=4. All other keys are skipped.
 static void read_segment(header *of, const char *key, const char *text)
 {
 	char *end;
@@ -222,7 +223,7 @@ static void read_segment(header *of, const char *key, const char *text)
 	if (!of->volume->segment)
 		of->volume->segment = calloc(CAU_SEGMENT_MAX, sizeof *of->volume->segment);
 	if (!of->volume->segment)
-		return; // no names, then
+		return; // memory ran out: segments have no names
 	cau_segment *segment = &of->volume->segment[number];
 	long value = strtol(text, NULL, 10);
 	if (strcmp(end, "_LabelValue") == 0 && value > 0 && value <= CAU_LABEL_VALUE_MAX)
@@ -254,7 +255,7 @@ static cau_status read_line(header *of, char *line)
 	return CAU_OK;
 }
 
-// All lines up to the empty one. *data: where the voxels begin.
+// Reads all lines up to the empty line. *data is the position of the voxels.
 static cau_status read_lines(header *of, const unsigned char *bytes, size_t byte_count,
                              size_t *data)
 {
@@ -273,8 +274,8 @@ static cau_status read_lines(header *of, const unsigned char *bytes, size_t byte
 			*data = at;
 			return CAU_OK;
 		}
-		length =
-			length < LINE_BYTES - 1 ? length : LINE_BYTES - 1; // longer ones are about pictures
+		// Longer lines describe pictures.
+		length = length < LINE_BYTES - 1 ? length : LINE_BYTES - 1;
 		memcpy(line, from, length);
 		line[length] = 0;
 		cau_status status = read_line(of, line);
@@ -284,7 +285,8 @@ static cau_status read_lines(header *of, const unsigned char *bytes, size_t byte
 	return fail(of, "the header has no %s", "end (an empty line)");
 }
 
-// From the file's frame to millimetres to the right, the front and the head.
+// Converts axes and origin from the file's frame to millimetres to the right, the front and the
+// head.
 static void turn_axes(header *of)
 {
 	cau_volume *volume = of->volume;

@@ -16,14 +16,14 @@ typedef struct piece {
 typedef struct work {
 	cau_mesh *surface;
 	cau_edge_table edges;
-	int32_t *piece; // (triangle_count): number of its piece, -1: not reached
+	int32_t *piece; // (triangle_count): index of the triangle's piece, -1: not reached
 	bool *turn;     // (triangle_count)
 	int32_t *queue;
 	piece *of; // (piece_count)
 	int32_t piece_count;
 } work;
 
-// Whether the triangle runs along the edge from its lower vertex to its higher one.
+// Whether the triangle has the edge in the direction from its lower vertex to its higher vertex.
 static bool runs_up(const cau_mesh *surface, int32_t triangle, const int32_t *edge)
 {
 	const int32_t *t = surface->triangle + 3 * (size_t)triangle;
@@ -33,7 +33,7 @@ static bool runs_up(const cau_mesh *surface, int32_t triangle, const int32_t *ed
 	return false;
 }
 
-// The other triangle at an edge of two; -1 at others.
+// Returns the other triangle at an edge that two triangles share; -1 at other edges.
 static int32_t neighbour(const work *of, int32_t triangle, int32_t edge)
 {
 	const int32_t *first = of->edges.first[CAU_PRIMITIVE_TRIANGLE];
@@ -43,7 +43,8 @@ static int32_t neighbour(const work *of, int32_t triangle, int32_t edge)
 	return sharer[0] == triangle ? sharer[1] : sharer[0];
 }
 
-// Everything that hangs together with a triangle, which keeps its direction.
+// Collects all triangles that are connected to a triangle, as a piece. The start triangle keeps its
+// orientation.
 static void walk(work *of, int32_t start)
 {
 	int32_t head = 0, tail = 0, number = of->piece_count++;
@@ -106,11 +107,13 @@ static bool is_inside_another(const work *of, int32_t number)
 	return false;
 }
 
-// The walk took any triangle's direction for the piece's. One that lies inside keeps what most of
-// its triangles have; others come to look outward.
+// Whether a piece must be turned. Its orientation is that of an arbitrary triangle until now. A
+// piece inside another piece gets the orientation of most of its triangles. All other pieces get
+// the outward orientation.
 static bool turns_over(const work *of, int32_t number)
 {
-	enum { PIECES_COMPARED = 2048 }; // a soup of more pieces has no cavities worth the time
+	// With more pieces, a search for cavities is not worth the time.
+	enum { PIECES_COMPARED = 2048 };
 	const piece *own = &of->of[number];
 	if (of->piece_count <= PIECES_COMPARED && is_inside_another(of, number))
 		return 2 * own->turned > own->count;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangles of a surface, turned so that they look outward.
+// Turns the triangles of a surface so that they face outward.
 #pragma once
 
 #include "mesh/mesh.h"
 
-// Neighbours over an edge of two triangles come to agree; each piece then encloses a positive
-// volume, unless it lies inside another piece (a cavity keeps its own direction). *turned: how many
-// triangles were.
+// Triangles that share an edge of two get the same orientation. Each piece then encloses a positive
+// volume, unless the piece is inside another piece. Such a cavity keeps its own orientation.
+// *turned is the number of turned triangles.
 cau_status cau_orient(cau_mesh *surface, int32_t *turned, cau_error *error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices move to where the worst tetrahedron around them is best. Inside a label they are free.
-// On an interface of two labels they slide, and are put back on it; where more labels meet they
-// stay.
+// Smooths the mesh. Each vertex moves to where the worst tetrahedron around it is best. A vertex
+// inside a label moves freely. A vertex on the interface of two labels slides and is put back on
+// the interface. A vertex where more labels meet does not move.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,13 +12,14 @@
 #include "solid/tets.h"
 
 enum { ROUNDS = 8, HALVINGS = 10 };
-static const double good = 0.8;         // quality above which a vertex is left alone
-static const double better = 1e-3;      // a move must make at least this much of a difference
-static const double reach_share = 0.25; // of the lattice's spacing: how far the interface is sought
+static const double good = 0.8;    // quality above which a vertex is not moved
+static const double better = 1e-3; // least gain in quality of a move
+// Share of the lattice's spacing within which the interface is searched.
+static const double reach_share = 0.25;
 static const double steps[] = {1, 0.5, 0.25, 0.1};
-static const double nudges[] = {0.2, 0.08, 0.03, -0.05}; // of the spacing
+static const double nudges[] = {0.2, 0.08, 0.03, -0.05}; // trial moves, as shares of the spacing
 
-// A face between two labels, seen from the tetrahedron of `label`; `other` may be 0.
+// A face between two labels, seen from the tetrahedron of `label`. `other` may be 0, the outside.
 typedef struct wall {
 	int32_t label, other;
 } wall;
@@ -26,11 +27,11 @@ typedef struct wall {
 typedef struct smoother {
 	const cau_domain *domain;
 	cau_tets *tets;
-	cau_around around; // tetrahedra
-	int32_t *face;     // (wall_count x 3), outward of `label`
+	cau_around around; // tetrahedra around each vertex
+	int32_t *face;     // (wall_count x 3), facing out of `label`
 	wall *wall;
 	int32_t wall_count;
-	cau_around walls; // around each vertex
+	cau_around walls; // walls around each vertex
 } smoother;
 
 // ---- walls
@@ -72,7 +73,7 @@ static bool find_walls(smoother *of)
 	return done && cau_around_make(&of->walls, of->face, of->wall_count, 3, of->tets->vertex_count);
 }
 
-// The two labels at a vertex of an interface. False: more than two meet.
+// Finds the two labels at a vertex of an interface. Returns false if more than two meet.
 static bool labels_at(const smoother *of, int32_t vertex, wall *at)
 {
 	*at = of->wall[of->walls.item[of->walls.first[vertex]]];
@@ -85,7 +86,8 @@ static bool labels_at(const smoother *of, int32_t vertex, wall *at)
 	return true;
 }
 
-// The interface's normal at a vertex, from at.label to at.other. False: there is none.
+// Computes the interface's normal at a vertex, from at.label to at.other. Returns false if there is
+// none.
 static bool normal_at(const smoother *of, int32_t vertex, wall at, double normal[3])
 {
 	memset(normal, 0, 3 * sizeof *normal);
@@ -101,7 +103,8 @@ static bool normal_at(const smoother *of, int32_t vertex, wall at, double normal
 	return size > 0;
 }
 
-// Puts x back on the interface along the normal. False: it is not within reach.
+// Puts x back on the interface along the normal. Returns false if the interface is not within
+// reach.
 static bool put_back(const smoother *of, wall at, const double normal[3], double x[3])
 {
 	double reach = reach_share * of->tets->spacing, in = -reach, out = reach, place[3];
@@ -121,7 +124,8 @@ static bool put_back(const smoother *of, wall at, const double normal[3], double
 }
 
 // ---- moves
-// Towards the mean of the neighbours, or of those on the interface.
+// Computes the vector from a vertex to the mean of its neighbours. If wall_only, only neighbours on
+// the interface count.
 static void direction_to_middle(const smoother *of, int32_t vertex, bool wall_only, double to[3])
 {
 	const cau_around *around = wall_only ? &of->walls : &of->around;
@@ -142,7 +146,8 @@ static void direction_to_middle(const smoother *of, int32_t vertex, bool wall_on
 		to[c] = to[c] / (double)count - of->tets->position[3 * (size_t)vertex + (size_t)c];
 }
 
-// Away from the face opposite the vertex in the worst tetrahedron around it.
+// Computes a vector away from the face opposite the vertex, in the worst tetrahedron around the
+// vertex.
 static void direction_from_worst(const smoother *of, int32_t vertex, double to[3])
 {
 	double least = 2;
@@ -159,7 +164,7 @@ static void direction_from_worst(const smoother *of, int32_t vertex, double to[3
 		cau_triangle_normal(of->tets->position, face, to);
 	}
 	double size = sqrt(cau_dot3(to, to));
-	for (int c = 0; c < 3; c++) // the face looks outward, and the vertex is on its other side
+	for (int c = 0; c < 3; c++) // the face's normal points away from the vertex
 		to[c] *= size > 0 ? -of->tets->spacing / size : 0;
 }
 

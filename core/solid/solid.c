@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a wish to a solid: read, choose an edge, mesh, write, report.
+// Makes a solid: reads the file, chooses an edge length, meshes, writes, reports.
 #include "cautery/solid.h"
 
 #include <math.h>
@@ -13,25 +13,27 @@
 #include "solid/gmsh_writer.h"
 #include "solid/tets.h"
 
-// What a session steps in real time on one core, with room for a cut.
+// TETRAHEDRA_CHOSEN is what a session steps in real time on one core, with time left for a cut.
 enum { TETRAHEDRA_CHOSEN = 8000, MORE_MOST = 16, SAMPLES = 24, SAMPLES_LEAST = 200, TRIES = 5 };
-// Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of it (4 of 6).
+// Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of the spacing (4 of 6).
+// Their mean is 0.911 of the spacing.
 static const double spacing_of_edge = 1.0 / 0.911;
 static const double tetrahedra_of_cell = 12;
-static const double spacing_least = 1e-4; // of the longest side: less is what rounding leaves
+// Share of the longest side: a shorter spacing comes only from rounding.
+static const double spacing_least = 1e-4;
 
 typedef struct work {
 	const cau_solid_wish *wish;
 	cau_solid *solid;
 	cau_mesh surface;
 	cau_volume volume;
-	bool is_volume, is_closed; // closed: a volume, or a surface without a rim
+	bool is_volume, is_closed; // is_closed: a volume, or a surface without a rim
 	cau_domain domain;
 	cau_tets tets;
 	size_t text_bytes;
 } work;
 
-// What snprintf has put at the end of the report, or would have put.
+// Moves past the text that snprintf has added to the report.
 static void advance(work *of, int length)
 {
 	size_t left = CAU_SOLID_TEXT_BYTES - of->text_bytes;
@@ -164,8 +166,9 @@ static cau_status read_domain(work *of, cau_error *error)
 }
 
 // ---- meshing
-// The volume inside, by asking at the middles of SAMPLES^3 cells of the box. Where few of them are
-// inside, the tissue is thin, and the domain's own figure is better, if the domain is closed.
+// Returns the volume inside the domain. Samples the middles of SAMPLES^3 cells of the box. If few
+// samples are inside, the tissue is thin. Then the domain's own value is better, if the domain is
+// closed.
 static double volume_inside(const cau_domain *domain, bool closed)
 {
 	double cell = 1;
@@ -191,7 +194,7 @@ static double longest_side(const cau_domain *domain)
 	return longest;
 }
 
-// How many tetrahedra a chosen edge is to make.
+// Returns how many tetrahedra a chosen edge should make.
 static int32_t aim_of(const work *of)
 {
 	return of->wish->tetrahedra > 0 ? of->wish->tetrahedra : TETRAHEDRA_CHOSEN;
@@ -228,7 +231,7 @@ static cau_status mesh_with(work *of, double spacing, cau_error *error)
 	tell(of, "lattice", 0.1);
 	cau_status status = cau_lattice(&of->domain, spacing, &of->tets, error);
 	int64_t most = MORE_MOST * (int64_t)aim_of(of);
-	if (!status && !(of->wish->edge > 0) && of->tets.count > most) // before they are cut
+	if (!status && !(of->wish->edge > 0) && of->tets.count > most) // checked before cutting
 		return cau_fail(error, CAU_BAD_VALUE, "edge",
 		                "the tissue is so thin that its solid needs more than %lld tetrahedra: "
 		                "make a sheet of it (as "
@@ -237,7 +240,8 @@ static cau_status mesh_with(work *of, double spacing, cau_error *error)
 	return status ? status : cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
 }
 
-// Tissue thinner than the edge vanishes. An edge that was chosen here is halved, then.
+// Meshes with the wanted or chosen edge. Tissue that is thinner than the edge vanishes. If nothing
+// is left, a chosen edge is halved.
 static cau_status make_tets(work *of, cau_error *error)
 {
 	double spacing = 0;

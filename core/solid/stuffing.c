@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Isosurface stuffing [Labelle and Shewchuk 2007] in passes: first the tissue, whatever its label,
-// is cut out of the lattice; then one label after the other out of the tissue. In each pass
+// Isosurface stuffing [Labelle and Shewchuk 2007] in passes. The first pass cuts the tissue of all
+// labels out of the lattice. Each further pass cuts one label out of the tissue. In each pass:
 // - vertices are inside (1), outside (-1), or on the interface (0);
-// - an edge from inside to outside is cut where the label changes. A vertex near such a place moves
-//   there, if the tetrahedra around it stay good; its edges are then not cut;
-// - tetrahedra with a cut edge are divided. Parts inside keep the label of the pass.
-// A later pass may divide faces of an earlier label's tetrahedra: these are divided with them.
+// - an edge from inside to outside is cut where the label changes. A vertex near this point moves
+//   there if the tetrahedra around it stay good. Then its edges are not cut;
+// - tetrahedra with a cut edge are divided. Parts inside get the label of the pass.
+// A later pass may divide faces of tetrahedra with an earlier label. These tetrahedra are then
+// divided too.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,27 +16,28 @@
 #include "solid/tets.h"
 
 enum { HALVINGS = 12 };
-static const double snap_share = 0.35; // of an edge's length: from nearer places a vertex moves
-static const double cut_least = 0.06;  // of an edge's length: cuts keep away from its ends
-static const double still_good = 0.2;  // quality that a move may leave behind
+// Share of an edge's length: a vertex this near to the cut moves there.
+static const double snap_share = 0.35;
+static const double cut_least = 0.06; // share of an edge's length: cuts are no nearer to its ends
+static const double still_good = 0.2; // quality that a move may leave
 
-// An edge from inside to outside.
+// A cut of an edge from inside to outside.
 typedef struct cut {
 	int32_t in, out;
-	double share;   // of its length, from `in`
-	int32_t vertex; // where it is cut; -1: not made yet
+	double share;   // position along the edge, as a share of its length from `in`
+	int32_t vertex; // the vertex at the cut; -1: not made yet
 } cut;
 
 typedef struct pass {
 	const cau_domain *domain;
 	cau_tets *tets;
-	int32_t label;           // 0: all
-	int32_t inside, outside; // what the two sides become
+	int32_t label;           // 0: all labels
+	int32_t inside, outside; // labels that the two sides get
 	const bool *passed;
-	int8_t *sign; // (vertex_count of before the pass): 1, 0, -1; 2: not known
+	int8_t *sign; // (number of vertices before the pass): 1, 0, -1; 2: not known
 	cut *cuts;
 	int32_t cut_count, cut_capacity;
-	int32_t *slot; // of a hash table: number of a cut, or -1
+	int32_t *slot; // hash table of edges: index of a cut, or -1
 	uint32_t slot_mask;
 } pass;
 
@@ -47,7 +49,7 @@ static uint32_t hash_of(int32_t a, int32_t b)
 	return (uint32_t)(key >> 32);
 }
 
-// The slot of an edge, which may be empty.
+// Returns the slot of an edge in the hash table. The slot may be empty.
 static int32_t *slot_of(const pass *of, int32_t a, int32_t b)
 {
 	for (uint32_t at = hash_of(a, b);; at++) {
@@ -58,8 +60,8 @@ static int32_t *slot_of(const pass *of, int32_t a, int32_t b)
 	}
 }
 
-// Where there is no memory the table stays as it was: edges are looked for in it until the pass
-// ends.
+// Makes a hash table of `slots` slots. If memory runs out, the old table stays. It is needed for
+// searches until the pass ends.
 static bool rehash(pass *of, uint32_t slots)
 {
 	int32_t *slot = malloc(slots * sizeof *slot);
@@ -108,7 +110,7 @@ static void point_on(const cau_tets *tets, const cut *of, double share, double x
 		x[c] = in[c] + share * (out[c] - in[c]);
 }
 
-// Where on the edge the label ends.
+// Finds the position on the edge at which the label ends.
 static void find_place(const pass *of, cut *at)
 {
 	double in = 0, out = 1;
@@ -148,8 +150,9 @@ static bool has_cut_edge(const pass *of, const int32_t vertex[4])
 	return false;
 }
 
-// A face of an earlier label's tetrahedron may be divided. Its other corners count as on the
-// interface, and each of its edges that changes sign is cut, too; which may concern the next one.
+// Completes the cuts. A face of a tetrahedron with an earlier label may be divided. The other
+// corners of this tetrahedron then count as on the interface, and each of its edges that changes
+// sign is cut too. This may divide further tetrahedra, so the search is repeated.
 static void complete(pass *of)
 {
 	const cau_tets *tets = of->tets;
@@ -185,7 +188,7 @@ static void find_cuts(pass *of)
 // ---- moving vertices onto the interface
 typedef struct snap {
 	int32_t vertex, cut;
-	double share; // of the edge, from the vertex
+	double share; // distance to move, as a share of the edge from the vertex
 } snap;
 
 static int nearer(const void *a, const void *b)
@@ -217,7 +220,7 @@ static void try_snap(pass *of, const cau_around *around, const snap *at)
 		memcpy(x, before, sizeof before);
 }
 
-// The nearest first.
+// Moves vertices to near cuts, the nearest first.
 static void snap_all(pass *of)
 {
 	cau_around around = {0};
@@ -254,8 +257,8 @@ static int32_t cut_vertex(pass *of, int32_t in, int32_t out)
 	return at->vertex;
 }
 
-// A pyramid over the quadrangle a b c d. Its diagonal starts at the lowest vertex, for neighbours
-// to choose the same [Dompierre et al. 1999].
+// Adds a pyramid over the quadrangle a b c d. Its diagonal starts at the vertex with the lowest
+// index, so that neighbours choose the same diagonal [Dompierre et al. 1999].
 static void add_pyramid(pass *of, const int32_t base[4], int32_t apex, int32_t label)
 {
 	int low = 0;
@@ -268,8 +271,9 @@ static void add_pyramid(pass *of, const int32_t base[4], int32_t apex, int32_t l
 			label);
 }
 
-// A prism of triangles a and b, a[k] over b[k]: from its lowest vertex as the apex, the far
-// triangle makes a tetrahedron and the far quadrangle a pyramid.
+// Divides the prism between triangles a and b, with edges from a[k] to b[k], into a tetrahedron and
+// a pyramid. Their apex is the vertex with the lowest index. The triangle without the apex is the
+// base of the tetrahedron. The quadrangle without the apex is the base of the pyramid.
 static void add_prism(pass *of, const int32_t a[3], const int32_t b[3], int32_t label)
 {
 	int low = 0;
@@ -281,7 +285,7 @@ static void add_prism(pass *of, const int32_t a[3], const int32_t b[3], int32_t 
 	add_pyramid(of, (const int32_t[4]){near[u], near[v], far[v], far[u]}, near[own], label);
 }
 
-// The corners of a tetrahedron by their signs.
+// The corners of a tetrahedron, grouped by sign.
 typedef struct sides {
 	int32_t in[4], out[4], on[4];
 	int ins, outs, ons;
@@ -302,7 +306,8 @@ static sides sides_of(const pass *of, const int32_t vertex[4])
 	return at;
 }
 
-// One corner alone on its side: a tip is cut off. `count` corners are on the other side.
+// Cuts off the tip of a tetrahedron. The tip is the only corner on its side; `count` corners are on
+// the other side.
 static void divide_tip(pass *of, int32_t tip, const int32_t *others, int count, const int32_t *on,
                        int32_t tip_label, int32_t label)
 {
@@ -324,7 +329,7 @@ static void divide_tip(pass *of, int32_t tip, const int32_t *others, int count, 
 
 static void divide_middle(pass *of, const sides *at, int32_t inside, int32_t outside)
 {
-	int32_t c[2][2]; // of the edge from in[i] to out[j]
+	int32_t c[2][2]; // vertices at the cuts from in[i] to out[j]
 	for (int i = 0; i < 2; i++)
 		for (int j = 0; j < 2; j++)
 			c[i][j] = cut_vertex(of, at->in[i], at->out[j]);
@@ -334,8 +339,8 @@ static void divide_middle(pass *of, const sides *at, int32_t inside, int32_t out
 	          (const int32_t[3]){at->out[1], c[0][1], c[1][1]}, outside);
 }
 
-// Divides one tetrahedron. True: it goes. One of an earlier label is divided for its neighbours'
-// sake and keeps its label.
+// Divides one tetrahedron. Returns true if the parts replace it. A tetrahedron of an earlier label
+// is divided because its neighbours are, and keeps its label.
 static bool divide(pass *of, const int32_t vertex[4], int32_t own)
 {
 	sides at = sides_of(of, vertex);
@@ -352,7 +357,7 @@ static bool divide(pass *of, const int32_t vertex[4], int32_t own)
 	return true;
 }
 
-// Where no corner is inside or outside, the middle decides.
+// Returns the label of a tetrahedron whose corners are all on the interface. Its middle decides.
 static int32_t label_of_flat(const pass *of, const int32_t vertex[4])
 {
 	double x[3] = {0};
@@ -413,7 +418,7 @@ static void run(pass *of)
 		tets->on_interface[v] |= of->sign[v] == 0;
 }
 
-// Leaves out the tetrahedra that are outside, and the vertices that no other uses.
+// Removes the tetrahedra that are outside, and the vertices that no other tetrahedron uses.
 static cau_status compact(cau_tets *tets, cau_error *error)
 {
 	int32_t *map = malloc(((size_t)tets->vertex_count + 1) * sizeof *map), kept = 0, vertices = 0;
@@ -449,7 +454,7 @@ static cau_status compact(cau_tets *tets, cau_error *error)
 static cau_status run_pass(pass of, cau_error *error)
 {
 	if (!of.tets->count)
-		return CAU_OK; // the lattice is empty: there is nothing to cut
+		return CAU_OK; // the lattice is empty, so nothing is cut
 	run(&of);
 	free(of.sign);
 	free(of.cuts);
@@ -467,7 +472,7 @@ cau_status cau_stuff(const cau_domain *domain, cau_tets *tets,
 	CAU_ASSERT(last >= 1 && last <= CAU_SOLID_LABEL_MAX, "%d labels", last);
 	cau_status status = run_pass(
 		(pass){.domain = domain, .tets = tets, .passed = passed, .inside = CAU_UNDECIDED}, error);
-	passed[0] = true; // from here on all is tissue
+	passed[0] = true; // from here on all tetrahedra are tissue
 	for (int32_t label = 1; label < last && !status; label++) {
 		progress(user, (double)label / last);
 		status = run_pass((pass){.domain = domain,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface as a domain: how often it winds around a place.
+// A surface as a domain: the winding number of the surface around a point decides.
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,21 +10,23 @@
 #include "solid/domain.h"
 #include "solid/orient.h"
 
-enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // 8 keeps the depth below 125
-static const double far_radii = 2.5;        // a node so many radii away counts as one dipole
-static const double rounding = 1e-6; // of lengths and winding numbers; sums err by some 1e-10
+enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // UNEVEN = 8 keeps the depth of the tree below 125
+// A node that is this many radii away counts as one dipole.
+static const double far_radii = 2.5;
+// Margin for rounding of lengths and winding numbers; sums have errors of about 1e-10.
+static const double rounding = 1e-6;
 
 typedef struct node {
 	double centre[3];     // mean of the triangles' centres by area
 	double dipole[3];     // sum of area normals
-	double radius;        // of all corners about the centre
-	int32_t first, count; // triangles; count 0: children at `first` and `first` + 1
+	double radius;        // largest distance of a corner from the centre
+	int32_t first, count; // triangles; if count is 0, the children are at `first` and `first` + 1
 } node;
 
 typedef struct tree {
 	const cau_mesh *surface;
-	int32_t *order; // triangles
-	double *middle; // (triangle_count x 3)
+	int32_t *order; // triangles, in the order of the nodes
+	double *middle; // (triangle_count x 3): centre of each triangle
 	node *node;
 	int32_t node_count;
 } tree;
@@ -56,7 +58,8 @@ static void fill_node(tree *of, node *at)
 		}
 }
 
-// The axis along which the triangles' centres spread most, and the middle of that spread.
+// Returns the axis along which the triangles' centres spread most. *middle is the middle of that
+// spread.
 static int widest_axis(const tree *of, const node *at, double *middle)
 {
 	int axis = 0;
@@ -77,8 +80,8 @@ static int widest_axis(const tree *of, const node *at, double *middle)
 	return axis;
 }
 
-// Puts the triangles below the middle first. Returns how many; half of them where a side has next
-// to none, so that the tree's depth is bounded.
+// Puts the triangles below the middle first and returns their number. If one side would have almost
+// no triangles, each side gets half of them, so that the depth of the tree is bounded.
 static int32_t divide(tree *of, const node *at)
 {
 	double middle = 0;
@@ -114,8 +117,8 @@ static void build(tree *of)
 	}
 }
 
-// ---- asking
-// The solid angle of a triangle over 4 pi [van Oosterom and Strackee 1983].
+// ---- winding number of a point
+// Returns the solid angle of a triangle over 4 pi [van Oosterom and Strackee 1983].
 static double wind(const tree *of, int32_t triangle, const double x[3])
 {
 	double r[3][3], length[3], normal[3];
@@ -157,23 +160,24 @@ static double winding_number(const tree *of, const double x[3])
 
 static int32_t label_at(const cau_domain *domain, const double x[3], const bool *passed)
 {
-	(void)passed; // the one label is never passed
+	(void)passed; // there is only one label, and it is never passed
 	for (int c = 0; c < 3; c++)
 		if (x[c] < domain->least[c] || x[c] > domain->most[c])
 			return 0;
 	return winding_number(domain->own, x) > 0.5;
 }
 
-// ---- asking for a box
-// An interval that holds each answer of winding_number() in a box. It bounds the dipoles where
-// those answer, and so needs no bound for how far they are from the exact winding number.
+// ---- winding numbers in a box
+// An interval that contains every result of winding_number() in a box. If winding_number() uses
+// dipoles, the interval bounds the dipoles. So no bound is needed for the difference between
+// dipoles and the exact winding number.
 typedef struct interval {
 	double low, high;
 } interval;
 
 typedef struct box {
 	double least[3], most[3], middle[3];
-	double half;  // of the diagonal: no place is farther from the middle
+	double half;  // half of the diagonal: no point of the box is farther from the middle
 	double doubt; // sum of the half widths of all intervals so far
 } box;
 
@@ -183,7 +187,7 @@ static interval around(box *in, double value, double change)
 	return (interval){value - change, value + change};
 }
 
-// How near the edge from a to b comes to zero.
+// Returns the least distance of the edge from a to b to the origin.
 static double edge_distance(const double a[3], const double b[3])
 {
 	double along[3], nearest[3];
@@ -195,7 +199,7 @@ static double edge_distance(const double a[3], const double b[3])
 	return sqrt(cau_dot3(nearest, nearest));
 }
 
-// Whether the place of the triangle's plane that is nearest to zero lies in the triangle.
+// Whether the point of the triangle's plane that is nearest to the origin is in the triangle.
 static bool is_over(double corner[3][3], const double normal[3])
 {
 	for (int k = 0; k < 3; k++) {
@@ -208,10 +212,10 @@ static bool is_over(double corner[3][3], const double normal[3])
 	return true;
 }
 
-// The share of a triangle. Let r be the least distance to the box. The share is at most
-// area / 4 pi r^2. Its gradient has two bounds: 2 area / 4 pi r^3, as of a layer of dipoles; and
-// the sum of 2 / 4 pi r over the edges, each with its own r, as of a current along them (law of
-// Biot and Savart). The second is for large triangles.
+// Bounds the share of a triangle in the winding number. Let r be the least distance to the box. The
+// share is at most area / 4 pi r^2. Its gradient has two bounds. One is 2 area / 4 pi r^3, as for a
+// layer of dipoles. The other is the sum of 2 / 4 pi r over the edges, each with its own r, as for
+// a current along the edges (law of Biot and Savart). The second bound is for large triangles.
 static interval triangle_in(box *in, const tree *of, int32_t triangle)
 {
 	double corner[3][3], side[2][3], normal[3], r = INFINITY, per_length = 0;
@@ -232,14 +236,15 @@ static interval triangle_in(box *in, const tree *of, int32_t triangle)
 		r = fabs(cau_dot3(corner[0], normal)) / size;
 	r -= in->half;
 	if (!(r > 0))
-		return around(in, 0, 0.5); // it meets the box
+		return around(in, 0, 0.5); // the triangle meets the box
 	double most = size / 2 / (4 * M_PI * r * r);
 	double change = in->half * fmin(per_length, 2 * most / r);
 	return most < change ? around(in, 0, most) : around(in, wind(of, triangle, in->middle), change);
 }
 
-// The share of a dipole p is at most p / 4 pi r^2, and its gradient 2 p / 4 pi r^3. `r` is the
-// least distance to the box. Places nearer than `reach` do not use the dipole.
+// Bounds the share of a dipole p in the winding number. The share is at most p / 4 pi r^2, its
+// gradient 2 p / 4 pi r^3. `r` is the least distance to the box. Points nearer than `reach` do not
+// use the dipole.
 static interval dipole_in(box *in, const node *at, double r, double reach)
 {
 	double away[3], size = sqrt(cau_dot3(at->dipole, at->dipole)) / (4 * M_PI);
@@ -252,7 +257,7 @@ static interval dipole_in(box *in, const node *at, double r, double reach)
 	              change);
 }
 
-// The least and the largest distance of a place to the box.
+// Computes the least and the largest distance of a point to the box.
 static void distances(const box *to, const double x[3], double *least, double *most)
 {
 	double near2 = 0, far2 = 0;
@@ -267,8 +272,9 @@ static void distances(const box *to, const double x[3], double *least, double *m
 	*most = sqrt(far2);
 }
 
-// The share of a node: of its dipole, of its parts, or either, as winding_number() may choose for a
-// place of the box. Ends early where the doubt leaves no answer.
+// Bounds the share of a node in the winding number. For each point of the box, winding_number()
+// uses the node's dipole or its parts. If both occur in the box, the interval contains both. Ends
+// early if the doubt is too large for a result.
 static interval node_in(box *in, const tree *of, int32_t number)
 {
 	const node *at = &of->node[number];
@@ -295,7 +301,7 @@ static interval node_in(box *in, const tree *of, int32_t number)
 		return sum;
 	double doubt = in->doubt;
 	interval dipole = dipole_in(in, at, least, reach);
-	in->doubt = doubt; // either, and not both
+	in->doubt = doubt; // a point uses the dipole or the parts, not both
 	return (interval){fmin(sum.low, dipole.low), fmax(sum.high, dipole.high)};
 }
 
@@ -344,7 +350,7 @@ static void measure(const cau_mesh *surface, cau_domain *domain, double *middle)
 		domain->least[v % 3] = fmin(domain->least[v % 3], surface->position[v]);
 		domain->most[v % 3] = fmax(domain->most[v % 3], surface->position[v]);
 	}
-	double six = 0; // times the volume that it encloses
+	double six = 0; // six times the enclosed volume
 	for (size_t t = 0; t < (size_t)surface->triangle_count; t++) {
 		double normal[3], from[3];
 		for (size_t c = 0; c < 3; c++)

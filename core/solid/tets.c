@@ -77,7 +77,7 @@ bool cau_around_make(cau_around *around, const int32_t *element, int32_t count, 
 		cau_around_finish(around);
 		return false;
 	}
-	int32_t *next = around->first + 1; // next[v]: where the next item of v goes
+	int32_t *next = around->first + 1; // next[v]: index of the next item of v
 	for (size_t i = 0; i < uses; i++)
 		next[element[i] + 1]++;
 	for (int32_t v = 0; v < vertex_count; v++)
@@ -98,7 +98,8 @@ void cau_around_finish(cau_around *around)
 static const int edge_of[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 static const int opposite_of[6][2] = {{2, 3}, {1, 3}, {1, 2}, {0, 3}, {0, 2}, {0, 1}};
 
-// The lengths of the normals of the four faces, each opposite its vertex: twice the areas.
+// Computes the lengths of the normals of the four faces, which are twice the areas. Each face is
+// opposite its vertex.
 static void face_sizes(const double *position, const int32_t vertex[4], double size[4])
 {
 	for (int k = 0; k < 4; k++) {
@@ -109,8 +110,8 @@ static void face_sizes(const double *position, const int32_t vertex[4], double s
 	}
 }
 
-// sin of the angle at edge ij = 6 V |ij| / (|n_k| |n_l|), of the faces opposite k and l that meet
-// there.
+// The sine of the angle at the edge ij is 6 V |ij| / (|n_k| |n_l|). The faces opposite k and l meet
+// at this edge.
 double cau_tet_quality(const double *position, const int32_t vertex[4])
 {
 	double size[4], least = 1, volume6 = cau_tetrahedron_volume6(position, vertex);
@@ -143,7 +144,7 @@ double cau_least_angle_deg(const cau_tets *tets)
 	for (int32_t i = 0; i < tets->count; i++) {
 		const int32_t *vertex = tets->vertex + 4 * (size_t)i;
 		double normal[4][3];
-		for (int k = 0; k < 4; k++) { // outward or inward, all alike
+		for (int k = 0; k < 4; k++) { // all outward or all inward
 			static const int face_of[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 			int32_t face[3] = {vertex[face_of[k][0]], vertex[face_of[k][1]], vertex[face_of[k][2]]};
 			cau_triangle_normal(tets->position, face, normal[k]);

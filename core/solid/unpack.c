@@ -5,7 +5,7 @@
 #include "cautery/assert.h"
 #include "solid/volume.h"
 
-// Enlarges the output, up to `most` bytes.
+// Enlarges the output buffer, to at most `most` bytes.
 static bool grow(unsigned char **out, size_t *room, size_t most)
 {
 	size_t wanted = *room ? 2 * *room : 1 << 16;
@@ -22,7 +22,7 @@ cau_status cau_unpack(const unsigned char *bytes, size_t byte_count, size_t most
 {
 	z_stream stream = {0};
 	size_t taken = 0, room = 0;
-	int state = inflateInit2(&stream, 15 + 32); // gzip's or zlib's header
+	int state = inflateInit2(&stream, 15 + 32); // header of gzip or zlib
 	*out = NULL;
 	*out_count = 0;
 	CAU_ASSERT(most > 0, "unpacking to %zu bytes", most);

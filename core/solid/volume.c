@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a file's numbers to labels.
+// Converts the numbers of a file to labels.
 #include "solid/volume.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #include "cautery/assert.h"
 
-enum { SIDE_MAX = 8192, NEW_LABEL = 255 }; // NEW_LABEL: of a value that counts and has no place yet
+enum { SIDE_MAX = 8192, NEW_LABEL = 255 }; // NEW_LABEL: a value that counts and has no label yet
 static const int64_t voxels_most = 1LL << 29;
 
 bool cau_solid_is_volume(const void *bytes, size_t byte_count)
@@ -18,7 +18,7 @@ bool cau_solid_is_volume(const void *bytes, size_t byte_count)
 
 static cau_status invert(cau_volume *volume, cau_error *error)
 {
-	double(*a)[3] = volume->axis, scale = 1; // a[i]: the step of index i
+	double(*a)[3] = volume->axis, scale = 1; // a[i]: one step of index i
 	for (int i = 0; i < 3; i++)
 		scale *= sqrt(a[i][0] * a[i][0] + a[i][1] * a[i][1] + a[i][2] * a[i][2]);
 	double normal[3][3];
@@ -91,7 +91,7 @@ static cau_status refuse_value(double value, cau_error *error)
 		value, CAU_LABEL_VALUE_MAX);
 }
 
-// The place of a value among the labels, made where it is new; -1: no place left.
+// Returns the label of a value. A new value gets a new label. Returns -1 if all labels are used.
 static int32_t place_of(cau_volume *volume, uint8_t *of_value, int32_t value)
 {
 	if (of_value[value] != NEW_LABEL)
@@ -128,7 +128,7 @@ static cau_status missing(size_t there, size_t wanted, cau_error *error)
 	                there, wanted);
 }
 
-// Numbers written as text, one after the other.
+// Reads numbers that are written as text, one after the other.
 static cau_status decode_text(const cau_voxels *voxels, cau_volume *volume, size_t count,
                               uint8_t *of_value, cau_error *error)
 {
@@ -159,7 +159,7 @@ static cau_status decode_binary(const cau_voxels *voxels, cau_volume *volume, si
 	size_t width = (size_t)voxels->bytes;
 	if (voxels->byte_count / width < count)
 		return missing(voxels->byte_count, count * width, error);
-	const unsigned char *before = NULL; // voxels come in runs
+	const unsigned char *before = NULL; // equal voxels often follow each other
 	for (size_t i = 0; i < count; i++) {
 		const unsigned char *at = voxels->data + width * i;
 		if (before && !memcmp(before, at, width)) {
@@ -176,7 +176,7 @@ static cau_status decode_binary(const cau_voxels *voxels, cau_volume *volume, si
 	return CAU_OK;
 }
 
-// Labels are in the order of their values, with the names that the header has.
+// Sorts the labels by their values, and takes their names from the header.
 static void order_labels(cau_volume *volume)
 {
 	uint8_t place[CAU_SOLID_LABEL_MAX + 1] = {0};
@@ -198,7 +198,7 @@ static void order_labels(cau_volume *volume)
 				memcpy(volume->label[k].name, volume->segment[s].name, CAU_LABEL_NAME_BYTES);
 }
 
-// Marks the values that count.
+// Marks the values that count as labels.
 static cau_status mark_values(const char *labels, uint8_t *of_value, cau_error *error)
 {
 	if (!labels || !labels[0]) {
@@ -218,7 +218,7 @@ static cau_status mark_values(const char *labels, uint8_t *of_value, cau_error *
 	return CAU_OK;
 }
 
-// The first value that was asked for, and that no voxel has.
+// Fails if no voxel has one of the wanted values.
 static cau_status check_found(const char *labels, const uint8_t *of_value, cau_error *error)
 {
 	for (const char *at = labels ? labels : ""; *at; at += strcspn(at, ","), at += *at == ',') {
@@ -233,7 +233,7 @@ static cau_status check_found(const char *labels, const uint8_t *of_value, cau_e
 static cau_status unpack_voxels(const cau_voxels *voxels, size_t count, cau_voxels *plain,
                                 unsigned char **unpacked, cau_error *error)
 {
-	enum { TEXT_BYTES = 24 }; // of a number written as text, at most
+	enum { TEXT_BYTES = 24 }; // most bytes of a number that is written as text
 	*plain = *voxels;
 	if (!voxels->packed)
 		return CAU_OK;

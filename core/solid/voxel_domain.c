@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labels of voxels as a domain. The nearest voxel alone would make stairs of every surface. So the
-// 64 voxels around a place vote, each with the weight of a cubic B-spline there.
+// Labels of voxels as a domain. If only the nearest voxel counted, every surface would have stairs.
+// So the 64 voxels around a point vote, each with its weight of a cubic B-spline at that point.
 #include <math.h>
 
 #include "cautery/assert.h"
@@ -9,9 +9,11 @@
 
 enum { REACH = 4 }; // voxels along each axis that vote
 // A box with more voxels is never called uniform. A block of the lattice has 64 corners and 64
-// centres. label_at() reads eight voxels for each, or all 64: this is half of the least.
+// centres. label_at() reads eight or all 64 voxels for each. So 512 is half of the least number of
+// reads for a block.
 enum { READ_MOST = 512 };
-static const double rounding = 1e-6; // of an index, in voxels, and of votes; both err by some 1e-10
+// Margin for rounding of an index, in voxels, and of votes; both have errors of about 1e-10.
+static const double rounding = 1e-6;
 
 static int32_t voxel_at(const cau_volume *volume, const int64_t index[3])
 {
@@ -33,8 +35,8 @@ static void weights_of(double t, double weight[REACH])
 	weight[3] = t * t * t / 6;
 }
 
-// The label of the eight voxels next to the place, where it is the same: they have more than half
-// of all weights. Else -1.
+// Returns the label of the eight voxels next to the point, if all eight have the same. They have
+// more than half of all weights. Returns -1 if their labels differ.
 static int32_t label_of_inner(const cau_volume *volume, const int64_t first[3])
 {
 	int32_t label = -1;
@@ -90,8 +92,8 @@ static int32_t label_at(const cau_domain *domain, const double x[3], const bool 
 }
 
 // ---- boxes
-// The voxels that vote somewhere in a box, along one axis: the first of them, how many, and between
-// which limits the weight of each is.
+// The voxels that vote anywhere in a box, along one axis: the first of them, their number, and the
+// limits of the weight of each.
 typedef struct voters {
 	int64_t first;
 	int32_t count;
@@ -105,7 +107,7 @@ static double weight_at(double distance)
 	return t < 1 ? (4 - 6 * t * t + 3 * t * t * t) / 6 : t < 2 ? pow(2 - t, 3) / 6 : 0;
 }
 
-// Along axis i of the indices. False: not finite, or too many.
+// Finds the voters along axis i of the indices. Returns false if they are not finite, or too many.
 static bool find_voters(const cau_volume *volume, int i, const double least[3],
                         const double most[3], voters *of)
 {
@@ -127,8 +129,9 @@ static bool find_voters(const cau_volume *volume, int i, const double least[3],
 	return true;
 }
 
-// Whether one label has more votes than any other wherever in the box. The vote of each label is
-// bounded by the weights that each voxel has there. That of the winner is also what others leave.
+// Whether the winner has more votes than any other label everywhere in the box. The vote of each
+// label is bounded by the limits of its voxels' weights. The winner also has at least the votes
+// that others leave.
 static bool wins(const cau_volume *volume, const voters axis[3], int32_t winner)
 {
 	double most[CAU_SOLID_LABEL_MAX + 1] = {0}, least = 0, others = 0;
@@ -173,7 +176,7 @@ static bool is_uniform(const cau_domain *domain, const double least[3], const do
 	return wins(volume, axis, *label);
 }
 
-// The volume of a voxel.
+// Returns the volume of a voxel.
 static double cell_of(const cau_volume *volume)
 {
 	double normal[3];

@@ -8,28 +8,41 @@
 #include "solve/contact.h"
 #include "solve/solver.h"
 
-static const double least_error_m = 0.5e-6; // what a chunk that hardly moves may be off,
-static const double least_share = 0.25;     // if that is no more of its motion than this,
-static const double still_error_m = 2e-8;   // or nothing at all
-static const double least_force_n = 1e-4;   // likewise a tool: a hundredth of what viewers show
-static const double force_share = 2;        // forces may be off by so much more than vertices
-static const double steady = 0.25;          // a push that has changed by less is as those before
-static const double still_force = 0.002;    // and by less than this, not at all
-static const double force_slack = 3;        // other rows may do worse than those that taught
-static const double untaught = 3;           // amplification before anything is known
-static const double untaught_force = 1;     // likewise of forces: all of them may be wrong
+// absolute error that is allowed in a chunk that hardly moves
+static const double least_error_m = 0.5e-6;
+// least_error_m counts only up to this share of the chunk's motion
+static const double least_share = 0.25;
+static const double still_error_m = 2e-8; // an error below this is always allowed
+// N: allowed error of a small force, a hundredth of the least that viewers show
+static const double least_force_n = 1e-4;
+// the error of forces may exceed the vertices' error by this factor
+static const double force_share = 2;
+static const double steady = 0.25; // relative change below which a tool's force counts as steady
+// relative change of forces below which nothing counts as moving
+static const double still_force = 0.002;
+// contact constraints may have a larger force error than those that were learned from
+static const double force_slack = 3;
+static const double untaught = 3; // amplification before any step has taught one
+// relative force error before any step has taught one: all of the force may be wrong
+static const double untaught_force = 1;
 static const double most_amplified = 300;
-static const double resolved = 0.2;    // of the wanted accuracy: a smaller estimate is not resolved
-static const double slack = 1.2;       // a contraction that is measured flatters a little
-static const double slowest = 0.999;   // contraction that can be told from none
-static const double bound_share = 0.5; // one mode alone reaches the bound, seldom what is left
-static const double forgetting = 0.1;  // of an amplification's logarithm, a step that shows less
-static const double worth_learning = 0.05; // lengths below are rounding
-static const double all_rounding = 0.02;   // a first length below: nothing moves at all
+// share of the wanted accuracy; smaller estimates are not resolved
+static const double resolved = 0.2;
+// safety factor, because a measured contraction is a little too optimistic
+static const double slack = 1.2;
+// largest contraction factor that can be told from no contraction
+static const double slowest = 0.999;
+// only a single mode reaches the bound; the remaining error seldom is one
+static const double bound_share = 0.5;
+// weight, in the logarithm, of a step that shows a smaller amplification
+static const double forgetting = 0.1;
+static const double worth_learning = 0.05; // lengths below this are rounding
+static const double all_rounding = 0.02;   // if the first length is below this, nothing moves
 enum {
-	SUMS = 4,     // of a chunk: mass, and mass times squares of trial increment, increment, motion
-	DEEP = 4,     // increments that a step is learned from by
-	SHALLOW = 12, // steps in a row that may have less
+	// of a chunk: mass, and mass times the squares of trial increment, increment and motion
+	SUMS = 4,
+	DEEP = 4,     // increments of a step that amplifications are learned from
+	SHALLOW = 12, // consecutive steps that may have fewer increments
 };
 
 cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_arena *arena,
@@ -73,15 +86,15 @@ static void measure_part(void *context, int32_t chunk)
 	                                  solver->accuracy.sums + SUMS * (size_t)chunk);
 }
 
-// Root mean squares, m, of a chunk's or of all vertices'.
+// Root mean squares, m, over the vertices of a chunk or over all vertices.
 typedef struct lengths {
 	double trial, increment;
-	double told;    // an error of 1, as it is told, is so long
-	double allowed; // the step ends where it is off by so much
+	double told;    // length of a reported error of 1
+	double allowed; // largest error with which the step may end
 } lengths;
 
-// An error of half a micrometre is none, but if every tick of slow tissue were off by that, it
-// would move as in treacle: by far less than it should, tick for tick.
+// Half a micrometre is no visible error. But if every tick of slow tissue had that error, the
+// tissue would move far too slowly. Hence the limit least_share.
 static lengths lengths_of(const double sums[SUMS], double wanted)
 {
 	CAU_ASSERT(sums[0] > 0, "%g kg of free vertices", sums[0]);
@@ -93,8 +106,8 @@ static lengths lengths_of(const double sums[SUMS], double wanted)
 	                 .allowed = fmax(wanted * motion, slow)};
 }
 
-// What a step's trial increment is like: the longest of a chunk's and of all vertices', relative to
-// what it may be off, and as an error would be told.
+// The trial increment of a step: the largest value over all chunks and over all vertices. `length`
+// is relative to the allowed error, `told` is the length as a reported error.
 typedef struct trial {
 	double length, told, mass;
 	lengths all;
@@ -111,7 +124,7 @@ static trial measure(cau_step_solver *solver)
 			chunk < solver->chunk_count ? accuracy->sums + SUMS * (size_t)chunk : total;
 		if (!(sums[0] > 0))
 			continue;
-		of.all = lengths_of(sums, accuracy->wanted); // of the last: of all
+		of.all = lengths_of(sums, accuracy->wanted); // after the loop: of all vertices
 		of.length = fmax(of.length, of.all.trial / of.all.allowed);
 		of.told = fmax(of.told, of.all.trial / of.all.told);
 		for (int k = 0; k < SUMS && chunk < solver->chunk_count; k++)
@@ -132,8 +145,8 @@ static void sum_forces(const cau_contact_set *set, double force[CAU_ACCURACY_TOO
 	}
 }
 
-// The largest difference of a tool's forces, relative to the first, and where these are next to
-// nothing to `least_n`.
+// The largest difference of a tool's forces, relative to `of`, or relative to `least_n` if that is
+// larger.
 static double difference(double of[CAU_ACCURACY_TOOLS][3], double from[CAU_ACCURACY_TOOLS][3],
                          double least_n)
 {
@@ -151,14 +164,14 @@ static double difference(double of[CAU_ACCURACY_TOOLS][3], double from[CAU_ACCUR
 	return most;
 }
 
-// The force of which least_force_n is as much as it may be off.
+// The force, N, whose allowed error is least_force_n.
 static double least_told(const cau_accuracy *accuracy)
 {
 	return least_force_n / (force_share * accuracy->wanted);
 }
 
-// How much the tools' forces have changed since the last increment, or since none, relative to what
-// they may be off.
+// Returns the change of the tools' forces since the last increment, or since zero force, relative
+// to their allowed error.
 static double force_change(cau_step_solver *solver)
 {
 	cau_accuracy *accuracy = &solver->accuracy;
@@ -171,7 +184,7 @@ static double force_change(cau_step_solver *solver)
 	return change / (force_share * accuracy->wanted);
 }
 
-// How much they differ from what they were at the end of the step before.
+// Returns the relative difference of the tools' forces from the end of the last step.
 static double force_drift(cau_accuracy *accuracy)
 {
 	return difference(accuracy->force, accuracy->force_before, least_told(accuracy));
@@ -179,7 +192,7 @@ static double force_drift(cau_accuracy *accuracy)
 
 // ---- estimates
 
-// The factor by which the last increments' norms became shorter, by the iteration; 0: not known.
+// The factor by which the norms of the last increments shrink in one iteration; 0: not known.
 static double contraction(const cau_accuracy *accuracy)
 {
 	int32_t last = accuracy->count - 1;
@@ -199,14 +212,14 @@ static double amplification(const cau_accuracy *accuracy, int32_t count)
 	return accuracy->amplification[(count < CAU_ACCURACY_DEPTHS ? count : CAU_ACCURACY_DEPTHS) - 1];
 }
 
-// The error after the increments so far, relative to what is wanted; that of the step alone is
-// kept.
+// Estimates the error after the increments so far, relative to the allowed error. Stores the
+// estimate from this step alone in accuracy->left.
 static double estimate(cau_accuracy *accuracy, double bound)
 {
 	int32_t last = accuracy->count - 1;
 	double a = contraction(accuracy), alone = a / (1 - a), length = accuracy->length[last];
 	double carried = amplification(accuracy, accuracy->count);
-	if (last >= 2) // increments come in pairs of a long and a short one
+	if (last >= 2) // long and short increments alternate
 		length = fmax(length, a * accuracy->length[last - 1]);
 	bound = fmax(bound, length);
 	double error = fmin(fmax(slack * alone, carried) * length, bound);
@@ -214,8 +227,8 @@ static double estimate(cau_accuracy *accuracy, double bound)
 	return error;
 }
 
-// Likewise of the tools' forces, which changed by so much (relative to what they may be off) with
-// the last increment. `amplification` is what the vertices' error is of the increment's length.
+// Estimates the error of the tools' forces. `changed` is their last change relative to the allowed
+// error. `amplification` is the vertices' error over the length of the increment.
 static double estimate_forces(const cau_accuracy *accuracy, double changed, double drift,
                               double amplification)
 {
@@ -241,13 +254,14 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 		bound = bound_share * solver->inertia_s * solver->inertia_s * norm * norm /
 		        (of.mass * of.all.increment * of.all.allowed);
 	}
-	// What an iteration that stalls mixes may be as good as nothing while its increments stay.
+	// In an iteration that stalls, the mixed increment can be almost 0 while the increments stay
+	// large. So the length of the increment counts, too.
 	double length = accuracy->length[at] = at >= 2 ? fmax(of.length, smooth) : of.length;
 	accuracy->norm[at] = norm;
 	double error = estimate(accuracy, bound);
 	if (length > 0) {
 		double told = at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told;
-		// One or two increments cannot resolve a smaller error: some ticks that reported less had a
+		// One or two increments cannot resolve a smaller error. Some ticks that reported less had a
 		// true error of three times that and more.
 		accuracy->error = fmax(error * told / length, resolved * accuracy->wanted);
 		error = fmax(error, estimate_forces(accuracy, changed, drift, error / length));
@@ -282,7 +296,8 @@ void cau_accuracy_learn(cau_accuracy *accuracy)
 		most = fmax(most, accuracy->length[i]);
 	if (!(most > worth_learning))
 		return;
-	// What came after an increment is what it had left, if two came at least.
+	// The sum of all later increments is the error that an increment left, if at least two came
+	// later.
 	for (int32_t count = accuracy->count - 1; count >= 1; count--) {
 		int32_t depth = count < CAU_ACCURACY_DEPTHS ? count : CAU_ACCURACY_DEPTHS;
 		left += accuracy->length[count];

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a step is from its solution, and whether that is near enough: what ends a step that has
-// an accuracy to reach. The estimate costs one pass over the vertices an iteration, and no solve.
+// Estimates how far a step is from its solution, and ends a step that has reached its accuracy. The
+// estimate costs one pass over the vertices in each iteration, and no solve.
 //
-// The error of a step is the distance to the minimum of eq. 4 in the norm of mass, relative to the
-// step's own motion: of all vertices together and of each chunk of CAU_VERTEX_CHUNK, whichever is
-// worst, so that a flap that flies does not hide what happens under a tool. Motion counts for as
-// much at least as makes half a micrometre of error enough. Forces of tools count by half, relative
-// to themselves. Each step finds them from nothing, in one solve with its first increment, so that
-// what this leaves of them is taught by the steps before, too; a push that has just begun or
-// changed much is not what these have seen, and takes a second increment to be told.
+// The error of a step is its distance to the minimum of eq. 4 in the norm of mass, relative to the
+// step's own motion. It is measured over all vertices together and over each chunk of
+// CAU_VERTEX_CHUNK vertices. The worst of these counts, so that the motion of a flying flap does
+// not hide an error under a tool. Slow motion counts as more than it is, so that an error of half a
+// micrometre is small enough. The error of a tool's force is relative to the force and counts by
+// half. Each step finds the forces from zero, in one solve with its first increment. Earlier steps
+// therefore also teach how much force error the first increment leaves. A push that has just begun
+// or changed much is not covered by them. Such a push takes a second increment to be estimated.
 //
-// After j increments of lengths s_1 .. s_j the error is c_j s_j. What c_j is
-// - the step itself tells: the norms of the gradient contract by a factor a in each iteration, and
-//   what is left of such a sequence is a / (1 - a) of its last term;
-// - the steps before tell: with delay [Hestenes and Stiefel 1952; Meurant and Tichy 2013] the
-//   increments that came after the j-th are the error that it left, and the largest such ratio is
-//   carried on, as the mode that is slowest here has hardly begun to show in a few iterations. Of
-//   every dozen steps one goes deep enough to learn from;
-// - the energy bounds: H, its Hessian, is M / dt^2 at least where it is convex, and d = -A^-1 grad
-//   E is smooth, so that the error is dt^2 |d|_A^2 / |d|_M at most where d is all in the slow modes
-//   that are left over when an iteration stalls.
+// After j increments of lengths s_1 .. s_j the error is c_j s_j. There are three sources for c_j:
+// - The step itself. The norms of the gradient contract by a factor a in each iteration. The rest
+//   of such a sequence is a / (1 - a) of its last term.
+// - Earlier steps, with delay [Hestenes and Stiefel 1952; Meurant and Tichy 2013]. The increments
+//   that came after the j-th are the error that it left. The largest such ratio is kept, because
+//   the slowest mode hardly begins to show in a few iterations. One of every dozen steps takes
+//   enough increments to learn from.
+// - A bound by the energy. Where E is convex, its Hessian H is at least M / dt^2, and d = -A^-1
+//   grad E is smooth. The error is then at most dt^2 |d|_A^2 / |d|_M. It reaches this bound if d
+//   consists of the slow modes that are left over when an iteration stalls.
 #pragma once
 
 #include <stdbool.h>
@@ -31,38 +32,40 @@
 typedef struct cau_step_solver cau_step_solver;
 
 enum {
-	CAU_ACCURACY_DEPTHS = 4, // iterations whose amplification is told apart: 1, 2, 3, and more
-	CAU_ACCURACY_STEPS = 64, // increments that are remembered; later ones end a step unlearned from
-	CAU_ACCURACY_TOOLS = 8,  // whose forces are looked at: all that a session has
+	// classes of iterations with their own amplification: 1, 2, 3, and more
+	CAU_ACCURACY_DEPTHS = 4,
+	// increments that are remembered; the steps' learning ignores later ones
+	CAU_ACCURACY_STEPS = 64,
+	CAU_ACCURACY_TOOLS = 8, // tools whose forces are compared: all that a session has
 };
 
 typedef struct cau_accuracy {
-	double wanted; // largest error at which a step ends; 0: steps have a number of iterations
-	// What steps have taught, part of a session's state.
-	double amplification[CAU_ACCURACY_DEPTHS]; // c_j
-	int32_t shallow_steps;                     // since one that went deep
-	double force_left; // of a tool's force, what the first increment leaves it off
-	double force_before[CAU_ACCURACY_TOOLS][3]; // N, of the tools at the last step's end
-	// Of this step; lengths and estimates relative to what is wanted.
-	bool moves;                                // there is something to learn from
-	int32_t count;                             // increments
-	double length[CAU_ACCURACY_STEPS];         // s_j, and |d| where that is more
+	double wanted; // largest error at which a step ends; 0: steps have a fixed number of iterations
+	// What earlier steps have taught. This is part of a session's state.
+	double amplification[CAU_ACCURACY_DEPTHS]; // c_j by number of increments j
+	int32_t shallow_steps;                     // steps since one that took DEEP increments
+	double force_left; // relative error of a tool's force that the first increment leaves
+	double force_before[CAU_ACCURACY_TOOLS][3]; // N, the tools' forces at the end of the last step
+	// State of this step. Lengths and estimates are relative to the wanted error.
+	bool moves;                                // the step moves enough to learn from
+	int32_t count;                             // increments so far
+	double length[CAU_ACCURACY_STEPS];         // s_j; or |d|, if that is larger
 	double norm[CAU_ACCURACY_STEPS];           // |d| in the norm of A, J^(1/2)
-	double force[CAU_ACCURACY_TOOLS][3];       // N, of the tools after the last increment,
-	double force_first[CAU_ACCURACY_TOOLS][3]; // and after the first
-	double left;                               // estimate from this step alone
-	double error;                              // estimate, relative to motion; 0: none was made
-	double *sums;                              // (chunk_count x 4): scratch
+	double force[CAU_ACCURACY_TOOLS][3];       // N, the tools' forces after the last increment
+	double force_first[CAU_ACCURACY_TOOLS][3]; // N, the tools' forces after the first increment
+	double left;                               // estimate of the error from this step alone
+	double error; // estimate of the error, relative to motion; 0: no estimate was made
+	double *sums; // (chunk_count x 4): scratch
 } cau_accuracy;
 
 cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_arena *arena,
                                cau_error *error);
-// What steps have taught is as at the beginning.
+// Discards what steps have taught.
 void cau_accuracy_forget(cau_accuracy *accuracy);
-// A step begins, or begins again where its guess was given up.
+// Begins the estimate of a step. Called again if the step restarts from another guess.
 void cau_accuracy_begin(cau_accuracy *accuracy);
-// Whether the step is near enough once it has taken its trial increment; `norm`: of the increment
-// that was mixed into it, in the norm of A.
+// True if the step has reached its accuracy after its trial increment. `norm` is the norm, in A, of
+// the increment from which the trial increment was mixed.
 bool cau_accuracy_is_reached(cau_step_solver *solver, double norm);
-// A step has ended: what it teaches.
+// Ends a step: updates the amplifications from the increments that the step took.
 void cau_accuracy_learn(cau_accuracy *accuracy);

@@ -7,12 +7,14 @@
 #include "solve/coupling.h"
 
 enum { MOST_STEPS = 24, MOST_ROUNDS = 2 };
-static const double enough = 1e-12;       // of the first residual's square
-static const double on_the_cone = 0.9999; // of what friction bears: it slips
-static const double lost = 1e-9;          // of a reaction: no more is none
-static const double most_times = 20;      // of the largest change that a row would make alone
+static const double enough = 1e-12; // relative to the square of the first residual
+// share of the largest friction force above which a contact constraint slips
+static const double on_the_cone = 0.9999;
+static const double lost = 1e-9; // share of a reaction; a smaller remaining push counts as none
+// bound on all changes, relative to the largest change of one constraint alone
+static const double most_times = 20;
 
-typedef struct over_rows { // by coordinate, of each active row
+typedef struct over_rows { // a vector by coordinate, for each active constraint
 	double of[3][CAU_MAX_ACTIVE];
 } over_rows;
 
@@ -52,7 +54,7 @@ static double friction_of(const active *a, const cau_contact_row *row)
 	return a->set->tool[row->tool].def->friction;
 }
 
-// ---- which they are
+// ---- choose the active constraints
 
 static bool sticks(const active *a, const cau_contact_row *row, cau_vec3 reaction)
 {
@@ -60,7 +62,7 @@ static bool sticks(const active *a, const cau_contact_row *row, cau_vec3 reactio
 	return cau_length(tangent_of(row, reaction)) < on_the_cone * bears;
 }
 
-// False: there are none, or more than it is worth for.
+// Lists the active constraints. Returns false if there are none or more than CAU_MAX_ACTIVE.
 static bool choose(active *a)
 {
 	cau_contact_set *set = a->set;
@@ -86,9 +88,9 @@ static void find_between(const active *a)
 				cau_contact_between(a->set, row_of(a, i), row_of(a, j));
 }
 
-// ---- what they change by
+// ---- the change of their reactions
 
-// What is left to do: how far each point is off where it has to be.
+// Finds the residual: how far each point is from where it has to be, m.
 static void find_left(active *a, const cau_step_solver *solver)
 {
 	for (int32_t i = 0; i < a->count; i++) {
@@ -102,7 +104,7 @@ static void find_left(active *a, const cau_step_solver *solver)
 	}
 }
 
-// Of a row that slips only the normal's part is free.
+// Keeps only the normal part for a constraint that slips.
 static void keep_free(const active *a, over_rows *v)
 {
 	for (int32_t i = 0; i < a->count; i++) {
@@ -151,7 +153,7 @@ static void find_change(active *a)
 	for (int step = 0; step < MOST_STEPS && size > enough * first; step++) {
 		apply(a);
 		double stiff = dot(a, &a->along, &a->image);
-		if (!(stiff > 0)) // columns that lag behind cuts
+		if (!(stiff > 0)) // lagging columns can make this negative
 			return;
 		add_scaled(a, &a->change, size / stiff, &a->along);
 		add_scaled(a, &a->left, -size / stiff, &a->image);
@@ -163,19 +165,19 @@ static void find_change(active *a)
 	}
 }
 
-// ---- how far they go
+// ---- the allowed share of the change
 
-// The least part of a change, below 1, at which a + 2 b part + c part^2 comes down to 0 from a > 0.
+// The smallest t in (0, 1) at which a + 2 b t + c t^2, with a > 0, reaches 0; 1 if there is none.
 static double first_root(double a, double b, double c)
 {
 	double inner = b * b - a * c;
 	if (!(inner >= 0) || (b >= 0 && c >= 0))
 		return 1;
-	double root = a / (sqrt(inner) - b); // the one that is nearer to 0 of those above it
+	double root = a / (sqrt(inner) - b); // the smaller positive root
 	return root > 0 && root < 1 ? root : 1;
 }
 
-// How much of its change a row can take before it would pull or, if it sticks, slip.
+// The share of its change that a constraint can take before it would pull or, if it sticks, slip.
 static double part_of_row(const active *a, int32_t i)
 {
 	const cau_contact_row *row = row_of(a, i);
@@ -193,7 +195,7 @@ static double part_of_row(const active *a, int32_t i)
 	                             bears * more * more - cau_dot(by, by)));
 }
 
-// What the row that is farthest off would change by if it were alone, N.
+// The largest change of a reaction, N, if each constraint were solved alone.
 static double largest_alone(const active *a)
 {
 	double most = 0;
@@ -204,8 +206,9 @@ static double largest_alone(const active *a)
 	return most;
 }
 
-// How much of the change all can take. Rows of tissue that is caught between a tool's sides push
-// against each other, and nothing is their solution: they would push without end.
+// The share of the change that all constraints can take. Constraints of tissue that is caught
+// between the sides of a tool push against each other. They have no solution, and their reactions
+// would grow without bound.
 static double part_of_all(const active *a, double most_n, bool *stopped)
 {
 	double largest = 0, part = 1;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows that push, solved together. Points of neighbouring faces hang on the same vertices, so
-// that what one row takes off the next puts back: pass by pass Gauss-Seidel converges hopelessly
-// slowly there, and tissue under a tool never comes to rest. It does find which rows push and which
-// of these slip, and with that known the rest is linear: it is solved by conjugate gradients, over
-// the normals of rows that slip and all directions of rows that stick, as far as none begins to
-// pull or to slip (Z. Dostal's method of active sets has these two by turns, too).
+// Solves the active contact constraints together. Points of neighbouring faces share vertices, so
+// each constraint undoes part of its neighbours' correction. Gauss-Seidel converges far too slowly
+// there, and tissue under a tool never comes to rest. But Gauss-Seidel finds which constraints are
+// active and which of these slip. With that known, the rest is linear and is solved by conjugate
+// gradients. The unknowns are the normal part of constraints that slip, and all directions of
+// constraints that stick. The solution is taken as far as no constraint begins to pull or to slip.
+// (Z. Dostal's active set method alternates between these two as well.)
 #pragma once
 
 #include "solve/contact.h"
 
-// Brings the reactions of the rows that push now nearer to their common solution, set->step and the
-// tools' offsets with them. Attached rows stay as they are.
+// Moves the reactions of the active constraints towards their common solution, and updates
+// set->step and the tools' offsets. Attachments keep their reactions.
 void cau_active_solve(cau_contact_set *set, const cau_step_solver *solver);

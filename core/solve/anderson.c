@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Anderson acceleration of the iteration x <- x + f(x), f = -A^-1 grad E [Walker and Ni 2011],
-// least squares in the norm of A: since A f = -grad E, every inner product is one of increments
+// Anderson acceleration of the iteration x <- x + f(x), f = -A^-1 grad E [Walker and Ni 2011], with
+// least squares in the norm of A. Since A f = -grad E, every inner product is one of increments
 // with gradients. The weights of past iterates sum to one, so momentum is kept as by the plain
 // iteration.
 #include <string.h>
@@ -8,8 +8,8 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// With contact A f = -grad E + reactions; the solver's gradient vector then holds that sum's
-// negative.
+// One mix of the history. With contact, A f = -grad E + reactions. The solver's gradient vector
+// then has the negative of that sum.
 typedef struct mix {
 	cau_step_solver *solver;
 	double weight[CAU_ANDERSON_WINDOW];
@@ -46,8 +46,9 @@ static void combine_part(void *context, int32_t chunk)
 }
 
 // Solves the small symmetric system by Gaussian elimination with diagonal pivots. Its entries are
-// products, so a pivot of 1e-8 of a column's own size says that a ten-thousandth of its length
-// points anywhere new: less than that is noise in single precision, and gets no weight.
+// products. If a pivot is 1e-8 of its column's own size, only a ten-thousandth of the column's
+// length has a new direction. A smaller pivot is noise in single precision, and its column gets the
+// weight 0.
 static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
                           double b[CAU_ANDERSON_WINDOW], int32_t count, double *x)
 {
@@ -76,7 +77,8 @@ static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
 	}
 }
 
-// The newest column and its products with all, summed in chunk order; then the weights.
+// Adds the newest column and its products with all columns, summed in chunk order. Then finds the
+// weights.
 static void weigh(mix *work)
 {
 	cau_step_solver *solver = work->solver;

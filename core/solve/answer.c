@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a load on a row of contact moves: S W^T, by the columns' places; and where that takes the
-// row's point.
+// Finds how a load on a contact constraint moves the vertices of the kept columns (S W^T), and how
+// its own point moves.
 #include "cautery/assert.h"
 #include "solve/contact.h"
 
-// Whether rows use so many of the columns that all are taken, two by two, in less time.
+// True if all columns are to be read. That is faster, because a loop over all columns handles two
+// at a time (find_used).
 static bool all_are_used(const cau_contact_set *set)
 {
 	CAU_ASSERT(set->used_count <= set->column_count, "%d of %d columns are used", set->used_count,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The step as tissue against tissue allows it: between the solver's reals and the room collide.
+// Limits a step so that tissue does not cross tissue: connects the solver's arrays with
+// core/collide.
 #include <math.h>
 
 #include "cautery/assert.h"
@@ -11,7 +12,7 @@ static void read_step(cau_step_solver *solver, int32_t vertex)
 	                               solver->collide->step + 3 * (size_t)vertex);
 }
 
-// Whether the step passes as it is, which few of its vertices tell.
+// True if the step can be taken unchanged. Only the unclear pairs' vertices are checked.
 static bool passes(cau_step_solver *solver, const double *from)
 {
 	cau_collide *collide = solver->collide;
@@ -25,7 +26,7 @@ static bool passes(cau_step_solver *solver, const double *from)
 	return cau_collide_lets_pass(collide, from, longest);
 }
 
-// How far the step leads anything at most that can touch, m.
+// The largest motion, m, of a vertex that takes part in tissue contact.
 static double longest_drawn(const cau_step_solver *solver, const cau_reals *step)
 {
 	const cau_collide *collide = solver->collide;
@@ -40,9 +41,9 @@ static double longest_drawn(const cau_step_solver *solver, const cau_reals *step
 	return sqrt(longest2);
 }
 
-// The filter shortens steps corner by corner. One that is much longer than it lets pass is
-// shortened as a whole first: else it would no longer be one that leads to less energy, and turn
-// tissue inside out.
+// The filter shortens steps vertex by vertex. A step that is much longer than the filter allows is
+// first shortened as a whole. Otherwise the filtered step might no longer lower the energy, and
+// might invert tissue.
 static const double much_longer = 2;
 
 static bool shorten(cau_step_solver *solver)

@@ -88,7 +88,7 @@ static void keep(cau_contact_set *set, const cau_contact_memory *memory)
 		set->memory[set->memory_count++] = *memory;
 }
 
-// A face that was pushed, with the point at which it was.
+// Remembers the face of a constraint, and the point at which it was pushed.
 static void keep_pushed(cau_contact_set *set, const cau_contact_row *row)
 {
 	cau_contact_memory memory = {
@@ -100,7 +100,7 @@ static void keep_pushed(cau_contact_set *set, const cau_contact_row *row)
 		keep(set, &memory);
 	cau_vec3 reaction = cau_vec3_of(row->reaction);
 	if (at == set->memory_count || !(cau_dot(reaction, reaction) > 0))
-		return; // no room for it, or it pushed nothing
+		return; // the list is full, or the constraint did not push
 	cau_contact_memory *kept = &set->memory[at];
 	if (kept->point_count < CAU_MAX_POINTS)
 		memcpy(kept->point[kept->point_count++], row->weight, sizeof row->weight);
@@ -123,7 +123,7 @@ void cau_contact_remember(cau_contact_set *set)
 			keep(set, &set->touched[i]);
 	}
 	qsort(set->memory, (size_t)set->memory_count, sizeof *set->memory, compare_memory);
-	int32_t kept = 0; // one that was touched in several rounds once
+	int32_t kept = 0; // keep only one entry of a face that was touched in several rounds
 	for (int32_t i = 0; i < set->memory_count; i++)
 		if (!kept || compare_memory(&set->memory[kept - 1], &set->memory[i]) != 0)
 			set->memory[kept++] = set->memory[i];
@@ -145,7 +145,7 @@ const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t
 	return bsearch(&key, set->memory, (size_t)set->memory_count, sizeof key, compare_memory);
 }
 
-// ---- rows
+// ---- constraints
 
 bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 {
@@ -173,8 +173,8 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 }
 
 // ---- reactions
-// Signed distance and normal of a row's point at the present iterate. Where the tool has passed it,
-// the way back counts.
+// Measures the signed distance and normal of a constraint's point at the present iterate. If the
+// tool has passed the point, the distance is the way back to the point's side.
 static void measure_gap(const cau_contact_set *set, const cau_step_solver *solver,
                         cau_contact_row *row)
 {
@@ -197,7 +197,8 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 	cau_vec3_to(cau_rotate(pose.rotation, normal), row->normal);
 }
 
-// A bound that is not a number leaves `a` as it is: the step ends as a fault.
+// Limits the length of a vector. If `most` is not a number, `a` is unchanged and the step later
+// ends as a fault.
 static cau_vec3 clamp_length(cau_vec3 a, double most, bool *clamped)
 {
 	CAU_ASSERT(!(most < 0), "at most %g N", most);
@@ -206,7 +207,7 @@ static cau_vec3 clamp_length(cau_vec3 a, double most, bool *clamped)
 	return *clamped ? cau_scale(most / length, a) : a;
 }
 
-// r = -k (x + d - anchor) with d = away + S_ii (r - r_old): solved for r.
+// Solves r = -k (x + d - anchor), with d = away + S_ii (r - r_old), for r.
 static cau_vec3 attachment_reaction(const cau_contact_set *set, cau_contact_row *row, cau_vec3 away,
                                     double s, cau_vec3 old)
 {
@@ -217,7 +218,8 @@ static cau_vec3 attachment_reaction(const cau_contact_set *set, cau_contact_row 
 	return clamp_length(r, cau_contact_slips_at(set, row), &row->slipping);
 }
 
-// Normal part from the gap, tangential part from the slip, clamped to the friction cone.
+// The normal part follows from the gap, the tangential part from the slip. The tangential part is
+// limited to the friction cone.
 static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_row *row,
                                  cau_vec3 step, cau_vec3 slip, double s, cau_vec3 old)
 {
@@ -234,8 +236,8 @@ static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_r
 	return cau_add_scaled(tangent, normal, n);
 }
 
-// A pass that changes no reaction by more than this, of the largest, is the last: columns in single
-// precision tell no smaller changes apart.
+// Gauss-Seidel ends when a sweep changes no reaction by more than this share of the largest
+// reaction. Columns in single precision do not resolve smaller changes.
 static const double SETTLED = 1e-6;
 
 static cau_vec3 relaxed(const cau_contact_set *set, const cau_step_solver *solver,
@@ -250,13 +252,14 @@ static cau_vec3 relaxed(const cau_contact_set *set, const cau_step_solver *solve
 	return contact_reaction(set, row, apart, slip, own, old);
 }
 
-// One Gauss-Seidel pass over the rows. Returns the largest change relative to the largest reaction.
+// One Gauss-Seidel sweep over the constraints. Returns the largest change relative to the largest
+// reaction.
 static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 {
 	double change = 0, size = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
-		// where none of its corners can move, the tool does
+		// if no corner can move, only the tool's compliance counts
 		cau_vec3 next = relaxed(set, solver, row, cau_contact_between(set, row, row));
 		cau_vec3 by = cau_sub(next, cau_vec3_of(row->reaction));
 		double length = cau_length(by);
@@ -271,7 +274,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 	return size > 0 ? change / size : 0;
 }
 
-// increment += C W^T dr by the columns on which something changed
+// Computes increment += C W^T dr by the columns whose load changed.
 typedef struct spread {
 	cau_step_solver *solver;
 	int32_t count;
@@ -304,7 +307,8 @@ static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
 		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &work);
 }
 
-// The same by A^-1 of all loads at once: of the columns beyond CAU_WHOLE_COLUMNS S alone is kept.
+// Computes increment += C W^T dr by one application of A^-1 to all loads. Columns beyond
+// CAU_WHOLE_COLUMNS exist only in S.
 static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
 {
 	const cau_vectors *vectors = solver->kernels->vectors;
@@ -314,13 +318,14 @@ static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
 	solver->kernels->add_scaled(solver->increment, 1, set->solution,
 	                            4 * (int64_t)solver->tissue->vertex_count);
 	for (int32_t c = 0; c < set->column_count; c++) {
-		double load[3]; // as it was rounded
+		double load[3]; // the load as it was rounded to reals
 		vectors->read(set->unit, set->column_vertex[c], load);
 		vectors->add(set->unit, set->column_vertex[c], (double[]){-load[0], -load[1], -load[2]});
 	}
 }
 
-// W^T of what changed in the reactions since the last time: in `change`, and off the gradient.
+// Sums W^T of the reactions' changes since the last call in set->change, and subtracts them from
+// the gradient.
 static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 {
 	memset(set->change, 0, 3 * (size_t)set->column_count * sizeof *set->change);
@@ -367,9 +372,10 @@ static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 	}
 }
 
-enum { PASSES = 4 }; // that tell which rows push, before these are solved together
+enum { PASSES = 4 }; // sweeps that find the active constraints, before these are solved together
 
-// Not where columns are not whole, which is more than it is worth.
+// True if constraints of faces are to be solved together. With columns that are not whole this
+// would cost more than it gains.
 static bool is_worth_solving_together(const cau_contact_set *set)
 {
 	return set->face_count && !cau_contact_is_wide(set);
@@ -381,10 +387,12 @@ void cau_contact_begin(cau_contact_set *set)
 	set->others = set->elsewhere = false;
 }
 
-// Whether other rows push than after the last correction, or at points that have gone on.
+// Finds whether the active constraints changed in this correction (others), and whether a point
+// moved along its face (elsewhere).
 static void note_changes(cau_contact_set *set)
 {
-	const double as_it_was = 0.006; // of a face
+	// sum of changes of a point's weights below which it has not moved
+	const double as_it_was = 0.006;
 	uint64_t before = set->pushing;
 	set->pushing = CAU_HASH_START;
 	set->elsewhere = false;
@@ -426,7 +434,8 @@ bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, do
 {
 	bool any = false;
 	for (int32_t i = 0; i < set->row_count; i++) {
-		cau_contact_row row = set->row[i]; // it stays as its reaction was found
+		// a copy: set->row keeps the gap from which its reaction was computed
+		cau_contact_row row = set->row[i];
 		if (row.corner_count == 1 || row.attached)
 			continue;
 		measure_gap(set, solver, &row);

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools that touch: unilateral contact with Coulomb friction and grasped
-// attachments, inside the solve. Points of tissue at a tool are rows: a vertex, or a point of a
-// face, W x of its corners x with weights W >= 0 of sum 1. With C the corners' columns of A^-1, S
-// its block on the corners (a Schur complement: the factor is not touched) and W^T the rows' loads
-// on them, each global step d, taken with the present reactions r on the right-hand side, is
-// corrected to d + C W^T dr, where r + dr solves, by projected Gauss-Seidel,
+// Contact between tools and tissue inside the solve: unilateral contact with Coulomb friction, and
+// grasped attachments. A contact constraint is a point of tissue at a tool: a vertex, or a point of
+// a face. The point is W x, where x are its corners and the weights W >= 0 have the sum 1. C are
+// the corners' columns of A^-1. S is the block of C on the corners; it is a Schur complement, so
+// the factor is not changed. W^T are the constraints' loads on the corners. Each global step d is
+// computed with the present reactions r on the right-hand side. It is then corrected to d + C W^T
+// dr, where projected Gauss-Seidel solves for r + dr:
 //
 //     contact      r_n >= 0,  gap + n.W (d + S W^T dr) >= 0, complementary;  |r_t| <= friction r_n
 //     against slip attachment   r = -k (x + d + S dr - anchor), its length at most the slip force
 //
-// The tool itself is an unknown of the same correction: it hangs on the pose that is asked by a
-// spring (coupling.h), so S gains that spring's compliance between all rows of one tool.
+// The tool itself is an unknown of the same correction. A spring connects it with the commanded
+// pose (coupling.h). So S gains the compliance of this spring between all constraints of one tool.
 //
-// A row knows on which side of the tool it belongs: a face that the tool has passed within the tick
-// is pushed back to where it was, not on.
+// A constraint stores its side of the tool. A face that the tool has passed within the tick is
+// pushed back to its own side.
 //
-// Of the columns beyond the first CAU_WHOLE_COLUMNS only what S has of them is kept (G. Saupin,
-// C. Duriez, S. Cotin and L. Grisoni 2008): where there are such, C W^T dr is one further
-// back-substitution of the rows' loads instead, which costs less than reading that many columns.
+// Beyond the first CAU_WHOLE_COLUMNS columns, only their entries in S are kept (G. Saupin, C.
+// Duriez, S. Cotin and L. Grisoni 2008). If there are such columns, C W^T dr is computed by one
+// further back-substitution of the constraints' loads. This costs less than reading so many
+// columns.
 //
 // Columns are kept from tick to tick. Because r is on the right-hand side, the fixed point does not
-// depend on C: after a cut its columns may lag, and a few are renewed every tick.
+// depend on C. So after a cut the columns may lag behind the factor, and only a few are renewed
+// every tick.
 #pragma once
 
 #include "base/memory.h"
@@ -29,62 +32,65 @@
 #include "tool/tool_shape.h"
 
 enum {
-	CAU_MAX_CONTACTS = 1024,   // rows
-	CAU_MAX_VERTEX_ROWS = 768, // of them of vertices, held or near: the rest is for faces
-	CAU_NEAR_ROWS = 192,       // of these where some only are near
-	CAU_MAX_POINT_ROWS = 256,  // of points of faces
-	CAU_MAX_COLUMNS = 960,     // vertices that are corners of rows
-	CAU_WHOLE_COLUMNS = 288,   // of them with the whole of their column
-	CAU_MAX_MEMORY = 2048,     // faces whose side is kept
-	CAU_MAX_POINTS = 2,        // of a face that are kept: a tool may touch it with two of its arms
-	CAU_MAX_HELD = 192,        // rows of attachments that are solved at once
-	CAU_MAX_ACTIVE = 96,       // rows that push and are solved together
+	CAU_MAX_CONTACTS = 1024, // contact constraints of all tools
+	// of CAU_MAX_CONTACTS, for vertices that are held or near; the rest is for faces
+	CAU_MAX_VERTEX_ROWS = 768,
+	CAU_NEAR_ROWS = 192,      // of CAU_MAX_VERTEX_ROWS, for vertices that are only near
+	CAU_MAX_POINT_ROWS = 256, // constraints at points of faces
+	CAU_MAX_COLUMNS = 960,    // distinct free vertices of contact constraints
+	CAU_WHOLE_COLUMNS = 288,  // columns that are kept whole
+	CAU_MAX_MEMORY = 2048,    // faces whose side of the tool is remembered
+	// points of one face that are remembered: two arms of a tool may touch a face
+	CAU_MAX_POINTS = 2,
+	CAU_MAX_HELD = 192,  // attachments that are solved together
+	CAU_MAX_ACTIVE = 96, // active constraints that are solved together
 	CAU_CONTACT_SWEEPS = 30,
-	CAU_CONTACT_FEW_SWEEPS = 16, // where columns are not whole: eight take the force 2 % off
-	CAU_COLUMNS_RENEWED = 3,     // of those that lag, each tick
+	// if columns are not whole; with eight sweeps the force was 2 % too small
+	CAU_CONTACT_FEW_SWEEPS = 16,
+	CAU_COLUMNS_RENEWED = 3, // lagging columns that are renewed each tick
 };
 
-// A tool as the contact sees it during one step.
+// A tool's state in contact during one step.
 typedef struct cau_contact_tool {
 	const cau_tool_def *def;
-	cau_pose anchor; // where it is asked to be at the tick's end
+	cau_pose anchor; // commanded pose at the tick's end
 	double jaw;
-	int part;           // cau_tool_part that pushes
-	double offset[3];   // m, of where it is from where it is asked to be: coupling.h
-	double measured[3]; // m, the offset at which the rows' gaps were measured
-	double compliance;  // m/N, of the coupling
-	bool passing;       // it would pass tissue that the rows do not hold
-	bool held_back;     // and did in this tick
+	int part;           // the cau_tool_part that pushes
+	double offset[3];   // m, from the commanded to the actual position: coupling.h
+	double measured[3]; // m, offset[] at the time when the gaps were measured
+	double compliance;  // m/N, of the virtual coupling
+	bool passing;       // the tool would pass tissue that no contact constraint holds
+	bool held_back;     // contact held the tool back in this tick
 } cau_contact_tool;
 
 typedef struct cau_contact_row {
 	int32_t corner_count; // 1: a vertex; 3: a point of a face
-	int32_t face, above;  // as in cau_contact_memory
-	int32_t vertex[3];    // its corners
-	double weight[3];     // their shares in the point
-	double went;          // by how much these changed in this iteration, summed: follow.h
-	bool free[3];         // whether they can move
-	int32_t column[3];    // the free ones' places among the kept columns; else -1
-	int32_t answer;       // place of its S W^T; -1: it is its column's row of S
+	int32_t face, above;  // face of the point, and its side at the tool, as in cau_contact_memory
+	int32_t vertex[3];    // vertices of the point's corners
+	double weight[3];     // shares of the corners in the point, sum 1
+	double went;          // sum of the changes of weight[] in this iteration (follow.h)
+	bool free[3];         // whether each corner can move
+	int32_t column[3];    // index of each free corner's kept column; -1 for a fixed corner
+	int32_t answer;       // index of S W^T in cau_contact_set.answer; -1: the row of S of column[0]
 	int32_t tool;
 	bool attached;
-	bool slipping;        // attachment at its slip force in the last solve
-	double side[3];       // unit, in the tool's frame: where the tissue belongs; 0: wherever it is
-	double way_m;         // how far the point may have to go that way at most
-	double slack_m;       // how deep it may stay inside in this tick
-	double normal[3];     // outward from the tool
-	double gap;           // m, signed distance at the present iterate, and slack_m
-	double no_slip[3][3]; // m, where its corners would be if they stuck to the tool at its anchor
-	double anchor[3];     // m, attachment's target, likewise
-	double reaction[3];   // N, of the tool on the point
+	bool slipping;        // the attachment was at its slip force in the last solve
+	double side[3];       // unit vector in the tool's frame, towards the tissue's side; 0: any side
+	double way_m;         // largest distance that the point may have to move along side[]
+	double slack_m;       // penetration that is allowed in this tick
+	double normal[3];     // unit normal, outward from the tool
+	double gap;           // m, signed distance at the present iterate, plus slack_m
+	double no_slip[3][3]; // m, corners if they stuck to the tool at its anchor
+	double anchor[3];     // m, target of an attachment if the tool were at its anchor
+	double reaction[3];   // N, force of the tool on the point
 } cau_contact_row;
 
-// A face that a tool pushed, or that was inside it, at the end of a step.
+// A face that a tool pushed or penetrated at the end of a step.
 typedef struct cau_contact_memory {
 	int32_t tool, face;
-	int32_t pushed; // whether it was a row, or is to be one
+	int32_t pushed; // 1: the face had a contact constraint, or the next step begins with one
 	int32_t above;  // 1: the tool is on the side to which the face's normal points; -1: below
-	// since snapshots of version 6: weights of the points at which the tool pushed
+	// Weights of the points at which the tool pushed. Snapshots have them since version 6.
 	int32_t point_count, unused;
 	double point[CAU_MAX_POINTS][3];
 } cau_contact_memory;
@@ -94,148 +100,164 @@ struct cau_contact_set {
 	cau_contact_tool tool[CAU_MAX_TOOLS];
 	int32_t row_count;
 	cau_contact_row row[CAU_MAX_CONTACTS];
-	int32_t face_count;  // rows of faces
-	int32_t point_count; // rows of several corners, attached ones too
-	// Tissue has been torn: what hangs in jaws may hang by little, and columns that lag behind by
-	// what went would throw it about. So all are fresh.
+	int32_t face_count;  // contact constraints at faces
+	int32_t point_count; // constraints with several corners, attachments included
+	// Tissue has been torn, so all columns are renewed. Jaws may hold tissue that hangs by little.
+	// Columns that still contain removed elements would move such tissue too far.
 	bool torn;
-	bool let_through;    // tools passed what could not be held: no side is remembered
-	uint64_t pushing;    // which rows push after the last correction
-	bool others;         // others than after the one before it
-	bool elsewhere;      // or at points that have gone on since
-	bool crossing;       // what the solve ended with would be beyond a tool, not only deep in it
-	int32_t begun_count; // rows that the step began with, and their reactions before more came
+	bool let_through;    // tools passed tissue that no constraint could hold: no side is remembered
+	uint64_t pushing;    // hash of the active constraints after the last correction
+	bool others;         // the active constraints changed in the last correction
+	bool elsewhere;      // an active constraint's point moved along its face in the last correction
+	bool crossing;       // the solve ended with a face beyond a tool, not only deep in it
+	int32_t begun_count; // number of constraints at the start of the step; begun_reaction has their
+	                     // reactions
 	double begun_reaction[CAU_MAX_CONTACTS][3];
-	double begun_offset[CAU_MAX_TOOLS][3]; // m
-	int32_t left_out_count;                // of the step: points that touch and found no place
-	int32_t memory_count; // of the last step, by tool and face: part of the session's state
+	double begun_offset[CAU_MAX_TOOLS][3]; // m: offsets of the tools at the start of the step
+	int32_t left_out_count; // constraints of this step for which the capacity was too small
+	int32_t memory_count; // faces of the last step, sorted by tool and face: part of the session's
+	                      // state
 	cau_contact_memory memory[CAU_MAX_MEMORY];
-	int32_t touched_count; // what the present step has found of it
+	int32_t touched_count; // faces that the present step has found so far
 	cau_contact_memory touched[CAU_MAX_MEMORY];
-	// Kept columns of A^-1: part of the session's state, since they lag after cuts.
+	// Kept columns of A^-1. They are part of the session's state, because they lag behind the
+	// factor after cuts.
 	int32_t column_count;
 	int32_t column_vertex[CAU_MAX_COLUMNS];
-	uint64_t column_version[CAU_MAX_COLUMNS]; // of the factor they were made from
-	cau_reals *column[CAU_WHOLE_COLUMNS];     // (vertex_count), m/N
-	// Those that rows have, ascending, where these are few; else all: answers and steps are of
-	// them.
+	// version of the factor from which each column was made
+	uint64_t column_version[CAU_MAX_COLUMNS];
+	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count): whole columns of A^-1, m/N
+	// Columns that constraints use, ascending. If more than half of all columns are used, the list
+	// has all. Only these columns of answer[] and step[] are up to date.
 	int32_t used_count;
 	int32_t used[CAU_MAX_COLUMNS];
-	uint64_t epoch;       // of the factor: another one empties the columns
-	int32_t corner_count; // distinct vertices of the rows that are free
+	uint64_t epoch;       // epoch of the factor; the columns are discarded when it changes
+	int32_t corner_count; // distinct free vertices of the constraints
 	int32_t corner[CAU_MAX_COLUMNS];
-	double *inverse;    // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by columns' places, m/N
-	double *answer;     // (CAU_MAX_POINT_ROWS + 1 x CAU_MAX_COLUMNS): S W^T, m/N; the last is 0
+	double *inverse;    // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by column index, m/N
+	double *answer;     // (CAU_MAX_POINT_ROWS + 1 x CAU_MAX_COLUMNS): S W^T, m/N; the last row is 0
 	double *step;       // (3 x CAU_MAX_COLUMNS): d at the columns' vertices, m
-	double *change;     // (CAU_MAX_COLUMNS x 3): of the load on them, N
+	double *change;     // (CAU_MAX_COLUMNS x 3): change of the load on the columns' vertices, N
 	double *before;     // (CAU_MAX_CONTACTS x 3): reactions before correction, N
-	int32_t hold_count; // attached rows, solved all at once: hold.h
+	int32_t hold_count; // attachments, all solved together (hold.h)
 	int32_t hold_row[CAU_MAX_HELD];
-	double *hold; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over them
+	double *hold; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over the attachments
 	cau_reals *unit, *solution;
-	// Rows that push, solved together: active.h.
+	// Active constraints, solved together (active.h).
 	int32_t active_row[CAU_MAX_ACTIVE];
 	bool active_sticks[CAU_MAX_ACTIVE];
 	double *active; // (CAU_MAX_ACTIVE x CAU_MAX_ACTIVE)
 };
 
-// `vectors`: of the solver's precision.
+// Allocates the arrays in `arena`. `vectors` has the solver's precision. CAU_NO_MEMORY.
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error);
 
-// The row of a free vertex, and nothing else about it.
+// Returns a contact constraint of a free vertex. The caller sets side and gap data.
 cau_contact_row cau_contact_at_vertex(int32_t vertex, int32_t tool);
 
-// Forgets all rows.
+// Removes all contact constraints.
 void cau_contact_clear(cau_contact_set *set);
 
-// Notes that a face is inside or beyond a tool, on which of its sides the tool belongs (`above` as
-// in cau_contact_memory), and whether the next step is to begin with a row for it. Past
-// CAU_MAX_MEMORY faces nothing is kept.
+// Notes that a face is inside or beyond a tool. `above` is the face's side on which the tool
+// belongs, as in cau_contact_memory. If `pushed`, the next step begins with a constraint for the
+// face. Beyond CAU_MAX_MEMORY faces, the face is only counted in left_out_count.
 void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above,
                        bool pushed);
 
-// Keeps, at a step's end, the faces that were pushed or touched: the next step knows their sides.
+// Called at a step's end. Remembers the faces that were pushed or touched, so that the next step
+// knows their sides.
 void cau_contact_remember(cau_contact_set *set);
 
-// Forgets the sides of a tool.
+// Forgets the sides of all faces at a tool.
 void cau_contact_forget(cau_contact_set *set, int32_t tool);
 
-// What was kept of a face; NULL: nothing.
+// Returns what is remembered of a face at a tool; NULL if nothing is.
 const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t tool,
                                              int32_t face);
 
-// How deep (m) a point that was at `start_m` from the tool as the tick began may stay inside: what
-// a tool begins to push from within is let out at a bounded speed.
+// Returns how deep (m) a point may stay inside a tool in this tick. `start_m` is its signed
+// distance from the tool at the start of the tick. Tissue in which a tool starts is pushed out at a
+// bounded speed.
 double cau_contact_slack(double start_m, double step_s);
 
-// Of values by corner, (corner_count x 3): at the row's point.
+// Returns the weighted sum of values of the corners (corner_count x 3): the value at the
+// constraint's point.
 cau_vec3 cau_contact_weighted(const cau_contact_row *row, const double *corner);
 
-// Where a row's point is at positions x (m, vertex_count x 3).
+// Returns the constraint's point for vertex positions x (m, vertex_count x 3).
 cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x);
 
-// Adds a row; counts it as left out and returns false when there is no room for it or for the
-// columns of its corners (the caller offers the deepest first).
+// Adds a constraint. If the capacity is too small for it or its corners' columns, counts it in
+// left_out_count and returns false. The caller therefore adds the deepest first.
 bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 
-// Finds or makes the rows' columns. Called once a step, after the rows are chosen. The step may
-// make a new factor afterwards: the columns then lag behind it for the rest of the step, as they do
-// after a downdate, and the next step makes them anew.
+// Finds or computes the columns of the constraints. Called once a step, after the constraints are
+// chosen. If the step makes a new factor afterwards, the columns lag behind it for the rest of the
+// step, as after a downdate. The next step computes them again.
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver);
 
-// S W^T of a row, after its weights changed.
+// Computes S W^T of a constraint after its weights have changed.
 void cau_contact_find_answer(cau_contact_set *set, int32_t row);
 
-// The same, to read (column_count, of the used ones): what a load on the row moves, m/N.
+// Returns S W^T of a constraint (column_count, only used columns are valid): the motion of each
+// column's vertex by a load of 1 N on the constraint, m/N.
 const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row);
 
-// A load (N) on the row more: where the columns' vertices go by it.
+// Adds the motion by a load (N) on the constraint to set->step.
 void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by);
 
-// No point of tissue that is held bears more, N: over a cell of 2 mm it would be 12 MPa, at which
-// fascia breaks. What jaws that never slip hold of torn or crushed tissue would bear hundreds, in
-// steps that are far from their solution, and be thrown about until nothing is left of it.
+// Largest force, N, on one grasped point of tissue. Over a cell of 2 mm it is 12 MPa, at which
+// fascia breaks. Jaws that never slip would otherwise load torn or crushed tissue with hundreds of
+// newtons, in steps that are far from their solution. The tissue would move back and forth
+// violently until it is torn to pieces.
 static const double cau_most_at_a_point_n = 50;
 
-// At what force (N) a held point slips.
+// Returns the force (N) at which a grasped point slips.
 double cau_contact_slips_at(const cau_contact_set *set, const cau_contact_row *row);
 
-// What a row pushes with at most, N. A tool has less; but of tissue that is caught between its
-// sides rows push against each other, and would without end.
+// Returns the largest push (N) of one constraint. Tools push with less. But constraints of tissue
+// that is caught between the sides of a tool push against each other, and their reactions would
+// grow without bound.
 double cau_contact_bears(const cau_contact_set *set, const cau_contact_row *row);
 
-// How far (m) a force of 1 N on the point of one row moves that of the other, seen from the tool.
+// Returns the motion (m) of `row`'s point, relative to the tool, by a force of 1 N on the point of
+// `other`.
 double cau_contact_between(const cau_contact_set *set, const cau_contact_row *row,
                            const cau_contact_row *other);
 
-// Where (m) the step as it is takes a row's point, as seen from where its tool is asked to be.
+// Returns the constraint's point (m) after the present step, relative to the tool's commanded
+// position.
 cau_vec3 cau_contact_place(const cau_contact_set *set, const cau_step_solver *solver,
                            const cau_contact_row *row);
 
-// How far (m) that is, seen from the tool, from where its gap was measured (`apart`) and from where
-// it would be if it stuck (`slip`).
+// Finds the motion (m) of the constraint's point relative to the tool, after the present step:
+// `apart` from the position at which its gap was measured, `slip` from the position in which it
+// would stick to the tool.
 void cau_contact_motion(const cau_contact_set *set, const cau_step_solver *solver,
                         const cau_contact_row *row, cau_vec3 *apart, cau_vec3 *slip);
 
-// Whether rows have columns of which the set has S alone.
+// True if constraints have more corners than CAU_WHOLE_COLUMNS, so that some columns are kept only
+// in S.
 bool cau_contact_is_wide(const cau_contact_set *set);
 
-// Before a descent's first correction: it changes nothing.
+// Called before a descent's first correction: the correction then reports no change of the active
+// constraints.
 void cau_contact_begin(cau_contact_set *set);
 
-// Measures the rows' gaps, and takes the present reactions off solver->gradient, so that the next
-// global step feels them.
+// Measures the gaps of all constraints. Subtracts the present reactions from solver->gradient, so
+// that the next global step includes them.
 void cau_contact_load(cau_contact_set *set, cau_step_solver *solver);
 
-// Corrects solver->increment by new reactions, and takes their change off solver->gradient, so that
-// A increment = -gradient still holds (as far as the columns are fresh).
+// Corrects solver->increment by new reactions. Subtracts the change of the reactions from
+// solver->gradient, so that A increment = -gradient still holds (except for lagging columns).
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver);
 
-// Whether a row of a face is deeper inside its tool at solver->position than it may be, in m or as
-// a share of the tip's radius, whichever is more: such tools are passing.
+// True if a constraint of a face penetrates its tool too deeply at solver->position. The limit is
+// `most_m` or `most_share` of the tip's radius, whichever is larger. Marks these tools as passing.
 bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m,
                          double most_share);
 
-// Work that the reactions may do along the trial step, J: what the objective may rise by.
+// Returns a bound for the work (J) of the reactions along the trial step. The objective may rise by
+// this amount.
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver);

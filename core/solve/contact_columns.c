@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The columns of A^-1 that contacts need: one a corner, kept from tick to tick; whole up to
-// CAU_WHOLE_COLUMNS, and beyond as far as S goes.
+// Computes and keeps the columns of A^-1 that contact needs: one for each corner, kept from tick to
+// tick. The first CAU_WHOLE_COLUMNS are whole. Of the others only the entries of S are kept.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "solve/contact.h"
 #include "solve/hold.h"
 
-// Solves for up to three columns at once, one unit load in each of x, y and z, and enters them in
-// S.
+// Solves for up to three columns at once, with one unit load each in x, y and z. Enters the columns
+// in S.
 static void make_columns(cau_contact_set *set, cau_step_solver *solver, const int32_t *place,
                          int32_t count)
 {
@@ -44,7 +44,8 @@ static int32_t find_column(const cau_contact_set *set, int32_t vertex)
 	return -1;
 }
 
-// Columns that come to a place where they have to be whole.
+// Computes the columns that have moved to an index below CAU_WHOLE_COLUMNS, where columns are
+// whole.
 static void make_whole(cau_contact_set *set, cau_step_solver *solver, const int32_t *from)
 {
 	int32_t place[3], waiting = 0;
@@ -72,7 +73,7 @@ static void move_column(cau_contact_set *set, int32_t from, int32_t to)
 	set->column_version[to] = set->column_version[from];
 }
 
-// Keeps only the columns that rows use, in their order.
+// Keeps only the columns that constraints use, in the same order.
 static void drop_unused(cau_contact_set *set, cau_step_solver *solver)
 {
 	uint8_t used[CAU_MAX_COLUMNS] = {0};
@@ -88,7 +89,8 @@ static void drop_unused(cau_contact_set *set, cau_step_solver *solver)
 		move_column(set, k, kept);
 		from[kept++] = k;
 	}
-	for (int32_t i = 0; i < kept; i++) // rows and columns move towards the start only
+	// in place: from[i] >= i, so nothing is overwritten before it is read
+	for (int32_t i = 0; i < kept; i++)
 		for (int32_t j = 0; j < kept; j++)
 			set->inverse[i * CAU_MAX_COLUMNS + j] =
 				set->inverse[from[i] * CAU_MAX_COLUMNS + from[j]];
@@ -106,7 +108,7 @@ static int32_t count_missing(const cau_contact_set *set)
 	return missing;
 }
 
-// The columns that lag furthest, by version and place.
+// Lists the columns with the oldest versions, at most CAU_COLUMNS_RENEWED. Returns their number.
 static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_t *place)
 {
 	int32_t count = 0;
@@ -159,7 +161,8 @@ static bool holds_anything(const cau_contact_set *set)
 	return false;
 }
 
-// Those that lag furthest or, where it matters, all that lag, three at a time.
+// Renews the columns that lag most, three at a time. If tissue is torn and something is grasped,
+// renews all that lag.
 static void renew(cau_contact_set *set, cau_step_solver *solver)
 {
 	int32_t place[CAU_COLUMNS_RENEWED];
@@ -172,8 +175,9 @@ static void renew(cau_contact_set *set, cau_step_solver *solver)
 	}
 }
 
-// Columns are kept for longer than rows need them. Less than half of them are taken one by one in
-// less time than all of them two by two.
+// Lists the used columns. Columns are kept longer than constraints need them. If less than half of
+// the columns are used, reading only these is faster. Otherwise the list has all columns, because a
+// loop over all handles two at a time.
 static void find_used(cau_contact_set *set)
 {
 	bool used[CAU_MAX_COLUMNS] = {0}, few = 2 * set->corner_count < set->column_count;
@@ -185,7 +189,7 @@ static void find_used(cau_contact_set *set)
 			set->used[set->used_count++] = k;
 }
 
-// Where a row's columns are, and its answer: that of a vertex that cannot move is nothing.
+// Finds the columns of a constraint's free corners, and its S W^T. For a fixed vertex this is 0.
 static void find_columns(cau_contact_set *set, int32_t index)
 {
 	cau_contact_row *row = &set->row[index];

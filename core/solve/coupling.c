@@ -8,13 +8,12 @@
 cau_pose cau_coupling_pose(const cau_pose *anchor, cau_vec3 offset)
 {
 	cau_pose pose = *anchor;
-	if (cau_dot(offset, offset) != 0) // else a zero would lose its sign
+	if (cau_dot(offset, offset) != 0) // adding 0 would change a -0 to 0
 		cau_vec3_to(cau_add(cau_vec3_of(anchor->position_m), offset), pose.position_m);
 	return pose;
 }
 
-// |offset| over what it pushes with: of the spring, or of force_max_n where it is pulled out
-// farther.
+// Returns |offset| over the spring's force. Beyond cau_coupling_reach_m the force is force_max_n.
 static double compliance_of(const cau_contact_tool *tool)
 {
 	double most = tool->def->force_max_n;

@@ -1,32 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The coupling between the pose that a tool is asked to take and the one that it has (the
-// god-object of C. B. Zilles and J. K. Salisbury 1995, on the virtual coupling of J. E. Colgate
-// 1995).
+// The virtual coupling between the commanded and the actual pose of a tool (J. E. Colgate 1995; the
+// actual pose is the god-object of C. B. Zilles and J. K. Salisbury 1995).
 //
-// The tool hangs by a spring on the place that it is asked to take: it is off that by the sum of
-// the forces that tissue puts on it, divided by the spring's stiffness, and not at all where
-// nothing touches. The spring gives at most force_max_n: pulled out farther than it is at that
-// force, its force stays. So the tool pushes with that at most, and where tissue bears more, it
-// stands still and the place that is asked goes on without it. Its energy is quadratic, then
-// linear; each iteration takes the parabola that touches it where the tool is, which lies above it
-// everywhere, so that the iteration falls (P. Huber 1981). Within an iteration the tool is a
-// further unknown of the contact's own system, in balance with all its rows: nothing of it is
-// explicit, whatever the stiffness. It turns as it is asked to.
+// A spring connects the tool with its commanded position. The tool's offset from it is the sum of
+// the forces of tissue on the tool over the spring's stiffness, and 0 without contact. The force of
+// the spring is at most force_max_n: if it is extended farther than at that force, the force stays
+// constant. So the tool pushes with at most force_max_n. Where tissue resists more, the tool stops
+// and the commanded position moves on.
+//
+// The energy of the spring is quadratic, then linear. Each iteration uses the parabola that touches
+// it at the tool's present offset and lies above it everywhere, so that the iteration lowers the
+// energy (P. Huber 1981). Within an iteration the tool is a further unknown of the contact system,
+// in balance with all its constraints. So nothing is explicit, whatever the stiffness. The tool's
+// rotation is always the commanded one.
 #pragma once
 
 #include "solve/contact.h"
 
-// How far (m) a tool is from where it is asked to be when it pushes with force_max_n. A driver's
-// hand has moved as far as that before it feels all there is; and at 20 N the spring, 2,000 N/m, is
-// twenty times as stiff as fat under a ball of 3 mm, so that light touch is where it is asked for.
+// Distance (m) between the commanded and the actual position of a tool that pushes with
+// force_max_n. A hand moves that far before the driver feels the full force. At 20 N the spring has
+// 5,000 N/m, many times the stiffness of fat under a ball of 3 mm. So a light touch moves the tool
+// hardly away from its commanded position.
 static const double cau_coupling_reach_m = 0.004;
 
-// The anchor's pose, off by so much (m); to the bit where that is nothing.
+// Returns the anchor's pose moved by `offset` (m). If `offset` is 0, the result is bit for bit the
+// anchor.
 cau_pose cau_coupling_pose(const cau_pose *anchor, cau_vec3 offset);
 
-// The spring's compliance by how far it is pulled out, and the offsets that the present reactions
-// make. Returns whether a compliance has changed.
+// Sets each spring's compliance from its extension, and the offsets from the present reactions.
+// Returns true if a compliance has changed.
 bool cau_coupling_begin(cau_contact_set *set);
 
-// A reaction on the tissue (N) has changed by so much: the tool gives way the other way.
+// Moves the tool for a reaction on the tissue that changed by `by` (N), in the opposite direction.
 void cau_coupling_take(cau_contact_tool *tool, cau_vec3 by);

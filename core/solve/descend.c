@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The iteration of one step (section 4, figure 3): local and global by turns, accelerated,
-// safeguarded.
+// The iteration of one step (section 4, figure 3): local and global steps alternate, with
+// acceleration and a safeguard.
 #include <math.h>
 #include <string.h>
 
@@ -41,10 +41,10 @@ static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *
 typedef struct move {
 	cau_step_solver *solver;
 	double scale;
-	bool leave; // the present position becomes position_before
+	bool leave; // copy position to position_before first
 } move;
 
-// position = position_before + scale * trial_increment, and the displacement of that
+// position = position_before + scale * trial_increment; updates the displacement
 static void move_part(void *context, int32_t chunk)
 {
 	const move *work = context;
@@ -79,8 +79,8 @@ static void use_plain_step(cau_step_solver *solver)
 	       4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes);
 }
 
-// Likewise to a part of the plain step, as far as tissue does not cross tissue: short enough, it is
-// not held back, and leads down.
+// Moves by a part `scale` of the plain step, filtered so that tissue does not cross tissue. A short
+// enough step is not filtered and lowers the objective.
 static void move_apart(cau_step_solver *solver, double scale)
 {
 	use_plain_step(solver);
@@ -90,11 +90,12 @@ static void move_apart(cau_step_solver *solver, double scale)
 	move_to(solver, 1);
 }
 
-// Where the parabola through the objective before the step, its slope there and its value after a
-// part `scale` of the step has its bottom. Tissue drawn far beyond its rest is thousands of times
-// stiffer than A, and halving alone would not come down to it in the few tries there are. But a
-// parabola says little of such a law either: one answer may take off half of the part at least, so
-// that the tries lead somewhere, and leaves a hundredth of it, so that none gives the step up.
+// Returns a shorter part of the step: the minimum of a parabola through the objective before the
+// step, its slope there, and the objective after a part `scale` of the step. Tissue that is
+// stretched far beyond its rest shape is thousands of times stiffer than A. Halving alone would
+// need more tries than there are. But a parabola describes such a law poorly. So the result is at
+// most half of `scale`, to make progress, and at least a hundredth, so that the step is not given
+// up.
 static double shorter(double scale, double before, double after, double slope)
 {
 	CAU_ASSERT(scale > 0 && scale <= 1, "a part of %g of the step", scale);
@@ -104,11 +105,11 @@ static double shorter(double scale, double before, double after, double slope)
 	return scale * fmin(fmax(bottom, 0.01), 0.5);
 }
 
-// Whether the trial step, of which a part `scale` was taken, may stand. Eq. 4 with every element's
-// energy may not rise. Where a law has none (w/2 |R|^2 stands for it), the forces near its fixed
-// point can lead up that: then the work that is done against all forces along the way counts, by
-// the trapezoidal rule between its ends. It is negative for every step that is short enough, and no
-// law's want of an energy leaves the others without a safeguard.
+// True if the trial step, of which a part `scale` was taken, is accepted. Eq. 4 with every
+// element's energy may not rise. A law without an energy counts as w/2 |R|^2. Near the fixed point
+// of such a law, its forces can lead to a higher value. Then the work against all forces along the
+// step counts, by the trapezoidal rule between its ends. This work is negative for every step that
+// is short enough. So laws with an energy keep their safeguard.
 static bool may_stand(cau_step_solver *solver, double scale, double value, double objective,
                       double noise)
 {
@@ -121,8 +122,8 @@ static bool may_stand(cau_step_solver *solver, double scale, double value, doubl
 	return 0.5 * scale * (start + end) <= noise + rounding(solver) * fabs(start);
 }
 
-// Takes the trial step if it may stand; else the plain step, whose slope is `slope`; else shortens
-// it. Returns false when nothing helps: the position is as before.
+// Takes the trial step if it is accepted. Otherwise tries the plain step, whose slope is `slope`,
+// and then shorter ones. Returns false if none is accepted: the position is unchanged.
 static bool take_step(cau_step_solver *solver, bool accelerated, double slope, double *objective)
 {
 	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
@@ -159,10 +160,10 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 	return false;
 }
 
-// When the first step had to be shortened, the guess x + dt v may be far up a slope that a few
-// short steps do not come down: then the start of the tick is the better guess. From there, or from
-// a guess that is lower still, eq. 4 only falls, so that a tick never ends with more energy than it
-// began with. Returns whether it went back.
+// Called when the first step had to be shortened: the objective at the guess x + dt v may be so
+// high that a few short steps cannot lower it enough. If the objective at the start of the tick is
+// lower, the iteration restarts there. Eq. 4 only falls from then on, so that a tick never ends
+// with more energy than it began with. Returns true if the iteration restarted.
 static bool go_back(cau_step_solver *solver, double *objective)
 {
 	size_t count = (size_t)solver->tissue->vertex_count;
@@ -188,10 +189,10 @@ static double step_norm(cau_step_solver *solver)
 	return sqrt(fmax(-dot(solver, solver->increment, solver->gradient), 0));
 }
 
-// Whether the last step need not be looked at, which saves an evaluation: none was taken back in
-// this tick, and the square of its length, which is what it promises to take off E, is less than
-// what rounding hides of E's change. Where a law has no energy to tell a bad step by, a hundredth
-// of E will do: were it to add that instead, the tick would not show it.
+// True if the last step can be taken without an evaluation. No step of this tick was taken back,
+// and the square of the step's length is less than the rounding of E's change. (The square of the
+// length is the expected decrease of E.) If a law has no energy by which a bad step would show, a
+// hundredth of E is the limit: even if the step added as much, the tick would not show it.
 static bool is_harmless(const cau_step_solver *solver, double norm, double objective)
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
@@ -202,26 +203,27 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
 }
 
-// A step that was cut short lest tissue cross tissue says nothing of what is left to do.
+// True if the step was shortened so that tissue does not cross tissue. Such a step does not show
+// the remaining error.
 static bool is_held_back(const cau_step_solver *solver)
 {
 	return solver->collide && solver->collide->held_back;
 }
 
-// Whether a tool was found to push on other points than an increment before: how much these got
-// shorter by tells nothing then.
+// True if the active constraints of tools changed in this increment. The contraction of the
+// increments is then meaningless.
 static bool meets_others(const cau_step_solver *solver)
 {
 	return solver->contact && solver->contact->others;
 }
 
-// Whether these or the points themselves are others now.
+// True if the active constraints changed, or their points on the faces.
 static bool touches_elsewhere(const cau_step_solver *solver)
 {
 	return meets_others(solver) || (solver->contact && solver->contact->elsewhere);
 }
 
-// Whether other tissue presses on other than before: then earlier steps tell nothing of the next.
+// True if the pairs of tissue that touch have changed. Earlier steps then predict nothing.
 static bool forget_touching(const cau_step_solver *solver, uint64_t *touching)
 {
 	bool changed = solver->collide->touching_hash != *touching;
@@ -249,7 +251,7 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 	return cau_solver_descend(solver, error);
 }
 
-// By A, and by Newton's method where tissue is loose.
+// Computes the increment by A, or by Newton's method if tissue is loose.
 static void find_increment(cau_step_solver *solver)
 {
 	if (solver->loose.region.n && !solver->loose.given_up)
@@ -258,9 +260,9 @@ static void find_increment(cau_step_solver *solver)
 		cau_solver_global(solver);
 }
 
-// The first increment is A's own. It moves a free piece exactly, as in a free fall. Vertices that
-// it would move farther than contact can follow are excluded from tissue contact. Then it is
-// computed again.
+// Finds the first increment, which is A's own: it moves a free piece exactly, as in free fall.
+// Vertices that it would move farther than contact can follow are excluded from tissue contact.
+// Then the increment is computed again.
 static void find_first_increment(cau_step_solver *solver, double *objective)
 {
 	cau_solver_global(solver);
@@ -278,11 +280,11 @@ static void forget_increments(cau_step_solver *solver)
 	cau_accuracy_begin(&solver->accuracy);
 }
 
-// The state between iterations of a round.
+// The state between the iterations of a round.
 typedef struct descent {
-	double objective, first, last; // J; norms of the first increment and of the last
-	int32_t steps;                 // since the history was forgotten
-	int32_t backtracks_before;     // of the tick's earlier rounds
+	double objective, first, last; // J; norm of the first increment; norm of the last increment
+	int32_t steps;                 // increments since the history was discarded
+	int32_t backtracks_before;     // backtracks of earlier rounds in this tick
 	uint64_t touching;
 	bool near; // the last increment was within the accuracy
 } descent;
@@ -296,17 +298,17 @@ static void forget_history(cau_step_solver *solver, descent *d)
 // Mixes the increment into the history. Returns whether the step is accelerated.
 static bool mix(cau_step_solver *solver, descent *d, int32_t k, double norm)
 {
-	if (k == 1 && solver->loose.region.n) // by M from here on
+	if (k == 1 && solver->loose.region.n) // increments by M from here on
 		forget_history(solver, d);
-	// Steps of an iteration that converges get shorter. Without an energy to tell a bad mix by,
-	// a step that has doubled says that the history misleads: it is forgotten.
+	// Steps of a converging iteration get shorter. If a law has no energy by which a bad mix would
+	// show, a step of double length indicates a misleading history. The history is then discarded.
 	if (!solver->conservative && k && norm > 2 * d->last)
 		cau_anderson_start(solver);
 	d->last = norm;
 	return cau_anderson_mix(solver, d->steps++);
 }
 
-// Takes the last step of a round without an evaluation where that can do no harm.
+// Takes the last step of a round without an evaluation if that is harmless. Returns whether it did.
 static bool spare(cau_step_solver *solver, descent *d, double norm)
 {
 	if (!is_harmless(solver, norm, d->objective) ||
@@ -318,7 +320,7 @@ static bool spare(cau_step_solver *solver, descent *d, double norm)
 	return true;
 }
 
-// Takes the mixed step, then settles the loose region. Returns whether the round ends.
+// Takes the mixed step, then settles the loose region. Returns true if the round ends.
 static bool advance(cau_step_solver *solver, descent *d, int32_t k, bool accelerated, double norm,
                     cau_status *status, cau_error *error)
 {
@@ -351,7 +353,7 @@ static int32_t count_elements(const cau_tissue *tissue)
 	       tissue->hinge_count;
 }
 
-// Whether iteration k is the last that the step may take.
+// True if iteration k is the last that the step may take.
 static bool is_last(const cau_step_solver *solver, int32_t k)
 {
 	int64_t spent =
@@ -361,7 +363,7 @@ static bool is_last(const cau_step_solver *solver, int32_t k)
 	return solver->accuracy.wanted == 0 || k + 1 >= CAU_ACCURACY_STEPS || spent > CAU_SOLVER_EFFORT;
 }
 
-// One iteration. Returns whether the round ends.
+// One iteration. Returns true if the round ends.
 static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *status,
                     cau_error *error)
 {
@@ -400,7 +402,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	cau_status status = cau_loose_choose(solver, error);
 	if (status)
 		return status;
-	// Tissue that was guessed into tissue may have more energy than it began with.
+	// If the guess leads tissue into tissue, the energy may exceed that at the tick's start.
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
 		go_back(solver, &d.objective);
 	for (int32_t k = 0; !iterate(solver, &d, k, &status, error) && !is_last(solver, k);)

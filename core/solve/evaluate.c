@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gradient and value of eq. 4: inertia, elements, drag, tissue against tissue.
+// Gradient and value of eq. 4: inertia, elements, drag and tissue contact.
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "solve/solver.h"
@@ -74,7 +74,7 @@ double cau_solver_viscous_energy(const cau_step_solver *solver)
 	return energy;
 }
 
-// Of laws and viscosity.
+// The sum of the elements' energies, J: laws and viscosity.
 static double energy_of_elements(const cau_step_solver *solver)
 {
 	double energy = 0;
@@ -88,17 +88,19 @@ double cau_solver_elastic_energy(const cau_step_solver *solver)
 	return energy_of_elements(solver) - cau_solver_viscous_energy(solver);
 }
 
-// Of the sum. A step that promises less than what the rounding of each element's residual R may do
-// is judged by that: with w/2 |R|^2 of N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR
-// in the root mean square of all. In stiff tissue that bears next to nothing this is far more.
-// Where it is about the same, that of the sum stands.
+// Rounding of the sum E, or of the residuals R if that is larger. A step that promises less than
+// the rounding of each element's residual can change is judged by that rounding. With w/2 |R|^2 of
+// N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR in the root mean square. In stiff
+// tissue with almost no load this is far more than the rounding of E. If both are similar, the
+// rounding of E counts.
 double cau_solver_noise(const cau_step_solver *solver, double promise)
 {
 	double elastic = fabs(cau_solver_elastic_energy(solver));
 	double of_sum = solver->kernels->vectors->rounding * elastic;
-	double one_term = 0.06 * solver->kernels->vectors->rounding; // not thousands
+	// for one residual; not a sum of thousands of terms
+	double one_term = 0.06 * solver->kernels->vectors->rounding;
 	double of_residuals = one_term * sqrt(2 * solver->stiffness_j * elastic);
-	if (solver->collide) // a fold that takes such steps may be driven into itself
+	if (solver->collide) // such steps might drive a fold into itself
 		return of_sum;
 	return of_residuals > 2 * of_sum && promise < of_residuals ? of_residuals : of_sum;
 }
@@ -133,7 +135,8 @@ double cau_solver_evaluate(cau_step_solver *solver)
 	return cau_solver_evaluate_displaced(solver);
 }
 
-// The local step with something else as its first part, which the caller of the pool takes.
+// The local step, with a call of `meanwhile` as its first part. The thread that calls the pool
+// takes this part.
 typedef struct shared_local {
 	cau_step_solver *solver;
 	void (*meanwhile)(void *context);
@@ -149,7 +152,7 @@ static void shared_local_part(void *context, int32_t index)
 		work->meanwhile(work->context);
 }
 
-// The rest, after the local step that began at `start` seconds.
+// Sums energy and gradient after the local step, which began at `start` seconds.
 static double gather(cau_step_solver *solver, double start)
 {
 	// sums over each vertex's records, plus inertia and drag
@@ -168,7 +171,7 @@ static double gather(cau_step_solver *solver, double start)
 double cau_solver_evaluate_displaced(cau_step_solver *solver)
 {
 	double start = solver->now_s ? solver->now_s() : 0;
-	// local step: every element projected, its gradient recorded
+	// local step: project every element, store its gradient
 	cau_pool_run(solver->pool, solver->slots.work_count, local_part, solver);
 	return gather(solver, start);
 }

@@ -12,9 +12,9 @@
 struct cau_factor {
 	cholmod_common common;
 	cholmod_factor *l;
-	bool canonical;               // made whole, and not updated since
-	int32_t *inverse;             // (n): place of each row of A in L
-	cholmod_dense *b, *x, *y, *e; // of cau_factor_solve
+	bool canonical;               // result of cau_factor_refactor, without updates since
+	int32_t *inverse;             // (n): index in L of each row of A
+	cholmod_dense *b, *x, *y, *e; // scratch of cau_factor_solve
 	int update_first[CAU_UPDATE_RANK + 1];
 	int update_row[CAU_UPDATE_RANK * 8];
 	double update_value[CAU_UPDATE_RANK * 8];
@@ -44,8 +44,8 @@ static cholmod_sparse view_of(const cau_matrix *matrix)
 	};
 }
 
-// A factor's arrays lie in pages that sessions may share. The library has one set of functions for
-// the whole program.
+// Makes CHOLMOD allocate a factor's arrays in pages that sessions can share. The library has one
+// set of allocation functions for the whole program.
 static void choose_memory(void)
 {
 	SuiteSparse_config.malloc_func = cau_large_malloc;
@@ -94,8 +94,8 @@ static cau_status finish_analysis(cau_factor *factor, cau_error *error)
 	return CAU_OK;
 }
 
-// METIS draws from rand, which all threads share; a given order draws nothing, and who gives one
-// does not wait for another's analysis.
+// Finds the order and pattern. METIS uses rand, whose state all threads share, so a lock is held. A
+// given permutation needs no METIS and does not wait for other analyses.
 static cholmod_factor *analyse(cau_factor *factor, const cau_matrix *matrix,
                                const int32_t *permutation)
 {
@@ -189,7 +189,7 @@ bool cau_factor_is_canonical(const cau_factor *factor)
 	return factor->canonical;
 }
 
-// Sorts one short column of C by its permuted rows.
+// Copies one short column of C, sorted by its row indices in L.
 static void place_column(cau_factor *factor, int at, int count, const int32_t *row,
                          const double *value)
 {

@@ -7,7 +7,8 @@
 #include "solve/coupling.h"
 #include "tool/face_distance.h"
 
-static const double passed_share = 0.5; // of the tip's radius: so deep, the way back counts alone
+// of the tip's radius: at this depth the point is not moved, only pushed out
+static const double passed_share = 0.5;
 
 static void corners_of(const cau_contact_set *set, const cau_step_solver *solver,
                        const cau_contact_row *row, cau_vec3 corner[3])
@@ -19,7 +20,7 @@ static void corners_of(const cau_contact_set *set, const cau_step_solver *solver
 			cau_pose_to_local(&pose, cau_vec3_of(solver->position + 3 * (size_t)row->vertex[k]));
 }
 
-// r R L S of the row's corners; those that cannot move answer nothing.
+// tilt = r R L S for the constraint's corners (follow.h). Fixed corners contribute 0.
 static void find_tilt(const cau_contact_set *set, const cau_contact_row *row,
                       const cau_vec3 corner[3], double tilt[3][3])
 {
@@ -42,7 +43,7 @@ static void find_tilt(const cau_contact_set *set, const cau_contact_row *row,
 		}
 }
 
-// (I + tilt)^-1 way, in place, by Cramer's rule. False: there is none.
+// Replaces `way` by (I + tilt)^-1 way, by Cramer's rule. Returns false if there is no inverse.
 static bool shorten(double tilt[3][3], double way[3])
 {
 	cau_vec3 column[3];
@@ -50,7 +51,7 @@ static bool shorten(double tilt[3][3], double way[3])
 		column[l] = (cau_vec3){(l == 0) + tilt[0][l], (l == 1) + tilt[1][l], (l == 2) + tilt[2][l]};
 	cau_vec3 right = cau_vec3_of(way);
 	double whole = cau_dot(column[0], cau_cross(column[1], column[2]));
-	if (!(whole > 0.5)) // it is 1 at least, as L and S are positive
+	if (!(whole > 0.5)) // the determinant is at least 1, because L and S are positive
 		return false;
 	way[0] = cau_dot(right, cau_cross(column[1], column[2])) / whole;
 	way[1] = cau_dot(column[0], cau_cross(right, column[2])) / whole;
@@ -79,7 +80,8 @@ void cau_contact_follow(cau_contact_set *set, const cau_step_solver *solver, int
 	if (!shorten(tilt, way))
 		return;
 	for (int k = 0; k < 3; k++)
-		sum += way[k] = fmax(row->weight[k] + way[k], 0); // where it is then
+		// the new weight, before the sum is set to 1
+		sum += way[k] = fmax(row->weight[k] + way[k], 0);
 	for (int k = 0; k < 3; k++) {
 		row->went += fabs(way[k] / sum - row->weight[k]);
 		row->weight[k] = way[k] / sum;

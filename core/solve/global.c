@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The global step: increment = -A^-1 gradient, corrected for what touches.
+// The global step: increment = -A^-1 gradient, corrected for tissue contact and for tools.
 #include "solve/contact.h"
 #include "solve/solver.h"
 

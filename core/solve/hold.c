@@ -10,7 +10,8 @@ static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact
 	return set->tool[row->tool].def;
 }
 
-// Lower triangle, by rows, over hold_row. Returns false if it is not positive definite.
+// Computes the lower triangle, by rows, over hold_row. Returns false if the matrix is not positive
+// definite.
 static bool factor(cau_contact_set *set)
 {
 	for (int32_t i = 0; i < set->hold_count; i++) {
@@ -38,10 +39,10 @@ void cau_hold_prepare(cau_contact_set *set)
 		if (set->row[i].attached && set->hold_count < CAU_MAX_HELD)
 			set->hold_row[set->hold_count++] = i;
 	if (!factor(set))
-		set->hold_count = 0; // columns that lag behind cuts: row by row will do
+		set->hold_count = 0; // lagging columns; cau_hold_solve then does nothing
 }
 
-// x (hold_count) for one coordinate, in place.
+// Solves for x (hold_count), one coordinate, in place.
 static void substitute(const cau_contact_set *set, double *x)
 {
 	int32_t n = set->hold_count;
@@ -58,8 +59,8 @@ static void substitute(const cau_contact_set *set, double *x)
 	}
 }
 
-// By how much each reaction has to change: (S + 1/k) dr = anchor + offset - x - step - r / k, where
-// S has the tools' couplings too.
+// Finds the change dr of each reaction: (S + 1/k) dr = anchor + offset - x - step - r / k. S
+// includes the tools' couplings.
 static void changes(const cau_contact_set *set, const cau_step_solver *solver,
                     double dr[3][CAU_MAX_HELD])
 {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Attachments solved all at once. Row by row they converge hopelessly slowly: the vertices of a
-// light strip move together, so that S is nearly the same number everywhere, many times an
+// Solves all attachments together. One by one they converge far too slowly: the vertices of a light
+// strip of tissue move together, so all entries of S are nearly equal, and are many times an
 // attachment's own compliance.
 #pragma once
 
 #include "solve/contact.h"
 
-// Factors S + 1/k over the attached rows. Called once a step, after the columns are there.
+// Factors S + 1/k over the attachments. Called once a step, after the columns are ready.
 void cau_hold_prepare(cau_contact_set *set);
 
-// Gives the attachments the reactions that fit set->step, and brings the step along; does nothing
-// when one would slip, since only row by row can that be told.
+// Sets the attachments' reactions to the solution for set->step, and updates set->step. Does
+// nothing if an attachment would slip: Gauss-Seidel then finds which ones do.
 void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A^-1 of a vector: by the packed sweeps, or by the diagonal of eq. 7.
+// Applies A^-1 to a vector, by the packed sweeps or by the diagonal of eq. 7.
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
 typedef struct sweep_run {
 	const cau_step_solver *solver;
-	const cau_reals *in; // by vertex
+	const cau_reals *in; // four reals for each vertex
 	cau_reals *out;
 	double sign;
 } sweep_run;
@@ -21,7 +21,7 @@ static int32_t chunk_end(const cau_step_solver *solver, int32_t first)
 	return last < solver->system.row_count ? last : solver->system.row_count;
 }
 
-// By place, so that a chunk writes what no other does.
+// Each chunk writes its own rows of the sweep's field only.
 static void permute_part(void *context, int32_t chunk)
 {
 	const sweep_run *run = context;
@@ -62,7 +62,8 @@ static void forward_sweep(sweep_run *run)
 	const cau_step_solver *solver = run->solver;
 	const cau_sweep *sweep = &solver->sweep;
 	cau_pool_run(solver->pool, sweep->task_count, forward_task, run);
-	for (int32_t task = 0; task < sweep->task_count; task++) // in their order
+	// in task order, so that the result does not depend on threads
+	for (int32_t task = 0; task < sweep->task_count; task++)
 		solver->kernels->vectors->add_sums(sweep, task);
 	for (int32_t i = 0; i < sweep->top_node_count; i++)
 		solver->kernels->forward(sweep, sweep->top_node[i]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled several times: CAU_SINGLE is the precision, CAU_TABLE the name of the table it makes,
-// CAU_ISA the instruction set's name, CAU_VECTORS the table of vectors.c.
+// The kernels of one precision and instruction set. Compiled several times with these macros:
+// CAU_SINGLE is the precision, CAU_TABLE the name of the table, CAU_ISA the instruction set's name,
+// CAU_VECTORS the table of vectors.c.
 #include "solve/kernels.h"
 
 #include <string.h>
@@ -16,7 +17,7 @@
 #include "solve/spread_kernel.h"
 #include "solve/sweep_kernel.h"
 
-// Displacements (m) of the share's records.
+// Copies the displacements (m) of the share's records to `taken`.
 INLINE void take_displacement(const cau_elements *elements, const cau_local_work *work,
                               const cau_reals *displacement, real *taken)
 {
@@ -31,7 +32,7 @@ INLINE void take_displacement(const cau_elements *elements, const cau_local_work
 			*(const vertex_reals *)((const real *)displacement + vertex[r]);
 }
 
-// The part of viscosity, after the laws have written records and energy.
+// Adds viscosity's forces and energy, after the laws have written records and energy.
 INLINE void add_viscosity(const cau_elements *elements, const cau_local_work *work,
                           const real *taken, real *records)
 {
@@ -107,7 +108,7 @@ static void sum(const cau_elements *elements, const cau_incidence *incidence, in
 	CAU_ASSERT(first <= last, "vertices %d to %d", first, last);
 	enum { NEAR = (1 << 20) / sizeof(vertex_reals) };
 	const vertex_reals *record = elements->gradient;
-	int far = elements->record_count > NEAR; // more than the nearer caches keep
+	int far = elements->record_count > NEAR; // the records are larger than the inner caches
 	vertex_reals *out = (vertex_reals *)gradient;
 	for (int32_t v = first; v < last; v++) {
 		vertex_reals total = {0};
@@ -151,7 +152,7 @@ static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *
 	return pack_node(sweep, &sweep->supernode[supernode], factor, panels, part);
 }
 
-enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate
+enum { STRIP = 64 * LANES }; // reals in one sum: few enough that sums in float stay accurate
 
 static double dot(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n)
 {
@@ -178,7 +179,8 @@ static void add_scaled(cau_reals *y, double s, const cau_reals *x, int64_t n)
 		out[i] += scale * in[i];
 }
 
-// One strip of add_column: dot[j] and dot[window + j] lose df_j . (g - g_last) and df_j . g.
+// Adds one strip to add_column's products. Subtracts df_j . (g - g_last) from dot[j] and df_j . g
+// from dot[window + j].
 INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double *dot)
 {
 	real dg[STRIP] __attribute__((aligned(64))) = {0};

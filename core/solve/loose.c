@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which vertices a step leaves to Newton's method: vertices of slack sheets and of sheets with a
-// range, but none of fat and none near a tool.
+// Chooses the vertices that a step leaves to Newton's method: vertices of slack sheets and of
+// sheets with a range. Vertices of fat and vertices near a tool are excluded.
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,15 +39,15 @@ static int64_t count_chosen(const cau_step_solver *solver)
 	return count;
 }
 
-// Whether a live triangle on no fat has a range.
+// True if a live triangle, without vertices of fat, has a range.
 static bool has_range(const cau_step_solver *solver, int32_t share, int32_t slot)
 {
 	return weight_of(solver, slot) > 0 &&
 	       cau_newton_stiffness(solver, &(cau_newton_element){share, slot}) == CAU_NEWTON_RANGE;
 }
 
-// Shares with triangles that are on no fat: only these are examined. Sheets with a range that have
-// too many vertices for a region stay with A.
+// Lists the shares with triangles that have no vertex of fat. Only these are examined. If sheets
+// with a range have too many vertices for a region, they stay with A.
 static bool list_shares(cau_step_solver *solver)
 {
 	cau_loose *loose = &solver->loose;
@@ -111,7 +111,7 @@ static void choose_slack(const cau_step_solver *solver, int32_t share, bool rang
 
 enum { CHOSEN = 1, LEFT_OUT = 2, BESIDE = 4 };
 
-// Leaves out the vertices that share a triangle with a vertex that is left out.
+// Excludes the vertices that share a triangle with an excluded vertex.
 static void leave_out_ring(const cau_step_solver *solver, uint8_t *chosen)
 {
 	const cau_loose *loose = &solver->loose;
@@ -147,7 +147,7 @@ static void leave_out(const cau_step_solver *solver, uint8_t *chosen)
 		chosen[v] = chosen[v] == CHOSEN && !solver->fixed[v];
 }
 
-// Chooses the region, with or without sheets that have a range; how many vertices it has.
+// Chooses the region, with or without sheets that have a range. Returns the number of its vertices.
 static int64_t choose(cau_step_solver *solver, bool ranges)
 {
 	cau_loose *loose = &solver->loose;
@@ -164,7 +164,7 @@ cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error)
 {
 	cau_loose *loose = &solver->loose;
 	size_t n = (size_t)solver->tissue->vertex_count;
-	loose->settled = true; // where there is no region
+	loose->settled = true; // remains true if there is no region
 	loose->given_up = loose->moved = false;
 	loose->left = 0;
 	loose->work = 0;

@@ -6,9 +6,9 @@
 
 #include "cautery/assert.h"
 
-static const double swap_after_s = 1.0 / 60.0; // between starting a new factor and using it
+static const double swap_after_s = 1.0 / 60.0; // from the start of a new factor to its use
 
-enum { PER_UPDATE = CAU_UPDATE_RANK / 3 }; // elements that an update holds for certain
+enum { PER_UPDATE = CAU_UPDATE_RANK / 3 }; // elements that always fit in one update
 
 static cau_status no_memory(cau_error *error)
 {
@@ -66,7 +66,7 @@ cau_status cau_matrix_update_adopt(cau_matrix_update *update, cau_error *error)
 	cau_background *own = cau_background_create();
 	if (!own)
 		return no_memory(error);
-	cau_background_destroy(update->background); // which ends what it was given
+	cau_background_destroy(update->background); // waits for the old thread's work
 	update->background = own;
 	return CAU_OK;
 }
@@ -78,7 +78,8 @@ void cau_matrix_update_finish(cau_matrix_update *update)
 	update->background = NULL;
 }
 
-// The diagonal bounds drag in char, so it must not count what is gone (never less than the mass).
+// Subtracts a removed element from the diagonal, which bounds drag in char. The diagonal never
+// falls below the inertia.
 static void take_off_diagonal(cau_step_solver *solver, int kind, int32_t element)
 {
 	cau_element_map map;
@@ -121,8 +122,8 @@ static void forget_waiting(cau_matrix_update *update, int32_t count, uint64_t ti
 
 // ---- exact downdates
 
-// Takes the columns of as many elements as one update of rank 8 holds, from waiting[from]. Returns
-// how many.
+// Adds the columns of as many elements from `list` as one update of rank 8 holds. Returns their
+// number.
 static int32_t fill_update(const cau_matrix_update *update, const cau_waiting *list, int32_t count,
                            int32_t *columns, int32_t *first, int32_t *row, double *value)
 {
@@ -187,8 +188,9 @@ static void note_operations(cau_matrix_update *update, const cau_waiting *list, 
 	update->group_count++;
 }
 
-// Half of what waits, so that a tick that parts many elements shares them with the next; all that a
-// tick can do when the oldest has waited long enough.
+// Returns the number of updates for this tick. Normally half of the waiting elements are downdated,
+// so that a tick that parts many elements shares the work with the next. If the oldest has waited
+// long enough, the tick does as many as it can.
 static int updates_due(const cau_matrix_update *update, uint64_t tick)
 {
 	CAU_ASSERT(update->waiting_count > 0, "updates are due for %d elements", update->waiting_count);
@@ -200,7 +202,7 @@ static int updates_due(const cau_matrix_update *update, uint64_t tick)
 	return due < CAU_LEAST_UPDATES ? CAU_LEAST_UPDATES : due;
 }
 
-// A few exact downdates, the oldest first.
+// Does a few exact downdates, the oldest removal first.
 void cau_matrix_update_take_out(void *context)
 {
 	cau_matrix_update *update = context;
@@ -268,7 +270,7 @@ void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
 	CAU_ASSERT(!update->solver->diagonal && update->background,
 	           "the diagonal system has no factor to make, for tick %llu",
 	           (unsigned long long)swap_tick);
-	cau_background_wait(update->background); // for the release of old panels
+	cau_background_wait(update->background); // the thread may still release old panels
 	update->making = true;
 	update->swap_tick = swap_tick;
 	cau_background_start(update->background, make_next, update);
@@ -308,7 +310,7 @@ static uint64_t swap_delay(const cau_matrix_update *update)
 	return ticks < 1 ? 1 : (uint64_t)(ticks + 0.5);
 }
 
-// More than two ticks take out for certain.
+// True if two ticks might not be enough to downdate all waiting elements.
 static bool too_many(const cau_matrix_update *update)
 {
 	return update->waiting_count > 2 * CAU_MOST_UPDATES * PER_UPDATE;
@@ -324,7 +326,8 @@ static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
 	update->waiting_count = 0;
 }
 
-// Chooses how much of what waits is taken out, or starts a new factor when that is too much.
+// Chooses how many of the waiting elements are downdated in this tick, or starts a new factor if
+// there are too many.
 static void serve(cau_matrix_update *update, const cau_alive *alive, uint64_t tick)
 {
 	CAU_ASSERT(!update->making && update->waiting_count > 0, "%d elements to serve",
@@ -353,7 +356,7 @@ cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *a
 		status = swap(update, tick, error);
 	if (!status && !update->making && update->waiting_count)
 		serve(update, alive, tick);
-	if (due && !update->making) // another making would use the old panels
+	if (due && !update->making) // a new factor that has just been started needs the old panels
 		cau_background_start(update->background, release_panels, update);
 	return status;
 }

@@ -12,19 +12,20 @@
 // the error that the session's step may have. That error is `accuracy` times the motion of the
 // tick, and at least half a micrometre (accuracy.c).
 static const double SETTLED = 0.1, SETTLED_M = 5e-8;
-static const double SETTLED_EXACTLY_M = 1e-12; // where a step has no accuracy to reach: rounding
-// A motion that is none, m: it may be off by half a micrometre, which is 1 % of this.
+static const double SETTLED_EXACTLY_M = 1e-12; // if a step has no accuracy to reach: rounding
+// A motion that counts as none, m. Its error may be half a micrometre, which is 1 % of this.
 static const double NOTHING_M = 5e-5;
-// With tissue contact a vertex moves at most as far while R settles once as the fastest one of R
-// has moved in the tick, within these bounds, m. Pairs have to be searched that far.
+// Bounds, m, of the way of a vertex while R settles once, with tissue contact. Within the bounds,
+// the way is that of the fastest vertex of R in the tick. All pairs within the way must be known.
 static const double LEAST_WAY_M = 1e-4, MOST_WAY_M = 1e-3;
-// Newton's steps of R in one iteration, and of the part that still moves after each. A tab that
-// comes free and buckles takes up to 25.
+// Most steps of Newton's method for R in one iteration, and for the part that still moves after
+// each of them. A tab that comes free and buckles takes up to 25.
 enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
-// A step must bring this share of the decrease that its slope promises [Armijo 1966].
+// Least share of the decrease predicted by the slope that a step must bring [Armijo 1966].
 static const double ARMIJO = 1e-4;
 // On a quadratic, a full step lowers the energy by half of what the slope predicts. A step that
-// lowers it by more than this share was too short. The next step leaves negative eigenvalues out.
+// lowers it by more than this share was too short. The next step then replaces negative eigenvalues
+// by 0.
 static const double TOO_SHORT = 0.8;
 
 // ---- vectors by row
@@ -47,7 +48,7 @@ static void add_rows(const cau_newton *newton, const cau_step_solver *solver, ca
 		solver->kernels->vectors->add(to, newton->vertex[i], of + 4 * (int64_t)i);
 }
 
-// field = -H_RR^-1 (gradient + H_RN d_N), d_N of `increment`; NULL: of none.
+// field = -H_RR^-1 (gradient + H_RN d_N), where `increment` has d_N; NULL: d_N = 0.
 static void solve(cau_newton *newton, const cau_step_solver *solver, const cau_reals *increment)
 {
 	for (int64_t i = 0; i < 4 * (int64_t)newton->n; i++)
@@ -63,7 +64,7 @@ static void solve(cau_newton *newton, const cau_step_solver *solver, const cau_r
 	solver->kernels->newton_solve(newton);
 }
 
-// gradient_N += scale H_NR of
+// gradient_N += scale H_NR `of`
 static void spread(const cau_newton *newton, cau_step_solver *solver, double scale,
                    const double *of)
 {
@@ -100,15 +101,16 @@ static void keep_rows(const cau_newton *newton, const cau_step_solver *solver)
 		       3 * sizeof(double));
 }
 
-// The part of the step to try next: the least of E + slope t + c t^4. A sheet that turns along a
-// straight step is stretched by the square of the part, so E rises by its fourth power.
+// Returns the part of the step to try next: the minimum of E + slope t + c t^4. A sheet that turns
+// along a straight step is stretched by the square of the part, so E rises by its fourth power.
 static double shorter(double scale, double rise, double slope)
 {
 	double least = rise > 0 && isfinite(rise) ? cbrt(-slope * scale / (4 * rise)) : 0;
 	return scale * fmin(fmax(least, 0.05), 0.5);
 }
 
-// Takes the step in `field`, or a part of it, so that the energy falls. False: none does.
+// Takes the step in `field`, or a part of it, so that the energy falls. Returns false if no part
+// lowers it.
 static bool take_step(cau_newton *newton, cau_step_solver *solver)
 {
 	double energy = newton->energy, slope = 0, scale = 1;
@@ -130,8 +132,8 @@ static bool take_step(cau_newton *newton, cau_step_solver *solver)
 	return false;
 }
 
-// Shortens a row's step to `most`, m, and with tissue contact to way_m from where the settling
-// began.
+// Limits a vertex's step to `most`, m. With tissue contact, also limits its distance from the start
+// of the settling to way_m.
 static void keep_within(const cau_step_solver *solver, double *way, int32_t vertex, double most)
 {
 	double length = sqrt(length2(way)), whole[3];
@@ -150,7 +152,8 @@ static void keep_within(const cau_step_solver *solver, double *way, int32_t vert
 
 typedef enum outcome { STILL, MOVED, STUCK, NO_MEMORY } outcome;
 
-// One of Newton's steps. STILL: it would move nothing; H is factored where R is.
+// One step of Newton's method. Returns STILL if the step would move no vertex: H is then factored
+// at R's present position.
 static outcome step(cau_newton *newton, cau_step_solver *solver)
 {
 	double most2 = 0, still = solver->loose.still_m;
@@ -169,13 +172,13 @@ static outcome step(cau_newton *newton, cau_step_solver *solver)
 	return take_step(newton, solver) ? MOVED : STUCK;
 }
 
-// Whether this step of the session has done as much in R as it may.
+// True if this step of the session has used up its limit of work for Newton's method.
 static bool is_spent(const cau_step_solver *solver)
 {
 	return !solver->newton_chosen && solver->loose.work >= CAU_NEWTON_WORK;
 }
 
-// Chooses the vertices that the last step of Newton's method has moved.
+// Chooses the vertices that the last step of Newton's method moved.
 static void choose_part(cau_loose *loose)
 {
 	const cau_newton *region = &loose->region;
@@ -184,7 +187,8 @@ static void choose_part(cau_loose *loose)
 		loose->part.chosen[region->vertex[i]] = length2(region->field + 4 * (int64_t)i) > still2;
 }
 
-// Newton's steps of the part of R that moves, the rest held: most of R is soon settled.
+// Steps of Newton's method for the part of R that still moves, while the rest of R is held. Most of
+// R settles soon.
 static outcome settle_part(cau_step_solver *solver)
 {
 	cau_loose *loose = &solver->loose;
@@ -198,7 +202,7 @@ static outcome settle_part(cau_step_solver *solver)
 	return last;
 }
 
-// How far R has moved since the tick began, m, root mean square.
+// Returns R's motion since the tick began, m, root mean square.
 static double motion_of(const cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
@@ -211,7 +215,7 @@ static double motion_of(const cau_step_solver *solver)
 	return sqrt(motion / region->n);
 }
 
-// How far R's last step moved it, relative to that.
+// Returns the length of R's last step, relative to R's motion in the tick.
 static double left_to_do(const cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
@@ -221,7 +225,7 @@ static double left_to_do(const cau_step_solver *solver)
 	return sqrt(last / region->n) / fmax(motion_of(solver), NOTHING_M);
 }
 
-// Longest motion of a vertex of R since the tick began, m.
+// Returns the longest motion of a vertex of R since the tick began, m.
 static double longest_motion(const cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
@@ -235,7 +239,8 @@ static double longest_motion(const cau_step_solver *solver)
 	return sqrt(most2);
 }
 
-// Has the pairs of tissue contact be known as far as R may move. False: they exceed the capacity.
+// Finds all pairs of tissue contact within the distance that R may move. Returns false if there are
+// more than the capacity.
 static bool surround(cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
@@ -269,7 +274,7 @@ static outcome settle(cau_step_solver *solver)
 	return last;
 }
 
-// Back to where all was: R is left to A for the rest of the step.
+// Restores all positions. R is left to A for the rest of the step.
 static void give_up(cau_step_solver *solver, double *objective)
 {
 	memcpy(solver->position, solver->position_before,
@@ -288,8 +293,8 @@ static bool has_moved(const cau_step_solver *solver)
 	return false;
 }
 
-// R has come from position_before: as far as it crosses no other tissue. Keeps trial_increment.
-// Returns whether it had to be stopped.
+// Limits R's motion from position_before so that it crosses no other tissue. Keeps trial_increment.
+// Returns true if the motion was shortened.
 static bool keep_apart(cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
@@ -347,14 +352,14 @@ cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_erro
 
 // ---- increment
 
-// M does not let a body that nothing holds keep its momentum, as A does. So the increment is
-// shifted to where its mean is that of s: forces between its parts do not move it.
+// M does not keep the momentum of a body that nothing holds, as A does. So the increment is shifted
+// until the mean position is that of s: forces between the body's parts do not move it.
 static void keep_momentum(cau_step_solver *solver)
 {
 	const cau_tissue *tissue = solver->tissue;
 	double mass = 0, sum[3] = {0}, d[3];
 	if (solver->system.row_count < tissue->vertex_count || solver->drag_count || solver->contact)
-		return; // something holds it
+		return; // something holds the tissue
 	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		double m = solver->fixed[v] ? 0 : tissue->mass[v];
 		solver->kernels->vectors->read(solver->increment, v, d);

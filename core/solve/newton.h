@@ -39,16 +39,16 @@ typedef struct cau_step_solver cau_step_solver;
 
 enum {
 	CAU_BLOCK = 12, // doubles of a 3 x 3 block: three columns of four, the last of each 0
-	// Rows of a region at most. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
+	// Most rows of a region. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
 	// than a tick of 60 Hz. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_ROWS = 1024,
-	// Elements that Newton's steps assemble in one step of a session, about ten milliseconds.
-	// Beyond them the step goes on by A, and its reported error includes the motion left undone. A
-	// scene that asks for Newton's method has no such limit.
+	// Most elements that Newton's steps assemble in one step of a session: about ten milliseconds.
+	// Beyond that number the step continues with A, and its reported error includes the motion left
+	// undone. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_WORK = 24000,
 };
 
-// A slot of a share of the local step.
+// An element: a slot in a share of the local step.
 typedef struct cau_newton_element {
 	int32_t work, slot;
 } cau_newton_element;
@@ -56,82 +56,84 @@ typedef struct cau_newton_element {
 // A block of H between a row and a free vertex outside R.
 typedef struct cau_newton_coupling {
 	int32_t row, vertex;
-	double block[9]; // N/m, row-major
+	double block[9]; // N/m, by rows
 } cau_newton_coupling;
 
-// H_RR = L D L^T in blocks, one row of blocks a vertex of R, in the order of the factor of A.
-// Before it is factored `block` and `pivot` hold H_RR.
+// H_RR = L D L^T in blocks. Each vertex of R has one row of blocks, in the order of the factor of
+// A. Before the factorisation `block` and `pivot` hold H_RR.
 typedef struct cau_newton {
-	int32_t n;                 // rows; 0: R is empty
-	uint8_t *chosen;           // (vertex_count): R
-	int32_t *place;            // (vertex_count): row of each vertex, -1 outside R
-	int32_t *vertex;           // (n)
-	int32_t *first;            // (n + 1): blocks of each column of L below its diagonal
-	int32_t *row;              // (first[n]): ascending
-	double *block;             // (first[n] x CAU_BLOCK): N/m
-	double *pivot;             // (n x CAU_BLOCK): D, N/m
-	double *inverse;           // (n x CAU_BLOCK): D^-1, m/N
-	double *column;            // (n x CAU_BLOCK): the column that is worked on, by row
-	double *field;             // (n x 4): right-hand side and solution
-	double *gradient;          // (n x 4): of E, N
-	double *from;              // (n x 4): positions before a step, m; or a solution, kept
-	int32_t *next, *head, *at; // (n): which columns have come to which row
+	int32_t n;        // number of rows; 0: R is empty
+	uint8_t *chosen;  // (vertex_count): 1 for each vertex of R
+	int32_t *place;   // (vertex_count): row of each vertex, -1 outside R
+	int32_t *vertex;  // (n): vertex of each row
+	int32_t *first;   // (n + 1): where the blocks of each column of L, below its diagonal, begin
+	int32_t *row;     // (first[n]): row of each block, ascending in a column
+	double *block;    // (first[n] x CAU_BLOCK): the blocks of L, N/m
+	double *pivot;    // (n x CAU_BLOCK): D, N/m
+	double *inverse;  // (n x CAU_BLOCK): D^-1, m/N
+	double *column;   // (n x CAU_BLOCK): the column that is being computed, by row
+	double *field;    // (n x 4): right-hand side and solution
+	double *gradient; // (n x 4): gradient of E, N
+	double *from;     // (n x 4): positions before a step, m; or a solution that is kept
+	int32_t *next, *head, *at; // (n): lists of the columns that have a block in a row
 	int32_t row_room, block_room, element_room, coupling_room;
 	int32_t element_count, coupling_count;
-	cau_newton_element *element; // those with a vertex in R
+	cau_newton_element *element; // (element_count): elements with a vertex in R
 	cau_newton_coupling *coupling;
-	int32_t *pair, *grip; // of tissue contact, with a vertex in R
+	int32_t *pair, *grip; // indices of the pairs and grips of tissue contact with a vertex in R
 	int32_t pair_count, pair_room, grip_count, grip_room;
-	double *room;    // m, (n): how far each may move in a step; INFINITY: it touches nothing
-	double energy;   // J: R's share of E, all elements with a vertex in it, its inertia and drag
-	double negative; // a negative eigenvalue is replaced by this times its size: 1 or 0
+	double *room;    // (n): longest motion of each vertex in one step, m; INFINITY: not in contact
+	double energy;   // J: R's share of E: inertia, drag, and all elements with a vertex in R
+	double negative; // a negative eigenvalue is replaced by this times its absolute value: 1 or 0
 } cau_newton;
 
 // The solver's state of Newton's method.
 typedef struct cau_loose {
 	cau_newton region, part; // R, and the part of it that still moves
-	uint8_t *before;         // (vertex_count): R of the last step,
-	uint64_t epoch;          // and which factor it took its order from
-	uint8_t *in_fat;         // (vertex_count)
-	int32_t share_count;     // shares of the local step with triangles of sheets that are on no fat
+	uint8_t *before;         // (vertex_count): R of the last step
+	uint64_t epoch;          // epoch of the factor from which `before` has its order
+	uint8_t *in_fat;         // (vertex_count): vertices of fat
+	int32_t share_count;     // shares of the local step that have triangles without a vertex of fat
 	int32_t *share;
-	bool *ranged;   // of each share: whether some triangle of it, on no fat, has a range
+	bool *ranged;   // (work_count): the share has such a triangle with a range
 	int64_t work;   // elements assembled so far in this step
-	bool settled;   // R is where its share of E is least,
-	bool moved;     // and was not before
-	double left;    // else how far the last step moved it, relative to its motion in the tick
-	bool fresh;     // H is factored where R is
-	bool given_up;  // in this step: R is left to A
-	double way_m;   // with tissue contact: how far R's vertices may move while R settles once
-	double still_m; // R is settled once no vertex moves farther in a step of Newton's method
+	bool settled;   // R's share of E is at its minimum
+	bool moved;     // R has moved in this settling
+	double left;    // if not settled: length of R's last step, relative to R's motion in the tick
+	bool fresh;     // H is factored at R's present position
+	bool given_up;  // Newton's method is not used for the rest of this step
+	double way_m;   // with tissue contact: how far R's vertices may move in one settling
+	double still_m; // m: R is settled once no vertex moves farther in a step of Newton's method
 } cau_loose;
 
-// Chooses R for this step, at the guess from which it starts. CAU_NO_MEMORY.
+// Chooses R for this step, at the step's first guess. CAU_NO_MEMORY.
 cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error);
-// Settles R, with all else held. Changes position, displacement and gradient, and *objective.
-// CAU_NO_MEMORY.
+// Settles R while all other vertices are held. Changes position, displacement, gradient and
+// *objective. CAU_NO_MEMORY.
 cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_error *error);
-// increment = -M^-1 gradient. R has been settled.
+// increment = -M^-1 gradient. R must be settled.
 void cau_loose_increment(cau_step_solver *solver);
 void cau_loose_finish(cau_loose *loose);
 
 // ---- stages, in files of their own
 
-// newton_pattern.c: the region of the `chosen` vertices: rows, pattern of the factor, and elements:
-// those of `from` that have a row, NULL: of all shares. False: no memory.
+// newton_pattern.c: makes the region of the `chosen` vertices: its rows, its elements, and the
+// pattern of its factor. The elements are those of `from` that have a row; if `from` is NULL, of
+// all shares. Returns false if there is no memory.
 bool cau_newton_create(cau_newton *newton, const cau_step_solver *solver, const cau_newton *from);
 void cau_newton_finish(cau_newton *newton);
-// newton_hessian.c: H, gradient and energy at the present position; the last two alone. False: no
-// memory.
+// newton_hessian.c: cau_newton_assemble computes H, gradient and energy at the present position,
+// and returns false if there is no memory. cau_newton_measure computes gradient and energy only.
 bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver);
 void cau_newton_measure(cau_newton *newton, const cau_step_solver *solver);
-// newton_touch.c: lists the pairs and grips of tissue contact that have a row: those of `from`,
-// NULL: all. False: no memory.
+// newton_touch.c: lists the pairs and grips of tissue contact that have a row: those of `from`; if
+// `from` is NULL, all. Returns false if there is no memory.
 bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
                               const cau_newton *from);
-// Adds their energy, gradient and stiffness, and finds `room`.
+// Adds the energy, gradient and stiffness of tissue contact, and computes `room`.
 void cau_newton_touch(cau_newton *newton, const cau_step_solver *solver);
-// The share of A's stiffness that a triangle has where it has least. With a range CAU_NEWTON_RANGE:
-// within it a triangle resists nothing.
+// Returns the stiffness of a triangle in its softest direction, as a share of A's stiffness. For a
+// triangle with a range, returns CAU_NEWTON_RANGE: such a triangle has no stiffness within its
+// range.
 #define CAU_NEWTON_RANGE (-1.0)
 double cau_newton_stiffness(const cau_step_solver *solver, const cau_newton_element *triangle);

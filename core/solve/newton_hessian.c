@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A region's share of eq. 4 in double: its energy, gradient and Hessian: inertia, drag, and of each
-// element w K in its own F, whose negative eigenvalues count by their size or not at all.
+// A region's share of eq. 4 in double: its energy, gradient and Hessian. The parts are inertia,
+// drag, and w K of each element in its own F. Negative eigenvalues of K count by their absolute
+// value or not at all.
 //
-// Of a triangle's target, E = w/2 |F - Q T^(1/2)|^2, Q the polar factor of F T^(1/2) = Q S. When F
-// changes by dF, Q turns in its plane by <C, dF> / tr S, C = Q J T^(1/2), J the quarter turn, and
-// out of it by S^-1. So K is the identity less C C^T / tr S in the plane, where |C|^2 = tr T, and
-// I - T^(1/2) S^-1 T^(1/2) along the normal: in closed form, without eigenvalues of more than
-// 2 x 2.
+// The energy of a triangle with a target is E = w/2 |F - Q T^(1/2)|^2, where Q is the polar factor
+// of F T^(1/2) = Q S. When F changes by dF, Q turns in its plane by <C, dF> / tr S. Here C = Q J
+// T^(1/2), and J is the quarter turn. Q turns out of its plane by S^-1. So K in the plane is the
+// identity less C C^T / tr S, where |C|^2 = tr T. Along the normal K is I - T^(1/2) S^-1 T^(1/2).
+// Both are in closed form; the largest eigenvalue problem is 2 x 2.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,7 @@ typedef struct matrix3 {
 	double at[3][3];
 } matrix3;
 
-// K of a triangle by the columns of F: 00, 11, and 01 (rows of column 0, columns of column 1).
+// K of a triangle by the columns of F: 00, 11, and 01 (rows are of column 0, columns of column 1).
 typedef struct sheet_hessian {
 	matrix3 k[3];
 } sheet_hessian;
@@ -43,13 +44,13 @@ static void add_identity(matrix3 *to, double s)
 		to->at[c][c] += s;
 }
 
-// An eigenvalue as it counts in H.
+// Returns an eigenvalue as H uses it.
 static double counted(double value, double negative)
 {
 	return value < 0 ? -negative * value : value;
 }
 
-// A symmetric 2 x 2 with its eigenvalues so.
+// Returns a symmetric 2 x 2 matrix with its eigenvalues replaced by `counted`.
 static symmetric2 filtered(symmetric2 m, double negative)
 {
 	double mean = (m.a00 + m.a11) / 2, half = (m.a00 - m.a11) / 2;
@@ -75,23 +76,25 @@ static cau_vec3 combine(double a, cau_vec3 x, double b, cau_vec3 y)
 	return (cau_vec3){a * x.x + b * y.x, a * x.y + b * y.y, a * x.z + b * y.z};
 }
 
-// The residual of a triangle's law at F: R = F - P by columns, |R|^2, and K if `to` is not NULL.
+// Result of a triangle's law at F: the residual R = F - P by columns, |R|^2, and K if `to` is not
+// NULL.
 typedef struct sheet_answer {
 	cau_vec3 residual[2];
 	double squared;
 	sheet_hessian *to;
-	double negative; // as in cau_newton
-	// Viscosity's stress in the plane over the element's weight. Across the plane it is stiffness
-	// beside the limit's. `across`: it is in K there.
+	double negative; // factor for negative eigenvalues, as in cau_newton
+	// Viscosity's stress in the plane, over the element's weight. Across the plane it adds
+	// stiffness to that of the limit. If `across` is true, K already contains that part.
 	symmetric2 tension;
 	bool across;
 } sheet_answer;
 
-// The polar factor of F T^(1/2) = Q S. full: F has its rank; else Q is the one that was kept.
+// The polar factor of F T^(1/2) = Q S. If `full` is false, F has not its full rank, and Q is the
+// one that the local step kept.
 typedef struct sheet_polar {
 	bool full;
 	double stretches;   // tr S
-	symmetric2 inverse; // S^-1
+	symmetric2 inverse; // the inverse S^-1
 	cau_vec3 q[2];
 } sheet_polar;
 
@@ -101,7 +104,7 @@ static sheet_polar find_polar(const cau_vec3 f[2], symmetric2 root, const cau_ve
 	symmetric2 m = sandwich(root, metric);
 	double area = sqrt(fmax(m.a00 * m.a11 - m.a01 * m.a01, 0)), trace = m.a00 + m.a11;
 	sheet_polar polar = {.q = {kept[0], kept[1]}};
-	polar.full = area > 1e-3 * trace; // as the local step has it
+	polar.full = area > 1e-3 * trace; // the same limit as in the local step
 	if (!polar.full)
 		return polar;
 	polar.stretches = sqrt(trace + 2 * area);
@@ -129,7 +132,7 @@ static void add_target_hessian(sheet_answer *answer, const cau_vec3 f[2], symmet
 	double negative = answer->negative;
 	add_identity(&to->k[0], 1);
 	add_identity(&to->k[1], 1);
-	if (!polar->full) // Q is kept, and K is the identity
+	if (!polar->full) // the kept Q does not turn, so K is the identity
 		return;
 	symmetric2 normal = normal_stiffness(polar, root), more = answer->tension;
 	normal = (symmetric2){normal.a00 + more.a00, normal.a11 + more.a11, normal.a01 + more.a01};
@@ -161,8 +164,8 @@ static void add_target(sheet_answer *answer, const cau_vec3 f[2], symmetric2 roo
 		add_target_hessian(answer, f, root, &polar);
 }
 
-// Strains kept in a range (strain_range.h). A column beyond it adds stiffness along itself. Across
-// itself it adds the stiffness of its tension or pressure.
+// Strains kept in a range (strain_range.h). A column of F beyond the range adds stiffness along
+// itself. Across itself it adds the stiffness of its tension or pressure.
 static void add_stretch(sheet_answer *answer, int a, cau_vec3 f, double least, double most)
 {
 	double length = cau_length(f), kept = fmin(fmax(length, least), most);
@@ -177,8 +180,8 @@ static void add_stretch(sheet_answer *answer, int a, cau_vec3 f, double least, d
 	add_outer(&answer->to->k[a], (1 - across) / (length * length), f, f);
 }
 
-// Of a shear beyond it, the direction of its residual r alone [Gauss and Newton]: half a squared
-// distance has the gradient r, and r / |r| is the gradient of the distance.
+// For a shear beyond the range, adds stiffness only along the residual r [Gauss and Newton]. Half a
+// squared distance has the gradient r, and r / |r| is the gradient of the distance.
 static void add_shear(sheet_answer *answer, const cau_vec3 f[2], double most)
 {
 	double k00 = cau_dot(f[0], f[0]), k11 = cau_dot(f[1], f[1]), k01 = cau_dot(f[0], f[1]);
@@ -209,9 +212,9 @@ static void add_range(sheet_answer *answer, const cau_vec3 f[2], const cau_sheet
 	add_shear(answer, f, group->shear_max);
 }
 
-// Viscosity (viscous_kernel.h): `share` / 2 |E - R|^2, of the element's weight; the tension is
-// `share` (E - R). Its Hessian is that of dE, and the tension, where negative eigenvalues count as
-// they do.
+// Viscosity (viscous_kernel.h) has the energy `share` / 2 |E - R|^2, times the element's weight.
+// The tension is `share` (E - R). The Hessian has two parts: that of dE, and the tension, whose
+// negative eigenvalues are replaced like all others.
 static symmetric2 tension_of(const cau_vec3 f[2], symmetric2 from, double share)
 {
 	return (symmetric2){share * ((cau_dot(f[0], f[0]) - 1) / 2 - from.a00),
@@ -243,13 +246,13 @@ static void add_viscosity(sheet_answer *answer, const cau_vec3 f[2], double shar
 	add_outer(&k[2], share / 2, f[1], f[0]);
 }
 
-// Element vertices, G by vertex and column of F, and weight.
+// A triangle's vertices, G by vertex and column of F, and weight.
 typedef struct sheet_element {
 	int32_t vertex[3];
-	double g[3][2]; // 1/m
-	double weight;  // N m
+	double g[3][2]; // G by vertex, 1/m
+	double weight;  // weight of the element, N m
 	symmetric2 root;
-	cau_vec3 rest[2], kept[2]; // columns of F at rest, and of the Q that the local step has kept
+	cau_vec3 rest[2], kept[2]; // columns of F at rest; columns of the Q that the local step kept
 } sheet_element;
 
 static double get(const cau_step_solver *solver, const void *array, int32_t slot)
@@ -290,7 +293,7 @@ static sheet_element sheet_at(const cau_step_solver *solver, const cau_local_wor
 	return element;
 }
 
-// R of viscosity
+// The strain R of viscosity.
 static symmetric2 strain_at(const cau_step_solver *solver, int32_t slot)
 {
 	void *const *strain = solver->elements.sheet.strain;
@@ -306,7 +309,7 @@ static cau_vec3 displacement_of(const cau_step_solver *solver, int32_t vertex)
 	return (cau_vec3){x[0] - rest[0], x[1] - rest[1], x[2] - rest[2]};
 }
 
-// F = F_0 + [du_1 du_2] D_m'^-1 by columns, as the local step has it.
+// F = F_0 + [du_1 du_2] D_m'^-1 by columns, as in the local step.
 static void find_gradient(const cau_step_solver *solver, const sheet_element *element,
                           cau_vec3 f[2])
 {
@@ -332,7 +335,7 @@ double cau_newton_stiffness(const cau_step_solver *solver, const cau_newton_elem
 	return polar.full ? (k.a00 + k.a11) / 2 - sqrt(half * half + k.a01 * k.a01) : 0;
 }
 
-// ---- into the region
+// ---- sums of the region
 
 static void add_force(cau_newton *newton, int32_t vertex, double scale, cau_vec3 of)
 {
@@ -344,7 +347,7 @@ static void add_force(cau_newton *newton, int32_t vertex, double scale, cau_vec3
 	to[2] += scale * of.z;
 }
 
-// The free vertex outside the region is coupled to the row by m, or by its transpose.
+// Adds the block m, or its transpose, between a row and a free vertex outside the region.
 static void couple(cau_newton *newton, int32_t row, int32_t vertex, const matrix3 *m, bool turned)
 {
 	CAU_ASSERT_INDEX(newton->coupling_count, newton->coupling_room);
@@ -355,7 +358,8 @@ static void couple(cau_newton *newton, int32_t row, int32_t vertex, const matrix
 			to->block[3 * r + c] = turned ? m->at[c][r] : m->at[r][c];
 }
 
-// H += m in the rows of vertex a and the columns of b, and its transpose where those are not one.
+// Adds m to H in the rows of vertex a and the columns of vertex b, and its transpose if a and b
+// differ.
 static void add_block(cau_newton *newton, const cau_step_solver *solver, int32_t a, int32_t b,
                       const matrix3 *m)
 {
@@ -423,8 +427,8 @@ static void add_sheet(cau_newton *newton, const cau_step_solver *solver, const c
 		add_sheet_hessian(newton, solver, &element, &k);
 }
 
-// w (e e^T / |e|^2 + |1 - L / |e|| (I - e e^T / |e|^2)): of a link, or of the e = sum of c_i x_i
-// that a hinge has.
+// Returns w (e e^T / |e|^2 + |1 - L / |e|| (I - e e^T / |e|^2)): the Hessian of a link, or of a
+// hinge, for which e = sum of c_i x_i.
 static matrix3 length_hessian(cau_vec3 e, double rest, double weight, double negative)
 {
 	matrix3 m = {0};
@@ -443,7 +447,7 @@ typedef struct length_element {
 	int count;
 	int32_t vertex[4];
 	double c[4], rest_length, weight; // weight: N/m
-	cau_vec3 rest, moved;             // e at rest, and by how much it has changed, m
+	cau_vec3 rest, moved;             // e at rest, and its change, m
 } length_element;
 
 static length_element length_at(const cau_step_solver *solver, const cau_local_work *work,
@@ -466,7 +470,7 @@ static length_element length_at(const cau_step_solver *solver, const cau_local_w
 	return of;
 }
 
-// R as link_kernel.h has it: exactly 0 at rest.
+// The residual R as in link_kernel.h: exactly 0 at rest.
 static cau_vec3 length_residual(const length_element *of, cau_vec3 e)
 {
 	double length = cau_length(e);
@@ -494,7 +498,7 @@ static void add_length(cau_newton *newton, const cau_step_solver *solver,
 		}
 }
 
-// Inertia about s of eq. 4, or drag about its target: k/2 |x - centre|^2.
+// Adds inertia about s of eq. 4, or drag about its target: k/2 |x - centre|^2.
 static void add_spring(cau_newton *newton, const cau_step_solver *solver, int32_t vertex, double k,
                        const double *centre)
 {
@@ -534,7 +538,7 @@ static void evaluate(cau_newton *newton, const cau_step_solver *solver, bool hes
 	cau_newton_touch(newton, solver);
 }
 
-// Blocks that an element may have between the region and the rest: a hinge's 2 x 2.
+// Most blocks of an element between the region and the rest: a hinge's 2 x 2.
 enum { MOST_COUPLED = 4 };
 
 bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// H = L D L^T in blocks of 3 x 3, column by column (left-looking), and the solves with it. In
-// double whatever the session's precision is: across its plane a sheet is softer than within it by
-// a factor that single precision does not hold.
+// Factors H = L D L^T in blocks of 3 x 3, column by column (left-looking), and solves with it.
+// Always in double: a sheet is softer across its plane than within it by a factor that single
+// precision cannot represent.
 #pragma once
 
 #include <string.h>
@@ -16,7 +16,7 @@ INLINE block_column *block_at(double *blocks, int32_t index)
 	return (block_column *)(blocks + (int64_t)CAU_BLOCK * index);
 }
 
-// to -= a b, in fused steps
+// to -= a b, by fused multiply-adds
 INLINE void block_subtract(block_column *to, const block_column *a, const block_column *b)
 {
 	for (int c = 0; c < 3; c++) {
@@ -45,7 +45,7 @@ INLINE block_column block_cross(block_column a, block_column b)
 	                      a[0] * b[1] - a[1] * b[0], 0};
 }
 
-// The inverse of a symmetric block by its cofactors; false where it is not positive definite.
+// Inverts a symmetric block by its cofactors. Returns false if the block is not positive definite.
 INLINE bool block_invert(block_column *to, const block_column *a)
 {
 	block_column cofactor = block_cross(a[1], a[2]);
@@ -57,7 +57,8 @@ INLINE bool block_invert(block_column *to, const block_column *a)
 	return a[0][0] > 0 && minor > 0 && determinant > 0;
 }
 
-// Column k, whose rows from `at` on are yet to be subtracted, waits for the first of them.
+// Appends column k to the list of columns that are subtracted at row[at]. The blocks of column k
+// from `at` on are not yet subtracted.
 INLINE void newton_wait(const cau_newton *newton, int32_t k, int32_t at)
 {
 	newton->at[k] = at;
@@ -68,7 +69,7 @@ INLINE void newton_wait(const cau_newton *newton, int32_t k, int32_t at)
 	newton->head[row] = k;
 }
 
-// What column k, whose block at `at` is in row j, takes off column j: L_ik D_k L_jk^T.
+// Subtracts L_ik D_k L_jk^T from column j. The block of column k at `at` is in row j.
 INLINE void newton_subtract(const cau_newton *newton, int32_t k, int32_t at)
 {
 	block_column turned[3], factor[3];

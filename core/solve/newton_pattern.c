@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A region's rows, elements, and the pattern of the factor of its H. Vertices are coupled where A
-// couples them, and rows are in the order of A's factor, which may be in the making on another
-// thread: its order may be read at any time.
+// Finds a region's rows, its elements, and the pattern of the factor of its H. Vertices are coupled
+// where A couples them. Rows are in the order of A's factor. Another thread may be computing that
+// factor, but its order may be read at any time.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,10 +9,10 @@
 #include "solve/newton.h"
 #include "solve/solver.h"
 
-// ---- room
+// ---- memory
 
-// Replaces *array by one for twice `count` items of `bytes`. Old contents are lost. False: no
-// memory.
+// Replaces *array by one with capacity for twice `count` items of `bytes`. The old contents are
+// lost. Returns false if there is no memory.
 static bool make_room(void *array, size_t count, size_t bytes)
 {
 	void **at = array;
@@ -159,13 +159,14 @@ static int compare_rows(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-// Columns of L as they are found: the rows of each, and its children in the elimination tree.
+// Columns of L while they are found: the rows of each, and its children in the elimination tree.
 typedef struct growth {
 	cau_newton *newton;
-	int32_t *below_first, *below; // A by column, rows below the diagonal, in the factor's order
-	int32_t *child, *sibling;     // (n): -1 ends
-	int32_t *mark;                // (n): the last column that had this row
-	int32_t count;                // blocks so far
+	// A's entries below the diagonal, by column, in the factor's order
+	int32_t *below_first, *below;
+	int32_t *child, *sibling; // (n): lists of children; -1 ends a list
+	int32_t *mark;            // (n): last column to which the row was added
+	int32_t count;            // blocks so far
 } growth;
 
 static void add_row(growth *of, int32_t column, int32_t row)
@@ -177,7 +178,8 @@ static void add_row(growth *of, int32_t column, int32_t row)
 	of->newton->row[of->count++] = row;
 }
 
-// Rows of a column of L: A's, and those of its children but itself.
+// Finds the rows of a column of L: those of A's column, and those of the column's children, without
+// the column itself.
 static bool grow(growth *of, int32_t column)
 {
 	cau_newton *newton = of->newton;
@@ -201,7 +203,8 @@ static bool grow(growth *of, int32_t column)
 	return true;
 }
 
-// A's entries below the diagonal between rows of the region, each in the column that comes first.
+// Lists A's off-diagonal entries between rows of the region, in the factor's order. Each entry is
+// listed once, in the column of its earlier row.
 static void permute(growth *of, const cau_system *system)
 {
 	const cau_matrix *matrix = &system->matrix;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue contact of a region: the energy of its pairs and grips, their force, and their stiffness.
-// And how far each vertex may move in one of Newton's steps, so that no pair crosses.
+// Tissue contact of a region: energy, force and stiffness of its pairs and grips. Also finds how
+// far each vertex may move in one step of Newton's method, so that no pair crosses.
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,8 +8,8 @@
 #include "solve/newton.h"
 #include "solve/solver.h"
 
-// In one step of Newton's method a vertex that touches moves at most this share of the gap. Both
-// parts of a pair may move, so one step does not close the gap.
+// Share of the gap by which a vertex in contact may move in one step of Newton's method. Both parts
+// of a pair may move, so one step does not close the gap.
 static const double ROOM_SHARE = 0.45;
 
 static bool has_row(const cau_newton *newton, const int32_t vertex[4])
@@ -31,7 +31,7 @@ static bool add_to(int32_t **list, int32_t *count, int32_t *room, int32_t item)
 	return true;
 }
 
-// Pairs that can touch where no vertex is farther than way_m from where it is now.
+// Lists the pairs that can touch if no vertex moves farther than way_m from its present position.
 static bool find_pairs(cau_newton *newton, const cau_collide *collide, double way_m)
 {
 	for (int32_t k = 0; k < collide->pair_count; k++) {
@@ -73,8 +73,10 @@ bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
 	return true;
 }
 
-// Force and stiffness on the rows: weight_i f, and along n `along`, across it `across`, N/m. What
-// couples a pair's rows is added to their diagonals, so that H stays above it.
+// Adds force and stiffness to the rows. Vertex i gets the force weight_i f. The stiffness is
+// `along` in the direction of the normal and `across` perpendicular to it, N/m. Couplings between a
+// pair's vertices are added to their diagonal blocks instead, so that H stays above the true
+// Hessian.
 static void add_touch(cau_newton *newton, const int32_t vertex[4], const double weight[4],
                       cau_vec3 force, cau_vec3 normal, double along, double across)
 {

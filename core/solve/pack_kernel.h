@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One supernode's part of the factor into the panels of sweep.h: W' = [I - L_s^-1; L_r L_s^-1] from
-// [-I; L_r] and L_s, sixteen rows at a time:
+// Packs one supernode of the factor into the panels of sweep.h. W' = [I - L_s^-1; L_r L_s^-1] is
+// computed from [-I; L_r] and L_s, sixteen rows at a time:
 //
 //     column j of W = column j of [-I; L_r] - sum over i > j of L_ij (column i of W)
 //
-// from the last column back, but for the diagonal of -L_s^-1, which I takes away. Rows do not
-// depend on each other, so sixteen of all columns stay in the nearest cache until they are done.
+// Columns are computed from the last to the first. The diagonal of -L_s^-1 is left out, because I
+// cancels it. Rows do not depend on each other. So sixteen rows of all columns stay in the nearest
+// cache until they are finished.
 #pragma once
 
 #include "base/simd.h"
@@ -17,13 +18,13 @@ typedef struct pack_rows {
 	vreal v[PACK_VECTORS];
 } pack_rows;
 
-// The supernode's columns, dense, by columns: the diagonal block L_s below its unit diagonal
-// (columns x columns), and [-I; L_r] (columns x padded_rows), whose padded rows are zero.
+// The supernode's columns, dense, by columns. `block` is the diagonal block L_s below its unit
+// diagonal (columns x columns). `w` is [-I; L_r] (columns x padded_rows); its padded rows are zero.
 typedef struct pack_dense {
 	real *block, *w;
 } pack_dense;
 
-// Reads them from the factor into the sweep's scratch; returns the least pivot.
+// Reads the supernode's columns from the factor into the sweep's scratch. Returns the least pivot.
 static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
                           const cau_factor *factor, real *d_inverse, int32_t part,
                           pack_dense *dense)
@@ -56,8 +57,8 @@ static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
 	return least;
 }
 
-// Columns last_of - count + 1 to last_of of sixteen rows; those after them, before `last`, are
-// done.
+// Computes columns last_of - count + 1 to last_of of sixteen rows. The columns after them, below
+// `last`, are already computed.
 INLINE void pack_columns(const real *block, int32_t columns, int32_t last, int32_t last_of,
                          int count, pack_rows *x)
 {
@@ -76,7 +77,7 @@ INLINE void pack_columns(const real *block, int32_t columns, int32_t last, int32
 	}
 }
 
-// W' in the place of w. Returns each column's largest entry.
+// Replaces w by W'. Returns each column's largest entry in `largest`.
 static void pack_multiply(const cau_supernode *node, const pack_dense *dense, real *largest)
 {
 	pack_rows x[CAU_NODE_COLUMNS];
@@ -107,11 +108,12 @@ static void pack_multiply(const cau_supernode *node, const pack_dense *dense, re
 	}
 }
 
-// Sixteen entries of W' as they are stored: narrow ones of a column by one scale, its largest entry
-// over NARROW_MOST.
+// Stores sixteen entries of W'. Narrow entries of a column have one scale: its largest entry over
+// NARROW_MOST.
 INLINE void pack_store(const real *in, real inverse_scale, void *out, bool narrow)
 {
-	const real up = NARROW_MOST + (real)1.5; // positive, and half a step more: truncation rounds
+	// positive, and half a unit larger: truncation then rounds
+	const real up = NARROW_MOST + (real)1.5;
 	for (int v = 0; v < PACK_VECTORS; v++) {
 		vreal w = v_load(in, v * LANES);
 		if (narrow) {
@@ -124,8 +126,8 @@ INLINE void pack_store(const real *in, real inverse_scale, void *out, bool narro
 	}
 }
 
-// What W' has on and above its diagonal block's diagonal, and in padded rows, is zero in the panels
-// from the start and stays so. Returns the least pivot.
+// Packs one supernode. Entries of W' on and above the diagonal of its diagonal block, and in padded
+// rows, are zero in new panels and are not written. Returns the least pivot.
 static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
                         const cau_sweep_panels *panels, int32_t part)
 {

@@ -28,8 +28,8 @@ static bool has_energy(const cau_layer_def *layer, int32_t material)
 	return layer->kind == CAU_LAYER_LINKS || !is_linearised(sheet->limit, sheet->projection);
 }
 
-// Linearised limits and the printed energy constraint are not gradients of any energy; nor is the
-// printed position projection.
+// True if every law has an energy. Linearised limits, the printed energy constraint and the printed
+// position projection are no gradients of an energy.
 bool cau_solver_is_conservative(const cau_tissue *tissue, bool diagonal)
 {
 	for (int32_t i = 0; i < tissue->layer_count; i++)
@@ -66,7 +66,8 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 	return CAU_OK;
 }
 
-// A loop has so many parts at most; a scene of several of the largest meshes would need more.
+// A loop has at most CAU_POOL_PARTS parts. A scene of several of the largest meshes would need
+// more.
 static cau_status check_loops(const cau_step_solver *solver, cau_error *error)
 {
 	if (solver->chunk_count <= CAU_POOL_PARTS && solver->slots.work_count < CAU_POOL_PARTS)
@@ -106,7 +107,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->stiffness_j = mean_stiffness(tissue);
 	solver->step_s = scene->step_s;
 	solver->inertia_s = tissue->inertia_s;
-	// An error of x2 is 1 / gamma times as large in the velocity after two substeps.
+	// After two substeps, an error of x2 is 1 / gamma times as large in the velocity.
 	double share = solver->inertia_s / solver->step_s;
 	solver->accuracy.wanted = scene->tolerance > 0 ? 0 : share * scene->accuracy;
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// increment += C f: columns of A^-1 under the loads on them. Vertices are taken a few registers at
-// a time, which stay there for all columns: what is summed up would be read and written far more
-// often than a column is read. Each vertex adds its columns up in their order.
+// Computes increment += C f: columns of A^-1 times the loads on them. A few registers of vertices
+// are processed at a time and stay in the registers for all columns. Otherwise the sums would be
+// read and written far more often than a column is read. Each vertex adds its columns in their
+// order.
 #pragma once
 
 #include "base/simd.h"
 #include "cautery/assert.h"
 #include "solve/kernels.h"
 
-// As many vertices as a register has room for; in double they are taken one by one, as they fill
-// half a register at least of the wider tiers.
+// As many vertices as fit in a register. In double they are processed one by one, because one
+// vertex fills at least half a register of the wider tiers.
 enum {
 	SPREAD_VERTICES = CAU_SINGLE ? VECTOR_BYTES / sizeof(vertex_reals) : 1,
 	SPREAD_REGISTERS = 4,
@@ -20,7 +21,7 @@ typedef real spread_reals
 typedef real spread_memory __attribute__((vector_size(SPREAD_VERTICES * sizeof(vertex_reals)),
                                           may_alias, aligned(4 * sizeof(real))));
 
-// The load on a column, once for each vertex.
+// The load on a column, repeated for each vertex of a register.
 INLINE spread_reals spread_load(const double load[3])
 {
 	spread_reals f = {0};
@@ -30,7 +31,7 @@ INLINE spread_reals spread_load(const double load[3])
 	return f;
 }
 
-// out + weight * load, vertex by vertex.
+// Returns out + weight * load, vertex by vertex.
 INLINE spread_reals spread_add(spread_reals out, const real *weight, spread_reals load)
 {
 #if defined(__AVX512F__) && CAU_SINGLE
@@ -45,7 +46,7 @@ INLINE spread_reals spread_add(spread_reals out, const real *weight, spread_real
 #endif
 }
 
-enum { SPREAD_COLUMNS = 16 }; // whose loads are turned into registers' at once
+enum { SPREAD_COLUMNS = 16 }; // columns whose loads are copied to registers' layout at once
 
 INLINE void spread_strip(real *increment, const cau_reals *const *column, const spread_reals *load,
                          int32_t count, int32_t first)
@@ -62,7 +63,7 @@ INLINE void spread_strip(real *increment, const cau_reals *const *column, const 
 		at[i] = out[i];
 }
 
-// What is left behind the last strip.
+// Adds the columns at one vertex after the last whole strip.
 INLINE void spread_vertex(real *increment, const cau_reals *const *column, const spread_reals *load,
                           int32_t count, int32_t vertex)
 {

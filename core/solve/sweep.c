@@ -7,15 +7,15 @@
 #include "solve/kernels.h"
 
 enum {
-	LEAF_COLUMNS = 48, // subtrees up to this size become one dense block (32 to 64 measured best)
+	LEAF_COLUMNS = 48, // subtrees up to this size become one dense block; 32 to 64 were fastest
 	PAD = 16,
 };
 
-// A supernode while the tree is being shaped.
+// A supernode while the supernodes are being formed.
 typedef struct draft {
 	int32_t first, last;   // columns [first, last)
 	int32_t subtree_first; // first column of its whole subtree
-	int64_t entries;       // true nonzeros
+	int64_t entries;       // nonzero entries without padding
 } draft;
 
 static int32_t pad(int32_t count)
@@ -23,9 +23,10 @@ static int32_t pad(int32_t count)
 	return (count + PAD - 1) / PAD * PAD;
 }
 
-// Number of distinct rows at or after `last` in columns [first, last); `mark` (n) is scratch of
-// -1s. A column whose parent is one of them has no row that its parent has not (T. Davis, Direct
-// Methods for Sparse Linear Systems, 2006, section 4.1).
+// Returns the number of distinct rows at or after `last` in columns [first, last), and lists them
+// in `out` if it is not NULL. `mark` (n) is scratch, -1 at first. If a column's parent is in the
+// range, the parent has all of the column's rows (T. Davis, Direct Methods for Sparse Linear
+// Systems, 2006, section 4.1).
 static int32_t rows_below(const cau_factor *factor, int32_t first, int32_t last, int32_t *mark,
                           int32_t stamp, int32_t *out)
 {
@@ -65,8 +66,8 @@ static int32_t column_count(const cau_factor *factor, int32_t j)
 	return cau_factor_column(factor, j, &row, &value, &pivot);
 }
 
-// Whether two neighbouring drafts are better held as one dense block than as two: few zeros are
-// added.
+// True if two neighbouring drafts are better stored as one dense block: the block then has few
+// extra zeros.
 static bool worth_merging(int64_t columns, int64_t rows, int64_t entries)
 {
 	CAU_ASSERT(columns > 0 && rows >= 0 && entries > 0, "%lld columns, %lld rows, %lld entries",
@@ -75,8 +76,8 @@ static bool worth_merging(int64_t columns, int64_t rows, int64_t entries)
 	return columns <= CAU_NODE_COLUMNS && (area - entries) * 5 <= area;
 }
 
-// Shapes the supernodes: leaf subtrees whole, then chains of columns with the same rows, then
-// neighbours where that adds few zeros. Returns their number; drafts has room for n.
+// Forms the supernodes: whole leaf subtrees, then chains of columns with the same rows, then
+// neighbours if few zeros are added. Returns their number. `drafts` has capacity n.
 static int32_t shape(const cau_factor *factor, draft *drafts, int32_t *subtree_first, int32_t *mark)
 {
 	int32_t n = cau_factor_size(factor), count = 0;
@@ -130,8 +131,8 @@ static void sort_rows(int32_t *row, int32_t count)
 		}
 }
 
-// Cuts the tree into at most CAU_SWEEP_TASKS disjoint subtrees of about equal work; what is above
-// them is done by one thread.
+// Divides the tree into at most CAU_SWEEP_TASKS disjoint subtrees of about equal work. One thread
+// handles the supernodes above them.
 static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
                          const int32_t *subtree_first)
 {
@@ -139,7 +140,7 @@ static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
 	for (int32_t s = count - 1; s >= 0 && used < CAU_SWEEP_TASKS; s--)
 		if (sweep->supernode[s].parent < 0)
 			candidates[used++] = s;
-	for (;;) { // open the largest subtree while there is room for its children
+	for (;;) { // replace the largest subtree by its children while there are not too many
 		int32_t largest = -1;
 		for (int32_t i = 0; i < used; i++)
 			if (subtree_first[candidates[i]] < candidates[i] &&
@@ -169,7 +170,7 @@ static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
 	}
 }
 
-// Parents, subtree ranges and work of the supernode tree, then the tasks.
+// Finds parents, subtree ranges and work of the supernode tree, then the tasks.
 static void link_tree(cau_sweep *sweep, int64_t *work, int32_t *first)
 {
 	for (int32_t s = 0; s < sweep->supernode_count; s++) {
@@ -205,7 +206,7 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 			sweep->top_column[sweep->top_count++] = node->first + j;
 		}
 	}
-	sweep->padded_n = pad(sweep->n) + PAD; // vectors begin at any column
+	sweep->padded_n = pad(sweep->n) + PAD; // vectors of lanes may begin at any column
 	sweep->padded_top = pad(sweep->top_count);
 }
 
@@ -215,7 +216,7 @@ int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task)
 	return sweep->padded_n + task * (sweep->padded_top + 1);
 }
 
-// Where each supernode's columns and rows stand in the field.
+// Finds the field index of each supernode's columns and rows.
 static void name_places(cau_sweep *sweep, const int32_t *top_number)
 {
 	for (int32_t s = 0; s < sweep->supernode_count; s++) {
@@ -235,7 +236,8 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 			backward[own + i] = 4 * row;
 			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
 		}
-		for (int32_t i = own + node->rows; i < node->padded_rows; i++) { // W' has zeros there
+		// for padded rows, where W' has zeros
+		for (int32_t i = own + node->rows; i < node->padded_rows; i++) {
 			forward[i] = node->spare;
 			backward[i] = 4 * node->first;
 		}

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dense products of sweep.h, for the three coordinates at once. A vector's lanes are rows of a
-// column of the panel.
+// The dense products of sweep.h, for the three coordinates at once. The lanes of a vector are rows
+// of one column of the panel.
 #pragma once
 
 #include "base/simd.h"
 #include "solve/sweep.h"
 
 enum {
-	SWEEP_BLOCK = 4,    // columns worked on together
-	SWEEP_TILE = 512,   // rows worked on together
-	SWEEP_AHEAD = 8192, // bytes between what is read and what is asked for
+	SWEEP_BLOCK = 4,    // columns that are processed together
+	SWEEP_TILE = 512,   // rows that are processed together
+	SWEEP_AHEAD = 8192, // bytes from the read address to the prefetched one
 };
 
-// What a tile of rows takes (forward) or holds (backward).
+// The sums for a tile of rows (forward), or their values (backward).
 typedef struct sweep_tile {
 	v3 rows[SWEEP_TILE / LANES];
 } sweep_tile;
 
-// A supernode's panel from some row and column on: reals, or narrow.
+// A supernode's panel from a row and column on: reals, or narrow entries.
 typedef struct sweep_panel {
 	const void *at;
 	int64_t stride; // entries in a column
@@ -47,8 +47,8 @@ INLINE sweep_panel panel_of(const cau_sweep *sweep, const cau_supernode *node, i
 	return panel_from((sweep_panel){sweep->panel, node->padded_rows, narrow}, node->panel + row);
 }
 
-// Asks for `count` columns `ahead` bytes behind the first: processors see some way ahead, but not
-// as far, and less when it goes down.
+// Prefetches `count` columns, `ahead` bytes after the first. Processors prefetch by themselves, but
+// not as far, and less if addresses descend.
 INLINE void sweep_prefetch(sweep_panel panel, intptr_t ahead, int count)
 {
 	enum { LINE = 64 };
@@ -57,7 +57,8 @@ INLINE void sweep_prefetch(sweep_panel panel, intptr_t ahead, int count)
 		__builtin_prefetch((const void *)((intptr_t)at + ahead));
 }
 
-// Of a tile that begins with `row`, the first vector that has entries in columns from `column` on.
+// In a tile that begins with `row`, returns the first vector that has entries in columns from
+// `column` on.
 INLINE int sweep_first(int32_t row, int32_t column)
 {
 	return row ? 0 : column / LANES;
@@ -73,8 +74,8 @@ INLINE int32_t least(int32_t a, int32_t b)
 	return a < b ? a : b;
 }
 
-// Adds W' b of `count` columns to rows; `panel` is the first column at the first of the tile's
-// rows, vectors [first, last) of which have entries there.
+// Adds W' b of `count` columns to the tile. `panel` is at the first column and the tile's first
+// row. Vectors [first, last) of the tile have entries.
 INLINE void forward_columns(sweep_panel panel, sweep_tile *tile, int first, int last, const real *b,
                             int count)
 {
@@ -90,7 +91,8 @@ INLINE void forward_columns(sweep_panel panel, sweep_tile *tile, int first, int 
 	}
 }
 
-// Rows [row, row + vectors x LANES) take W' b off; b is in steps of the columns' scales.
+// Subtracts W' b from rows [row, row + vectors x LANES). `b` is already multiplied by the columns'
+// scales.
 INLINE void forward_tile(const cau_sweep *sweep, const cau_supernode *node, bool narrow,
                          int32_t row, int vectors, const real *b)
 {
@@ -110,7 +112,7 @@ INLINE void forward_tile(const cau_sweep *sweep, const cau_supernode *node, bool
 		sweep_subtract((real *)sweep->field, place + k * LANES, tile.rows[k]);
 }
 
-// The supernode's part of the forward sweep.
+// The forward sweep of one supernode.
 INLINE void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node, bool narrow)
 {
 	const real *scale = (const real *)sweep->scale + node->first;
@@ -124,8 +126,8 @@ INLINE void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node
 		             b);
 }
 
-// Columns [column, column + count) take theirs of W'^T [D^-1 y; x] off, of vectors [first, last) of
-// rows; `panel` is the first column at the first of the tile's rows.
+// Subtracts from columns [column, column + count) their part of W'^T [D^-1 y; x], for vectors
+// [first, last) of rows. `panel` is at the first column and the tile's first row.
 INLINE void backward_columns(sweep_panel panel, const sweep_tile *tile, int first, int last,
                              const real *scale, real *column, int count)
 {
@@ -141,8 +143,9 @@ INLINE void backward_columns(sweep_panel panel, const sweep_tile *tile, int firs
 		v3_subtract_total(column + 4 * j, scale[j], sum[j]);
 }
 
-// What all columns take off of rows [row, row + vectors x LANES), from the last column back, as the
-// supernodes are taken: the panels are read straight down.
+// Subtracts from all columns the part of rows [row, row + vectors x LANES). Columns are processed
+// from the last to the first, as the supernodes are, so that the panels are read in descending
+// order.
 INLINE void backward_tile(const cau_sweep *sweep, const cau_supernode *node, bool narrow,
                           int32_t row, int vectors, real *own)
 {
@@ -165,8 +168,8 @@ INLINE void backward_tile(const cau_sweep *sweep, const cau_supernode *node, boo
 	}
 }
 
-// The supernode's part of the backward sweep: its columns hold y on entry, x on return. All its
-// columns are rows of the first tile, which is read before any of them is written.
+// The backward sweep of one supernode. Its columns hold y on entry and x on return. All its columns
+// are rows of the first tile, which is read before any column is written.
 INLINE void sweep_backward_node(const cau_sweep *sweep, const cau_supernode *node, bool narrow)
 {
 	const real *d = (const real *)sweep->d_inverse + node->first;

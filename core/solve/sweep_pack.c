@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The factor's values in the panels of the sweeps: supernode by supernode, so that a downdate
-// renews only those on the paths that it changed.
+// Packs the factor's values into the panels of the sweeps, supernode by supernode. A downdate then
+// packs only the supernodes on the paths that it changed.
 #include <math.h>
 #include <string.h>
 
@@ -24,7 +24,8 @@ cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *pan
 	if (!cau_pages_take(&panels->pages, panel + 2 * (size_t)sweep->padded_n * size))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
 	panels->panel = panels->pages.start;
-	char *d_inverse = (char *)panels->panel + panel; // whole lanes, so aligned to them
+	// the panel has whole vectors of lanes, so d_inverse is aligned
+	char *d_inverse = (char *)panels->panel + panel;
 	panels->d_inverse = (cau_reals *)d_inverse;
 	panels->scale = (cau_reals *)(d_inverse + (size_t)sweep->padded_n * size);
 	return CAU_OK;
@@ -70,11 +71,12 @@ void cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor)
 typedef struct packing {
 	const cau_sweep *sweep;
 	const cau_factor *factor;
-	uint8_t *touched; // 1 + the part that packs it
+	uint8_t *touched; // 1 + index of the part that packs the supernode; 0: not packed
 	double least[CAU_PACK_PARTS];
 } packing;
 
-// Each goes to the part that has less to do so far; the largest, which are last, come first.
+// Assigns each supernode to the part with less work so far. The largest supernodes are last in
+// order, and are assigned first.
 static void share_out(const packing *work)
 {
 	int64_t load[CAU_PACK_PARTS] = {0};

@@ -13,7 +13,8 @@ static int compare_keys(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-// All (column, row) pairs of one element's free vertices, column <= row.
+// Lists all (column, row) pairs of an element's free vertices with column <= row. Returns their
+// number.
 static int64_t element_keys(const cau_system *system, const cau_element_map *map, uint64_t *keys)
 {
 	int64_t count = 0;

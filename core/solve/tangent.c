@@ -6,8 +6,8 @@
 
 #include "cautery/assert.h"
 
-// The farthest that a vertex is moved to see what forces change by: far above what rounding in
-// single precision does, far below what a tool feels of curvature.
+// The largest motion of a vertex with which the change of forces is measured. It is far above the
+// rounding of single precision, and so short that curvature does not matter to a tool.
 static const double way_m = 2e-5;
 
 static bool make_vectors(cau_tangent *tangent, const cau_step_solver *solver)
@@ -61,12 +61,13 @@ void cau_tangent_finish(cau_tangent *tangent)
 	cau_arena_finish(&tangent->arena);
 }
 
-// What is not the probe's own is the solver's of now: a restore or new pins may have changed it.
+// Copies the solver's present state to the probe, except for the probe's own vectors. A restore or
+// new pins may have changed the solver since the last call.
 static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 {
 	cau_step_solver own = tangent->probe, *probe = &tangent->probe;
 	*probe = *solver;
-	probe->position = probe->predicted = tangent->position; // at the prediction inertia is 0
+	probe->position = probe->predicted = tangent->position; // at the predicted state inertia is 0
 	probe->displacement = own.displacement;
 	probe->gradient = own.gradient;
 	probe->chunk_energy = own.chunk_energy;
@@ -74,7 +75,7 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 	probe->collide = NULL;
 	probe->contact = NULL;
 	probe->now_s = NULL;
-	probe->elements.rate_per_s = 0; // a hand is slow
+	probe->elements.rate_per_s = 0; // no viscosity: a hand is slow
 	probe->elements.gradient = own.elements.gradient;
 	probe->elements.energy = own.elements.energy;
 	probe->elements.slack = own.elements.slack;
@@ -95,7 +96,7 @@ void cau_tangent_begin(cau_tangent *tangent, cau_step_solver *solver)
 		memcpy(to->fat.polar[i], from->fat.polar[i], (size_t)from->fat.slot_count * real);
 	memcpy(tangent->position, solver->position, 3 * n * sizeof(double));
 	cau_solver_evaluate(&tangent->probe);
-	cau_reals *made = tangent->probe.gradient; // the other one takes the next evaluations
+	cau_reals *made = tangent->probe.gradient; // later evaluations write to the other vector
 	tangent->probe.gradient = tangent->base;
 	tangent->base = made;
 }
@@ -125,7 +126,7 @@ static void add_load(cau_tangent *tangent, const cau_tangent_load *load, int32_t
 		                                                load[i].share * along[2]});
 }
 
-// Where a motion takes the load's place, m.
+// Returns the motion, m, of the load's point of application.
 static void place_of(const cau_tangent *tangent, const cau_reals *motion,
                      const cau_tangent_load *load, int32_t count, double place[3])
 {
@@ -138,7 +139,7 @@ static void place_of(const cau_tangent *tangent, const cau_reals *motion,
 	}
 }
 
-// change = H motion. The motion is scaled to a length of 1 at most, first.
+// change = H motion. The motion is first scaled so that its longest vertex motion is 1.
 static bool find_change(cau_tangent *tangent, cau_reals *motion, cau_reals *change)
 {
 	cau_step_solver *probe = &tangent->probe;
@@ -148,7 +149,7 @@ static bool find_change(cau_tangent *tangent, cau_reals *motion, cau_reals *chan
 	if (!(longest > 0 && isfinite(longest)))
 		return false;
 	kernels->add_scaled(motion, 1 / longest - 1, motion, reals_of(tangent));
-	for (int sign = 1; sign >= -1; sign -= 2) { // there, and home again after it was seen
+	for (int sign = 1; sign >= -1; sign -= 2) { // move, evaluate, and move back
 		for (int32_t v = 0; v < n; v++) {
 			double moved[3];
 			kernels->vectors->read(motion, v, moved);
@@ -164,15 +165,17 @@ static bool find_change(cau_tangent *tangent, cau_reals *motion, cau_reals *chan
 	return true;
 }
 
-// What is known of the motions so far.
+// The space of the motions found so far.
 typedef struct space {
 	int count;
-	double energy[CAU_TANGENT_MOTIONS][CAU_TANGENT_MOTIONS]; // v_i . H v_j, J
-	double place[CAU_TANGENT_MOTIONS][3];                    // of the load, m
-	double factor[CAU_TANGENT_MOTIONS][CAU_TANGENT_MOTIONS]; // of `energy`, lower triangle
+	double energy[CAU_TANGENT_MOTIONS][CAU_TANGENT_MOTIONS]; // v_i . H v_j of the motions v, J
+	double place[CAU_TANGENT_MOTIONS][3]; // motion of the load's point of application, m
+	// Cholesky factor of `energy`, lower triangle
+	double factor[CAU_TANGENT_MOTIONS][CAU_TANGENT_MOTIONS];
 } space;
 
-// Takes the motion at the end of the space into it, if its energy is positive there.
+// Adds the motion at index `count` to the space. Returns false if the energy is not positive
+// definite with it.
 static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load, int32_t count)
 {
 	int k = s->count;
@@ -181,7 +184,7 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 	place_of(tangent, tangent->motion[k], load, count, s->place[k]);
 	for (int i = 0; i <= k; i++) {
 		double energy = dot(tangent, tangent->motion[i], tangent->change[k]);
-		if (i < k) // H is symmetric, but for rounding
+		if (i < k) // H is symmetric except for rounding
 			energy = (energy + dot(tangent, tangent->motion[k], tangent->change[i])) / 2;
 		s->energy[i][k] = s->energy[k][i] = energy;
 	}
@@ -189,7 +192,8 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 		double sum = s->energy[k][i];
 		for (int j = 0; j < i; j++)
 			sum -= s->factor[k][j] * s->factor[i][j];
-		if (i == k && !(sum > 1e-6 * s->energy[k][k])) // nothing new, or tissue that gives way
+		// no new direction, or tissue without stiffness
+		if (i == k && !(sum > 1e-6 * s->energy[k][k]))
 			return false;
 		s->factor[k][i] = i == k ? sqrt(sum) : sum / s->factor[i][i];
 	}
@@ -197,7 +201,7 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 	return true;
 }
 
-// y = E^-1 x
+// x = E^-1 x, in place
 static void solve(const space *s, double x[CAU_TANGENT_MOTIONS])
 {
 	for (int i = 0; i < s->count; i++) {
@@ -212,7 +216,8 @@ static void solve(const space *s, double x[CAU_TANGENT_MOTIONS])
 	}
 }
 
-// The motion by which a load along `along` is answered in the space, in the motions' shares.
+// Finds the motion in the space by which tissue responds to a load along `along`, in shares of the
+// space's motions.
 static void answer_in(const space *s, const double along[3], double share[CAU_TANGENT_MOTIONS])
 {
 	for (int i = 0; i < s->count; i++)
@@ -221,7 +226,7 @@ static void answer_in(const space *s, const double along[3], double share[CAU_TA
 	solve(s, share);
 }
 
-// s = A^-1 p along each axis, which A treats alike. Returns p . s.
+// Starts the space with s = A^-1 p along each axis; A is the same for all axes. Returns p . s.
 static double begin_space(cau_tangent *tangent, const cau_tangent_load *load, int32_t count,
                           double *mass_kg)
 {
@@ -246,7 +251,7 @@ static double begin_space(cau_tangent *tangent, const cau_tangent_load *load, in
 	return place[0];
 }
 
-// The next motion of conjugate gradients: A^-1 of what the space leaves of the load.
+// Adds the next motion of conjugate gradients: A^-1 of the residual of the load in the space.
 static void add_motion(cau_tangent *tangent, const space *s, const cau_tangent_load *load,
                        int32_t count, const double along[3])
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled twice: CAU_SINGLE is the precision, CAU_VECTORS the name of the table it makes.
+// Operations on vectors of one precision. Compiled twice with these macros: CAU_SINGLE is the
+// precision, CAU_VECTORS the name of the table.
 #include "solve/vectors.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// ---- anywhere
+// ---- any vector
 static double at(const cau_reals *array, int64_t index)
 {
 	return (double)((const real *)array)[index];
@@ -31,7 +32,7 @@ static void add(cau_reals *vector, int32_t vertex, const double value[3])
 		to[c] = (real)((double)to[c] + value[c]);
 }
 
-// By turns in four numbers, none of which waits for the one before.
+// Four maxima in turn, so that no comparison waits for the one before it.
 static double longest(const cau_reals *vector, int32_t count)
 {
 	const real *d = (const real *)vector;
@@ -43,7 +44,8 @@ static double longest(const cau_reals *vector, int32_t count)
 		most[v & 3] = square > most[v & 3] ? square : most[v & 3];
 	}
 	real low = most[0] > most[1] ? most[0] : most[1], high = most[2] > most[3] ? most[2] : most[3];
-	return sqrt((double)(low > high ? low : high)) * (1 + 1e-6); // by any rounding
+	// an upper bound in spite of rounding
+	return sqrt((double)(low > high ? low : high)) * (1 + 1e-6);
 }
 
 static void take_coordinate(cau_reals *column, const cau_reals *vector, int c, int32_t count)
@@ -173,7 +175,8 @@ static void add_sums(const cau_sweep *sweep, int32_t task)
 extern const cau_vectors CAU_VECTORS;
 const cau_vectors CAU_VECTORS = {
 	.real_bytes = sizeof(real),
-	.rounding = CAU_SINGLE ? 1e-6 : 1e-13, // thousands of terms, each off by some 1e-7 or 1e-16
+	// for thousands of terms, each with an error of about 1e-7 or 1e-16
+	.rounding = CAU_SINGLE ? 1e-6 : 1e-13,
 	.at = at,
 	.read = read,
 	.add = add,

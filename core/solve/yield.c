@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The global step where tissue touches tissue. A knows nothing of the stiffness K between touching
-// parts, and a step by A alone throws what lies on something light far off it. So the step is that
-// of A + K, by conjugate gradients with A^-1 for preconditioner: a few sweeps more. With z = A^-1 r
-// and directions p of z's, A p is a sum of r's, so A itself is never multiplied by.
+// The global step with tissue contact. A does not contain the stiffness K between touching tissue.
+// A step by A alone would move tissue that lies on something light far away from it. So the step
+// uses A + K: conjugate gradients with A^-1 as preconditioner, which costs a few more sweeps. With
+// z = A^-1 r and directions p that are sums of z's, A p is a sum of r's. So no product with A is
+// needed.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-static const double enough = 0.01; // of r.z, at which the solution serves as a step
-static const double surely = 0.5;  // of that, where it is foreseen
+// share of the first r.z at which the solution is good enough for a step
+static const double enough = 0.01;
+static const double surely = 0.5; // share of `enough` for a predicted r.z
 enum { MOST_SWEEPS = 12 };
 
 cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error)
@@ -59,7 +61,7 @@ static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *
 	return all;
 }
 
-// direction . K direction; what K makes of it is kept where tissue touches.
+// Returns direction . K direction. Stores K direction in collide->answer, for vertices in contact.
 static double touch(cau_step_solver *solver, const cau_reals *direction)
 {
 	cau_collide *collide = solver->collide;
@@ -76,7 +78,7 @@ static double touch(cau_step_solver *solver, const cau_reals *direction)
 	return along;
 }
 
-// residual -= scale * what K made
+// residual -= scale * K direction
 static void take_off(cau_step_solver *solver, double scale)
 {
 	const cau_collide *collide = solver->collide;
@@ -90,16 +92,17 @@ static void take_off(cau_step_solver *solver, double scale)
 	}
 }
 
-// With p.K p the share `stiffer` of p.A p, what the first step leaves of r.z is at most that share
-// times the largest eigenvalue of A^-1 K, of which the steepest pair tells: before it is pressed
-// together, a pair is about as stiff as A is where it acts.
+// True if one step is enough. `stiffer` is p.K p over p.A p. The first step leaves of r.z at most
+// this share times the largest eigenvalue of A^-1 K. The steepest pair gives an estimate of that
+// eigenvalue: before it is pressed, a pair is about as stiff as A at its vertices.
 static bool first_serves(const cau_step_solver *solver, double stiffer)
 {
 	return stiffer * solver->collide->steepest <= surely * enough;
 }
 
-// Steps take off E at least as much less each as the last one did: off[0] J the first one did,
-// off[1] the last but one, off[2] the last.
+// True if the last step was enough. The decrease of E is assumed to shrink from step to step at
+// least as much as at the last one. off[0] is the decrease in J of the first step, off[1] of the
+// one before the last, off[2] of the last.
 static bool last_served(const double off[3])
 {
 	return off[2] * off[2] <= surely * enough * off[0] * off[1];
@@ -109,7 +112,7 @@ static void begin(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
 	size_t bytes = 4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes;
-	// r = -gradient, z = p = A^-1 r is the increment as it is, A p = r
+	// r = -gradient; z = p = A^-1 r is the present increment; A p = r
 	memset(y->residual, 0, bytes);
 	add(solver, y->residual, -1, solver->gradient);
 	memcpy(y->image, y->residual, bytes);

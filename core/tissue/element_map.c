@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements as the system sees them.
+// Elements in the form that the system needs: a linear map G with a weight.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "tissue/tissue.h"
 
-// Of a link's reach: a truss between vertices that (nearly) coincide is as stiff as one this long.
+// Share of a link's reach. A link between vertices that (nearly) coincide is as stiff as one of
+// this length.
 static const double shortest_truss = 0.01;
 
 int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind)
@@ -37,7 +38,7 @@ const int32_t *cau_tissue_vertices_of(const cau_tissue *tissue, int primitive, i
 	return base + (size_t)*count * (size_t)index;
 }
 
-// Coefficients of vertices 1..rank are the rows of D_m^-1; vertex 0 has minus their sum.
+// Sets the coefficients: vertices 1 to rank have the rows of D_m^-1, vertex 0 has minus their sum.
 static void gradient_map(const double *dm_inverse, int rank, cau_element_map *map)
 {
 	CAU_ASSERT(rank == 2 || rank == 3, "a gradient of rank %d", rank);
@@ -53,7 +54,7 @@ static void gradient_map(const double *dm_inverse, int rank, cau_element_map *ma
 	}
 }
 
-// How many times as stiff as without viscosity an element is to a step.
+// Returns by what factor viscosity makes an element stiffer for a step.
 static double viscous_share(const cau_tissue *tissue, int32_t layer)
 {
 	CAU_ASSERT_INDEX(layer, tissue->layer_count);
@@ -67,8 +68,8 @@ static double triangle_weight(const cau_tissue *tissue, int32_t triangle)
 	       material->thickness_m * tissue->triangle_area[triangle];
 }
 
-// The energy's stiffness at rest 2 mu + 3 lambda, and the limit's where one acts or shrinkage may
-// set one.
+// Returns the tetrahedron's weight: the stiffness of its energy at rest, 2 mu + 3 lambda, and the
+// stiffness of its strain limit, if there is one or if shrinkage may set one.
 static double tetrahedron_weight(const cau_tissue *tissue, int32_t tetrahedron)
 {
 	const cau_fat_material *material = cau_tetrahedron_material(tissue, tetrahedron);

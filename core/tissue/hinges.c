@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bending: one hinge per edge that two triangles of a sheet share. e = sum of c_i x_i with the
-// cotangent coefficients of the isometric bending model [Bergou et al. 2006] vanishes on a flat
-// patch; a curved sheet keeps |e| of its rest shape.
+// Bending: one hinge for each edge that two triangles of a sheet share. The vector e = sum of c_i
+// x_i, with the cotangent coefficients of the isometric bending model [Bergou et al. 2006], is 0 on
+// a flat patch. A curved sheet keeps the |e| of its rest shape.
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "tissue/tissue_internal.h"
@@ -44,8 +44,8 @@ static void make_hinge(cau_tissue *tissue, int32_t hinge, int32_t edge, const in
 	v[3] = opposite(tissue, triangle[1], v[0], v[1]);
 	cau_vec3 a = rest_of(tissue, v[0]), b = rest_of(tissue, v[1]);
 	cau_vec3 c = rest_of(tissue, v[2]), d = rest_of(tissue, v[3]);
-	double cot_a = cotangent(a, b, c) + cotangent(a, b, d); // at a
-	double cot_b = cotangent(b, a, c) + cotangent(b, a, d); // at b
+	double cot_a = cotangent(a, b, c) + cotangent(a, b, d); // cotangents of the angles at a
+	double cot_b = cotangent(b, a, c) + cotangent(b, a, d); // cotangents of the angles at b
 	double length = cau_length(cau_sub(b, a));
 	CAU_ASSERT(length > 0, "edge %d has no length", edge);
 	double height[2] = {2 * tissue->triangle_area[triangle[0]] / length,

@@ -8,7 +8,7 @@
 #include "tissue/regions.h"
 #include "tissue/tissue_internal.h"
 
-// Meshes of the scene while it is being gathered: a mesh that several layers use has one copy of
+// State of gathering the scene's meshes. A mesh that several layers use has one copy of its
 // vertices.
 typedef struct gathering {
 	cau_mesh mesh[CAU_MAX_MESHES];
@@ -51,7 +51,7 @@ static cau_status make_meshes(gathering *work, const cau_scene_def *scene, cau_m
 	return CAU_OK;
 }
 
-// The boundary faces of a fat layer's mesh, outward.
+// Finds the boundary faces of a fat layer's mesh, oriented outward.
 static cau_status make_boundary(const cau_mesh *mesh, cau_face_table *boundary, cau_error *error)
 {
 	CAU_ASSERT(mesh->tetrahedron_count > 0, "the boundary of %d tetrahedra",
@@ -72,7 +72,7 @@ static int32_t count_boundary(const cau_face_table *boundary)
 	return count;
 }
 
-// Which mesh a layer takes its elements from: its own, or that of the fat whose membrane it is.
+// Returns the mesh of a layer's elements: its own mesh, or that of the fat whose membrane it is.
 static int32_t mesh_of(const cau_scene_def *scene, int32_t layer)
 {
 	CAU_ASSERT_INDEX(layer, scene->layer_count);
@@ -188,8 +188,8 @@ static void copy_triangles(cau_tissue *tissue, int32_t layer_index, const cau_me
 	}
 }
 
-// Unit t_u, t_v from the texture: (t_u, t_v) = D_m (u_j - u_i, u_k - u_i)^-1 (eq. 9), made
-// orthogonal.
+// Sets the unit vectors t_u, t_v from the texture: (t_u, t_v) = D_m (u_j - u_i, u_k - u_i)^-1 (eq.
+// 9), made orthogonal. Returns false if the texture gives no direction.
 static bool texture_frame(double edge[2][3], const double uv[6], double frame[6])
 {
 	double a = uv[2] - uv[0], b = uv[4] - uv[0], c = uv[3] - uv[1], d = uv[5] - uv[1];
@@ -203,11 +203,11 @@ static bool texture_frame(double edge[2][3], const double uv[6], double frame[6]
 	v = cau_unit_or(cau_add_scaled(v, -cau_dot(u, v), u), (cau_vec3){0, 0, 0});
 	cau_vec3_to(u, frame);
 	cau_vec3_to(v, frame + 3);
-	return cau_dot(u, u) > 0.5 && cau_dot(v, v) > 0.5; // of unit length, not zero
+	return cau_dot(u, u) > 0.5 && cau_dot(v, v) > 0.5; // both have unit length, so neither is 0
 }
 
-// Where there is no texture: the fibre direction laid into the triangle's plane, or, where it
-// stands on the plane, the world axis that lies in it best.
+// Sets the frame of a triangle without texture: the fibre direction projected into the triangle's
+// plane. If the fibre is normal to the plane, takes the world axis closest to the plane.
 static void fibre_frame(double edge[2][3], const double fibre[3], double frame[6])
 {
 	cau_vec3 n = cau_cross(cau_vec3_of(edge[0]), cau_vec3_of(edge[1]));
@@ -225,7 +225,8 @@ static void fibre_frame(double edge[2][3], const double fibre[3], double frame[6
 	cau_vec3_to(cau_cross(n, u), frame + 3);
 }
 
-// From the texture where it has a direction, else from the layer's fibre.
+// Sets the frames of a layer's triangles, from the texture if it has a direction, otherwise from
+// the layer's fibre.
 static void make_frames(cau_tissue *tissue, int32_t layer_index, const cau_mesh *mesh)
 {
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
@@ -272,7 +273,7 @@ static cau_status allocate(cau_tissue *tissue, cau_arena *arena, cau_error *erro
 	return CAU_OK;
 }
 
-// The regions of a layer's elements; its materials may name no others.
+// Lists the regions of a layer's elements. The layer's materials may name only these.
 static cau_status find_regions(cau_tissue *tissue, int32_t index, const gathering *work,
                                const cau_scene_def *scene, cau_arena *arena, cau_error *error)
 {

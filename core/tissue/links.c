@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trusses that tie a sheet to the layer under it (section 5.2, last paragraph): from each vertex of
-// the upper layer to the nearest vertices of the lower one within reach. Several to a vertex, so
-// that they resist shear as well.
+// Links between a sheet and the layer under it (section 5.2, last paragraph). Each vertex of the
+// upper layer is linked to the nearest vertices of the lower layer within reach. Several links at a
+// vertex resist shear as well.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +26,8 @@ static void mark_layer(const cau_tissue *tissue, int32_t layer_index, uint8_t *m
 		mark[tissue->tetrahedron[i]] = 1;
 }
 
-// A vertex of the lower layer; these are sorted by x, so that a search goes outwards from its own x
-// and ends where x alone is too far.
+// A vertex of the lower layer. Candidates are sorted by x. A search starts at its own x, goes
+// outwards, and ends where the distance in x alone is too large.
 typedef struct candidate {
 	double x;
 	int32_t vertex;
@@ -60,7 +60,8 @@ static bool is_nearer(double distance, int32_t vertex, double than, int32_t than
 	return distance < than || (distance == than && vertex < than_vertex);
 }
 
-// The nearest vertices to `from` within reach, nearest first, ties by number. Returns how many.
+// Finds the nearest vertices to `from` within reach, nearest first, equal distances by number.
+// Returns how many there are.
 static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *lower,
                        int32_t lower_count, double reach, int32_t most, int32_t *found)
 {

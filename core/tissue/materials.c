@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layers by name, and the materials of layers and elements.
+// Finds layers by name, and the materials of layers and elements.
 #include <string.h>
 
 #include "cautery/assert.h"

@@ -20,7 +20,7 @@ cau_status cau_region_list_make(cau_region_list *list, const int32_t *region, in
 	if (!sorted)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the regions");
 	int32_t kept = 0;
-	for (int32_t i = 0; i < count; i++) // runs of equal regions are long
+	for (int32_t i = 0; i < count; i++) // many consecutive elements have the same region
 		if (!kept || sorted[kept - 1] != region[i])
 			sorted[kept++] = region[i];
 	qsort(sorted, (size_t)kept, sizeof *sorted, compare);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choosing vertices by where they are at rest.
+// Selects vertices by their position at rest.
 #include <string.h>
 
 #include "base/vector.h"
@@ -19,7 +19,7 @@ static double distance(const cau_selection *selection, const double *x)
 	return cau_length(cau_sub(cau_vec3_of(x), cau_vec3_of(selection->center_m)));
 }
 
-// Vertices on an edge that exactly one triangle of the layer (or of any layer) has.
+// Selects the vertices at edges with exactly one triangle of the layer (or of all layers).
 static int32_t select_rim(const cau_tissue *tissue, int32_t layer, uint8_t *chosen)
 {
 	CAU_ASSERT(layer < tissue->layer_count, "layer %d of %d", layer, tissue->layer_count);

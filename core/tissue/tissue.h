@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tissue: the layers of a scene over one vertex array, at rest (sections 3 and 5).
+// A tissue at rest: the layers of a scene with one common vertex array (sections 3 and 5).
 //
-// Everything here is fixed for a session's life but the materials. Removal and motion live
-// elsewhere.
+// All members except the materials stay the same for a session's life. Removal of elements and
+// motion are in other modules.
 #pragma once
 
 #include <stdbool.h>
@@ -13,7 +13,7 @@
 #include "mesh/edge_table.h"
 #include "mesh/mesh.h"
 
-// Regions of a layer's elements in the file that its mesh comes from.
+// Regions of a layer's elements, as in the mesh file.
 typedef struct cau_region_list {
 	int32_t count;
 	int32_t *region; // (count), ascending
@@ -24,18 +24,18 @@ typedef struct cau_tissue_layer {
 	int32_t first_triangle, triangle_count;
 	int32_t first_tetrahedron, tetrahedron_count;
 	int32_t first_link, link_count;
-	int32_t first_vertex, vertex_count; // of its mesh's copy; a membrane `of` fat has the fat's
+	int32_t first_vertex, vertex_count; // its mesh's vertices; a fat's membrane has the fat's
 	cau_region_list regions;
 } cau_tissue_layer;
 
-// gamma of Alexander's method of two stages and second order (SIAM J. Numer. Anal. 14, 1977),
-// 1 - 1/sqrt(2): of the two values that make it L-stable, the one of the smaller error. Both stages
-// have M / (gamma dt)^2, so one A serves them.
+// gamma of Alexander's two-stage method of second order (SIAM J. Numer. Anal. 14, 1977), 1 -
+// 1/sqrt(2). Two values make the method L-stable; this one has the smaller error. Both stages have
+// M / (gamma dt)^2, so one matrix A serves both.
 #define CAU_SDIRK2_GAMMA (1 - 0.70710678118654752440)
 
 typedef struct cau_tissue {
-	double inertia_s; // h of M / h^2 in eq. 4 and in A: the scene's step, or gamma of it
-	bool viscous;     // some layer is
+	double inertia_s; // h of M / h^2 in eq. 4 and in A: the scene's step, or gamma times it
+	bool viscous;     // true if some layer is viscous
 	int32_t vertex_count;
 	double *rest;    // m, (vertex_count x 3)
 	double *mass;    // kg, (vertex_count), lumped
@@ -43,11 +43,11 @@ typedef struct cau_tissue {
 
 	int32_t layer_count;
 	cau_tissue_layer *layer;
-	cau_mesh_report *mesh_report; // of each of the scene's meshes
+	cau_mesh_report *mesh_report; // a report for each of the scene's meshes
 
 	int32_t triangle_count;
 	int32_t *triangle;       // (triangle_count x 3)
-	int32_t *triangle_layer; // (triangle_count)
+	int32_t *triangle_layer; // layer of each triangle, (triangle_count)
 	int32_t *triangle_material;
 	double *triangle_frame;      // (triangle_count x 6): unit t_u, t_v (eq. 9)
 	double *triangle_dm_inverse; // 1/m, (triangle_count x 4), row-major D_m'^-1 (eq. 10)
@@ -67,9 +67,9 @@ typedef struct cau_tissue {
 	int32_t *link_layer;
 	double *link_length; // m
 
-	int32_t hinge_count;     // of sheets with bending stiffness
-	int32_t *hinge_vertex;   // (hinge_count x 4): the shared edge a, b, then the opposite vertices
-	int32_t *hinge_triangle; // (hinge_count x 2)
+	int32_t hinge_count;       // hinges of sheets with bending stiffness
+	int32_t *hinge_vertex;     // (hinge_count x 4): shared edge a, b, then the opposite vertices
+	int32_t *hinge_triangle;   // (hinge_count x 2)
 	double *hinge_coefficient; // (hinge_count x 4), sum 0: e = sum of c_i x_i
 	double *hinge_weight;      // N/m
 
@@ -78,28 +78,28 @@ typedef struct cau_tissue {
 	cau_face_table faces;
 } cau_tissue;
 
-// Builds the tissue of a checked scene. The caller finishes it, on failure too.
+// Builds the tissue of a checked scene. The caller finishes it, also after an error.
 cau_status cau_tissue_make(const cau_scene_def *scene, cau_arena *arena, cau_tissue *tissue,
                            cau_error *error);
 void cau_tissue_finish(cau_tissue *tissue);
 
-// Vertices of a selection, as bytes (vertex_count) set to 1 in `chosen`; returns how many, or -1 if
-// the layer it names is not there.
+// Sets the bytes of the selected vertices in `chosen` (vertex_count) to 1. Returns their number, or
+// -1 if the layer that the selection names does not exist.
 int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selection,
                           uint8_t *chosen);
 
 // materials.c
 int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1: none
 
-// Materials of one element.
+// Return the material of an element.
 const cau_sheet_material *cau_triangle_material(const cau_tissue *tissue, int32_t triangle);
 const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32_t tetrahedron);
-// Layer of a triangle, tetrahedron or link (CAU_PRIMITIVE_*).
+// Returns the layer of a triangle, tetrahedron or link (CAU_PRIMITIVE_*).
 int32_t cau_tissue_layer_of(const cau_tissue *tissue, int primitive, int32_t index);
 const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material);
 
-// element_map.c: elements as the system sees them: rank-r maps G with weight w. The first kinds are
-// the primitives (mesh/edge_table.h), with the same numbers.
+// element_map.c: elements in the form that the system needs: maps G of rank r with a weight w. The
+// first kinds are the primitives (mesh/edge_table.h), with the same numbers.
 typedef enum cau_element_kind {
 	CAU_ELEMENT_TRIANGLE = CAU_PRIMITIVE_TRIANGLE,
 	CAU_ELEMENT_TETRAHEDRON = CAU_PRIMITIVE_TETRAHEDRON,
@@ -116,13 +116,14 @@ typedef struct cau_element_map {
 } cau_element_map;
 
 int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind);
-// The vertices of a triangle, tetrahedron or link (CAU_PRIMITIVE_*), *count of them.
+// Returns the vertices of a triangle, tetrahedron or link (CAU_PRIMITIVE_*); *count gets their
+// number.
 const int32_t *cau_tissue_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
                                       int *count);
 void cau_tissue_element_map(const cau_tissue *tissue, int kind, int32_t index,
                             cau_element_map *map);
-// |G|^2 / vertices of an element, 1/m^2 (1 for links and hinges' own G).
+// Returns |G|^2 / vertex count of an element, 1/m^2 (1 for links and hinges' own G).
 double cau_element_map_scale(const cau_element_map *map);
 
-// Lame's first and second parameters of small strain, Pa.
+// Computes Lame's first and second parameter for small strain, Pa.
 void cau_fat_lame(const cau_fat_material *material, double *lambda, double *mu);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bipolar forceps: two equal jaws that turn by half the opening angle each about a hinge at
-// z = tip_length. Each has a hot plate inside and a cold back; closed, the hot plates meet in the
-// plane x = 0 and the tip lies on that plane, between them.
+// Bipolar forceps: two equal jaws. Each turns by half the opening angle about a hinge at z =
+// tip_length. Each has a hot plate inside and a cold back. Closed, the hot plates meet in the plane
+// x = 0, and the tip is in that plane between them.
 #include "tool/distance.h"
 #include "tool/jaw.h"
 
@@ -30,7 +30,7 @@ static cau_jaw high_jaw(const cau_tool_def *tool, double jaw)
 	return cau_jaw_of(1, tool->tip_length_m, jaw * tool->jaw_open_rad / 2);
 }
 
-// The plate on both jaws.
+// Returns the distance to a plate on both jaws.
 static double pair_distance(const cau_tool_def *tool, double jaw, const cau_plate *plate,
                             cau_vec3 point, cau_vec3 *gradient)
 {

@@ -3,20 +3,21 @@
 
 #include "cautery/assert.h"
 
-// fmax and fmin would be library calls.
+// Avoids fmax, which would be a library call.
 static double greater_of(double a, double b)
 {
 	return a > b ? a : b;
 }
 
-// Any unit vector at right angles to v; e_x where v is zero.
+// Returns a unit vector perpendicular to v; e_x if v is zero.
 static cau_vec3 perpendicular(cau_vec3 v)
 {
 	cau_vec3 axis = fabs(v.x) <= fabs(v.y) ? (cau_vec3){1, 0, 0} : (cau_vec3){0, 1, 0};
 	return cau_unit_or(cau_cross(cau_cross(v, axis), v), (cau_vec3){1, 0, 0});
 }
 
-// Distance to the nearest point of a curve's core, less the tube's radius.
+// The distance to the nearest point of a curve's core, less the tube's radius. If the point is on
+// the core, the gradient is perpendicular to it.
 static double tube_distance(cau_vec3 from_core, double radius, cau_vec3 core_direction,
                             cau_vec3 *gradient)
 {
@@ -38,7 +39,7 @@ double cau_distance_capsule(cau_vec3 point, cau_vec3 a, cau_vec3 b, double radiu
 	return tube_distance(cau_add_scaled(from_a, -s, along), radius, along, gradient);
 }
 
-// Gradient inside the core box: towards the nearest face.
+// The gradient inside the core box: towards the nearest face.
 static cau_vec3 nearest_face(cau_vec3 beyond, cau_vec3 sign)
 {
 	if (beyond.x >= beyond.y && beyond.x >= beyond.z)
@@ -76,7 +77,7 @@ double cau_distance_quarter_arc(cau_vec3 point, cau_vec3 center, double radius, 
 	double in_plane = sqrt(p.x * p.x + p.z * p.z);
 	if (p.x <= 0 && p.z <= 0 && in_plane > 0)
 		core = (cau_vec3){radius * p.x / in_plane, 0, radius * p.z / in_plane};
-	else // beyond the arc's ends the nearer end is nearest
+	else // outside the arc's angle, the nearest point is the nearer end
 		core = p.z < p.x ? (cau_vec3){0, 0, -radius} : (cau_vec3){-radius, 0, 0};
 	cau_vec3 along = {-core.z, 0, core.x};
 	return tube_distance(cau_sub(p, core), tube, along, gradient);

@@ -48,8 +48,9 @@ static cau_vec3 weighted(const cau_vec3 corner[3], const double weight[3])
 	return cau_add_scaled(cau_add_scaled(sum, weight[1], corner[1]), weight[2], corner[2]);
 }
 
-// On from a distance d a point goes d and the tip's radius against the gradient: to the middle of
-// what is round there, from which its nearest point on the triangle is the answer at once.
+// The search looks for the nearest point to the middle of the tool's rounding. From a point at
+// distance d, this middle is d plus the tip's radius against the gradient. Then the nearest point
+// on the triangle is the answer at once.
 enum { STEPS_DOWN = 24 };
 static const double near_enough_m = 1e-7, stays_m = 1e-10;
 
@@ -66,12 +67,13 @@ double cau_tool_face_distance(const cau_tool_def *tool, double jaw, cau_tool_par
 		double far = fmax(least + inside, near_enough_m);
 		cau_nearest_on_triangle(cau_add_scaled(at, -far, *gradient), corner, next_weight);
 		cau_vec3 next = weighted(corner, next_weight);
-		// What is nearest to a point is so to all between that and itself.
+		// A triangle point nearest to a point inside is also nearest to all points between. The
+		// search is at the minimum if it does not move.
 		if (cau_length(cau_sub(next, at)) < stays_m)
 			break;
 		double distance = cau_tool_distance(tool, jaw, part, next, &next_gradient);
 		if (!(distance < least)) {
-			inside /= 4; // too far: what is round there is smaller
+			inside /= 4; // too far: the tool's rounding is smaller there
 			continue;
 		}
 		bool settled = least - distance < near_enough_m;
@@ -91,7 +93,8 @@ double cau_tool_way_out(const cau_tool_def *tool, double jaw, cau_tool_part part
 	CAU_ASSERT(most_m >= 0, "%g m at most", most_m);
 	enum { STEPS_BACK = 48 };
 	double height = most_m;
-	for (int step = 0; step < STEPS_BACK && height > 0; step++) { // from outside back to it
+	// from outside towards the surface
+	for (int step = 0; step < STEPS_BACK && height > 0; step++) {
 		double distance =
 			cau_tool_distance(tool, jaw, part, cau_add_scaled(point, height, out), gradient);
 		if (distance <= near_enough_m)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grasper: two equal cold jaws, as wide as the shaft, that turn by half the opening angle each
-// about a hinge at z = tip_length. Closed, they meet in the plane x = 0 and the tip lies between
-// them.
+// Grasper: two equal cold jaws, as wide as the shaft. Each turns by half the opening angle about a
+// hinge at z = tip_length. Closed, they meet in the plane x = 0, and the tip is between them.
 #include "tool/distance.h"
 #include "tool/jaw.h"
 

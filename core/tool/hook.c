@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Monopolar L hook. The hot wire is a foot along x through the tip and a heel that bends up; a
+// Monopolar L hook. The hot wire is a foot along x through the tip, and a heel that bends up. A
 // cold, insulated neck leads from above the heel back to the axis, where the shaft begins. As on
-// real hooks the foot crosses the shaft's axis near its middle and the heel stands at the shaft's
+// real hooks, the foot crosses the shaft's axis near its middle, and the heel is at the shaft's
 // side.
 #include "tool/distance.h"
 #include "tool/family.h"
 
-// Toe and heel are at x = +- half_foot.
+// Returns half the foot's length: toe and heel are at x = +- half_foot.
 static double half_foot(const cau_tool_def *tool)
 {
 	return tool->tip_length_m / 2;
 }
 
-// Radius of the heel's centre line.
+// Returns the radius of the heel's centre line.
 static double bend_of(const cau_tool_def *tool)
 {
 	return tool->tip_length_m / 4;
 }
 
 typedef struct hook_neck {
-	double radius; // m
+	double radius; // radius of the neck, m
 	cau_vec3 low;  // one neck radius above the hot heel
 	cau_vec3 high; // on the axis, where the shaft's core begins
 } hook_neck;

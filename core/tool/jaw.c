@@ -57,9 +57,9 @@ double cau_jaw_plate_distance(const cau_jaw *jaw, const cau_plate *plate, cau_ve
 	return distance;
 }
 
-// A corner (x, z) turns on a circle about the hinge, and its distance from the ball's centre below
-// the hinge grows with the angle, until it is straight above: the greatest angle decides. Corners
-// above the hinge are taken to come straight above.
+// A corner (x, z) turns on a circle about the hinge. Its distance from the ball's centre below the
+// hinge grows with the angle until the corner is straight above the hinge. So the distance at the
+// greatest angle counts. Corners that start above the hinge count as straight above.
 cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *plate,
                              double center_z)
 {

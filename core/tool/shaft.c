@@ -3,7 +3,7 @@
 #include "tool/distance.h"
 #include "tool/family.h"
 
-// The ends of the shaft's core; they coincide where the shaft is shorter than it is wide.
+// Finds the ends of the shaft's core. They coincide if the shaft is shorter than it is wide.
 static void shaft_core(const cau_tool_def *tool, double start, cau_vec3 *low, cau_vec3 *high)
 {
 	double radius = tool->shaft_radius_m;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ultrasonic shears: a hot blade, a needle that stands still on the axis with its lower end around
-// the tip, and a cold clamping jaw on the side of +x that turns by the whole opening angle about a
-// hinge at z = tip_length. Closed, the clamp lies against the blade at x = hot_radius.
+// Ultrasonic shears. The hot blade is a needle on the axis that does not turn, with its lower end
+// around the tip. The cold clamping jaw is on the side of +x and turns by the whole opening angle
+// about a hinge at z = tip_length. Closed, the clamp touches the blade at x = hot_radius.
 #include "tool/distance.h"
 #include "tool/jaw.h"
 
@@ -68,12 +68,12 @@ static bool shears_between(const cau_tool_def *tool, double jaw, cau_vec3 point,
 {
 	cau_jaw blade = cau_jaw_of(-1, tool->tip_length_m, 0);
 	cau_jaw clamp = clamp_jaw(tool, jaw);
-	double face = tool->hot_radius_m; // of the blade too, which is on the other side of x = 0
+	double face = tool->hot_radius_m; // the blade's face is at -face, on the other side of x = 0
 	return cau_jaws_hold(&blade, -face, &clamp, face, tool->hot_radius_m, tool->tip_length_m,
 	                     half_thickness(tool), point, coordinate);
 }
 
-// The blade stands.
+// Only the clamp turns.
 static cau_tool_jaws shears_jaws(const cau_tool_def *tool)
 {
 	return (cau_tool_jaws){

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Spatula: a hot blade in the plane y = 0, rounded, its lower end around the tip.
+// Spatula: a hot, rounded blade in the plane y = 0. Its lower end is around the tip.
 #include "tool/distance.h"
 #include "tool/family.h"
 

@@ -6,7 +6,7 @@
 #include "tool/family.h"
 
 enum { TRACE_STEPS = 1024 };
-static const double TOUCH_M = 1e-6; // nearer than this meets
+static const double TOUCH_M = 1e-6; // a segment nearer than this counts as meeting
 
 static const cau_tool_family *family_of(const cau_tool_def *tool)
 {
@@ -109,9 +109,9 @@ cau_vec3 cau_tool_turn_with_jaw(const cau_tool_jaws *jaws, cau_vec3 point, doubl
 	                  jaws->hinge_m - arm * cos(angle_rad)};
 }
 
-// A part's distance is 1-Lipschitz, so from a point at distance d nothing can be met within d: both
-// ends of the segment are moved inwards by their distances until one meets the part or they pass
-// each other.
+// A part's distance d is 1-Lipschitz, so no point within d can be inside the part. The function
+// moves both ends of the segment inwards by their distances until one end meets the part or the
+// ends pass each other.
 bool cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
                             cau_vec3 b)
 {

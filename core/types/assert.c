@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of a program that broke its own rules. The only place in core and protocol that writes to
-// the console or ends the process. Release builds come here only for a safety rule that is
-// broken outside every guard.
+// Ends a program that broke its own rules. Only this file of core and protocol writes to the
+// console or ends the process. A release build comes here only for a safety rule that is broken
+// outside every guard.
 #include "cautery/assert.h"
 
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_BYTES = 512 }; // of the sentence; longer ones are cut
+enum { WORDS_BYTES = 512 }; // size of the message; longer messages are cut
 
 void cau_assert_failed(const char *condition, const char *file, int line, const char *function,
                        const char *format, ...)
@@ -40,7 +40,8 @@ void cau_rule_leave(cau_rule_guard *guard)
 	innermost = guard->outer;
 }
 
-// The place without the folders: who reads a log knows no build tree.
+// Returns the file's name without its folders, because the readers of a log do not know the build
+// tree.
 static const char *base_of(const char *file)
 {
 	const char *slash = strrchr(file, '/');

@@ -6,16 +6,17 @@
 
 #include "cautery/assert.h"
 
-// A thinner film clings to wet tissue. No measurement was found; it is of the order of the layer of
-// liquid that stays on a wall which is drained.
+// A film thinner than this clings to wet tissue. No measurement was found. The value has the order
+// of the liquid layer that stays on a drained wall.
 static const double clinging_m = 5e-5;
-// A drop on a level surface that it wets half is no higher: sqrt(2) times the capillary length,
-// which is sqrt(gamma / (rho g)) with gamma = 0.056 N/m. More drips off.
+// Greatest depth of blood; more drips off. It is the height of a drop on a level surface that it
+// half wets: sqrt(2) times the capillary length sqrt(gamma / (rho g)), with gamma = 0.056 N/m.
 static const double deepest_m = 3.3e-3;
-// In a step no pair of vertices comes nearer to a level than by this share: so no wave begins.
+// In one step the difference in level between two vertices decreases by at most this share, so that
+// no wave begins.
 static const double levelled_share = 0.25;
-// Blood of which no more than this share moves in a second is at rest: a film thins ever more
-// slowly.
+// If at most this share of the blood moves in a second, the blood is at rest. A film never stops
+// getting thinner, but ever more slowly.
 static const double still_per_s = 1e-3;
 
 cau_status cau_blood_create(cau_blood *blood, const cau_tissue *tissue, cau_arena *arena,
@@ -77,8 +78,8 @@ void cau_blood_add(cau_blood *blood, const uint8_t *visible, const double *posit
 	blood->any = true;
 }
 
-// Volume that flows along an edge from `up` to the lower end. The film's speed is that of a laminar
-// one on a slope; its cross section is the film times the distance between vertices.
+// Returns the volume that flows along an edge from `up` to the lower end. The film has the speed of
+// a laminar film on a slope. The width of the flow is the distance between vertices.
 static double film_m3(const cau_blood *blood, int32_t up, double fall_m, double way_m,
                       double gravity_m_s2, double duration_s)
 {

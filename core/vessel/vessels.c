@@ -7,30 +7,32 @@
 #include "base/hash.h"
 #include "cautery/assert.h"
 
-// Stations are so much closer than the radius: a cut is as wide as a wire, and is not to pass
-// between two.
+// Stations for each radius of length. A cut can be as thin as a wire, and must not pass between two
+// stations.
 enum { STATIONS_A_RADIUS = 4 };
 static const double least_spacing_m = 1e-4;
-// A point counts as within a tetrahedron, or on its surface, if no weight is less.
+// A point is inside a tetrahedron, or on its surface, if none of its weights is below this.
 static const double outside = -1e-6;
 
-// Loss of the birefringence of collagen (rat tail tendon): a first-order reaction with ln A = 130
-// and 89 kcal/mol (Maitland and Walsh 1997).
+// Rate of fusion, taken from the loss of birefringence of collagen (rat tail tendon). It is a
+// first-order reaction with ln A = 130 and 89 kcal/mol (Maitland and Walsh 1997).
 static const double fusion_log_rate = 130;
 static const double fusion_energy_j_mol = 89 * 4184.0;
 static const double gas_j_molk = 8.314462618, zero_k = 273.15;
-// Tensile strength of two walls that are fused. Assumed: a third of that of a fresh artery, about
-// 1.5 MPa. No measurement of a fused wall was found.
+// Tensile strength of two fused walls. Assumed: a third of the strength of a fresh artery, which is
+// about 1.5 MPa. No measurement of a fused wall was found.
 static const double fused_pa = 5e5;
-// Of the width of a round hole, over that of the solid around it (Kirsch 1898, plane stress).
+// Strain of the width of a round hole, over the strain of the solid around the hole (Kirsch 1898,
+// plane stress).
 static const double hole_strain = 3;
-// Of an orifice with a sharp edge: the usual value.
+// Discharge coefficient of an orifice with a sharp edge: the usual value.
 static const double discharge = 0.6;
 static const double pi = 3.14159265358979323846;
 
-// ---- where a vessel is
+// ---- position of a vessel
 
-// Barycentric coordinates of a place, and the least of them. It stops once one is at most `best`.
+// Computes the barycentric coordinates of a point, and returns the least. Stops early once one is
+// at most `best`.
 static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec3 at, double best,
                           double weight[4])
 {
@@ -47,8 +49,8 @@ static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec
 	return fmin(least, weight[0]);
 }
 
-// Finds the tetrahedron of the layer that contains the place, or else the one in which its least
-// coordinate is greatest. Returns that coordinate.
+// Finds the tetrahedron of the layer that contains the point. If there is none, finds the
+// tetrahedron in which the point's least coordinate is greatest. Returns that least coordinate.
 static double embed(const cau_tissue *tissue, const cau_tissue_layer *layer, cau_vec3 at,
                     cau_tube_point *point)
 {
@@ -119,7 +121,7 @@ static int32_t station_count(const cau_vessel_def *def)
 	return 1 + (int32_t)ceil(length_m(def) / spacing_m(def));
 }
 
-// Stations at equal distances along the line.
+// Makes stations at equal distances along the line.
 static cau_status make_stations(cau_vessels *vessels, int32_t index, cau_error *error)
 {
 	const cau_vessel_def *def = &vessels->def[index];
@@ -200,7 +202,7 @@ cau_status cau_vessels_create(cau_vessels *vessels, const cau_tissue *tissue,
 	return status;
 }
 
-// ---- what has become of it
+// ---- present state of each station
 
 static int32_t cell_of(const cau_tissue_cells *cells, const cau_tube_point *point)
 {
@@ -219,8 +221,8 @@ static bool is_gone(const cau_vessel_surroundings *around, const cau_tube_point 
 	return cell >= 0 && around->cells->bioheat.cells.severed[cell];
 }
 
-// By the tissue's compression across the vessel: a round hole loses so many times the strain around
-// it.
+// Returns the open share of the lumen, from the compression of the tissue across the vessel. A
+// round hole loses hole_strain times the strain around it.
 static double open_share(const cau_tissue *tissue, const cau_station *station,
                          const double *position)
 {
@@ -250,7 +252,7 @@ static void look_at_station(cau_vessels *vessels, int32_t index,
 	for (int i = 1; i < CAU_STATION_POINTS; i++)
 		vessels->holes[index] += is_gone(around, &station->point[i]);
 	if (vessels->holes[index] == CAU_STATION_POINTS - 1)
-		vessels->parted[index] = 1; // no wall is left
+		vessels->parted[index] = 1; // the whole wall is gone
 }
 
 // ---- seals
@@ -260,7 +262,8 @@ double cau_seal_strength(const cau_vessel_def *def, double fusion)
 	return fused_pa * -expm1(-fusion) * def->wall_m / def->radius_m;
 }
 
-// The coldest part of the wall that is left: a seal is as good as that. degC
+// Returns the temperature of the coldest part of the wall that is left, degC. A seal is as strong
+// as its weakest part.
 static double wall_temperature(const cau_tissue_cells *cells, const cau_station *station)
 {
 	double coldest = INFINITY;
@@ -288,7 +291,7 @@ static void fuse(cau_vessels *vessels, const cau_vessel_surroundings *around)
 
 // ---- bleeding
 
-// p = R Q + rho / 2 (Q / (C A))^2: laminar flow through the tube that supplies it, and an orifice.
+// p = R Q + rho / 2 (Q / (C A))^2: laminar flow through the supplying tube, then an orifice.
 double cau_vessel_outflow(const cau_vessel_def *def, double pressure_pa, double open)
 {
 	double lumen = def->radius_m - def->wall_m, area = pi * lumen * lumen * open;
@@ -301,21 +304,21 @@ double cau_vessel_outflow(const cau_vessel_def *def, double pressure_pa, double 
 
 // The flow of blood from one end of a vessel.
 typedef struct run {
-	double flow_m3_s;    // that leaves the vessel
-	double open;         // area through which it leaves, over the lumen's
+	double flow_m3_s;    // flow that leaves the vessel
+	double open;         // area through which the flow leaves, over the lumen's area
 	double best_seal_pa; // strength of the best seal between this end and the cut, or the other end
 	bool sealed, shut;   // a seal, or compression, stops the flow
 } run;
 
-typedef struct vessel_end { // that the blood comes from
+typedef struct vessel_end { // the end of a vessel from which blood comes
 	const cau_vessel_def *def;
 	double pressure_pa;
-	bool shed; // the blood lies on the tissue
+	bool shed; // shed blood is added to the tissue's surface
 } vessel_end;
 
-// Blood leaves the vessel at a station, through a share of the lumen's area. All openings share the
-// tube that supplies them: each adds the flow by which its area raises that of all before. With
-// `shed`, the blood lies on the tissue.
+// Lets blood leave the vessel at a station, through a share of the lumen's area. All openings share
+// the supplying tube. So each opening adds the flow by which its area raises the flow of all
+// openings before. With `shed`, the blood is added to the tissue's surface.
 static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, int32_t station,
                   const vessel_end *end, double share, run *out)
 {
@@ -329,8 +332,8 @@ static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, i
 	              flow_m3_s * around->step_s);
 }
 
-// Follows the blood from one end: `step` is 1 or -1. Blood leaves where the vessel is parted, and
-// through holes of the wall. A seal that holds, or a shut lumen, ends its way.
+// Follows the blood from one end, in direction `step`, 1 or -1. Blood leaves where the vessel is
+// parted, and through holes of the wall. The blood stops at a seal that holds, or at a shut lumen.
 static run follow(cau_vessels *vessels, int32_t index, int step, double pressure_pa,
                   const cau_vessel_surroundings *around, bool shed)
 {
@@ -357,7 +360,7 @@ static run follow(cau_vessels *vessels, int32_t index, int step, double pressure
 	return out;
 }
 
-// Share of the lumen's area through which blood can pass.
+// Returns the share of the lumen's area through which blood can pass.
 static float passable(const cau_vessels *vessels, const cau_vessel_def *def, int32_t station)
 {
 	double seal = cau_seal_strength(def, vessels->fusion[station]);
@@ -382,7 +385,7 @@ static void show_points(const cau_vessels *vessels, const cau_vessel_def *def, c
 			if (vessels->parted[vessel->first + i])
 				point->open = -1;
 		if (next >= vessel->count && k < vessel->count - 1)
-			k = vessel->count - 1 - stride; // the last station ends the line
+			k = vessel->count - 1 - stride; // the last station ends the shown line
 	}
 }
 
@@ -396,7 +399,7 @@ static void describe(cau_vessels *vessels, int32_t index, const run *from, const
 		cut |= vessels->parted[k];
 		pierced |= vessels->holes[k] > 0 && !vessels->parted[k];
 	}
-	bool both = cut && def->end_pressure_pa > 0; // both ends hold blood back
+	bool both = cut && def->end_pressure_pa > 0; // both ends need a seal
 	vessel->state.bleeding_m3_s = from->flow_m3_s + back->flow_m3_s;
 	vessel->state.burst_pa =
 		both ? fmin(from->best_seal_pa, back->best_seal_pa) : from->best_seal_pa;

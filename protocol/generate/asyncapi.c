@@ -146,7 +146,7 @@ static void write_needed(cau_json_writer *writer, const char *name)
 	cau_json_close(writer);
 }
 
-// A member that is needed unless another is there.
+// Writes that a member is required unless another member is present.
 static void write_alternatives(cau_json_writer *writer, const type *of)
 {
 	for (int i = 0; i < of->property_count; i++) {
@@ -375,7 +375,8 @@ static void write_operation(cau_json_writer *writer, const cau_method_info *info
 	cau_json_close(writer);
 }
 
-// What the binary frames say of each channel, for decoders that read tables: an extension.
+// Writes the table of channels in binary frames as an extension, for decoders that are driven by
+// tables.
 static void write_stream_channels(cau_json_writer *writer)
 {
 	cau_json_open(writer, "x-stream-channels", '[');

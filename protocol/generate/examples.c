@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worked examples, made by the codecs themselves: three vertices and one face, one tool.
+// Worked examples, produced by the codecs themselves: three vertices, one face, one tool.
 #include <stdlib.h>
 #include <string.h>
 
@@ -239,7 +239,8 @@ static void say_commands(FILE *out, cau_rpc_buffer *to)
 	say(out, ">", cau_rpc_write_notification(to, CAU_METHOD_HEARTBEAT, &alive, NULL), to);
 }
 
-// What a program does wrong, and the answer; the writer refuses to write such a thing.
+// Writes a wrong request and its answer. The request is a literal, because the codec refuses to
+// write it.
 static void say_a_mistake(FILE *out, cau_rpc_buffer *to)
 {
 	cau_rpc_id id = id_of(5);

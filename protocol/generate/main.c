@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes everything that is made from the message tables and the codecs: generate DIRECTORY.
+// generate DIRECTORY: writes all files that are generated from the message tables and the codecs.
 #include <stdlib.h>
 
 #include "generate/write.h"

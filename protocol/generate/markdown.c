@@ -11,7 +11,7 @@ static const char *const role_names[] = {
 #undef X
 };
 
-// A link to the type's heading, which GitHub and others make lower-case.
+// Writes a link to the type's heading. GitHub and others make the anchor lower-case.
 static void write_link(FILE *out, const char *type_name)
 {
 	fprintf(out, "[%s](#", type_name);
@@ -83,7 +83,7 @@ static void write_value(FILE *out, const property *of)
 	}
 }
 
-// Table cells: | would end them.
+// Writes text into a table cell. A | would end the cell, so it is escaped.
 static void write_meaning(FILE *out, const char *text)
 {
 	for (; *text; text++)
@@ -195,7 +195,7 @@ static void write_channels(FILE *out)
 	}
 }
 
-// The rows of scene.h that clients choose from, with their numbers in frames.
+// Writes the tables of scene.h that clients choose from, with their numbers in frames.
 static void write_descriptors(FILE *out)
 {
 	int number = 0;

@@ -11,7 +11,7 @@
 
 // ---- building blocks ----------------------------------------------------------------------------
 
-// session_summary -> SessionSummary, tool.add -> ToolAdd
+// Converts a name to PascalCase: session_summary to SessionSummary, tool.add to ToolAdd.
 static void pascal(char *to, size_t bytes, const char *from)
 {
 	bool start = true;
@@ -120,7 +120,8 @@ static void add_field(type *to, const cau_field *field, const void *defaults)
 			(const double *)(const void *)((const char *)defaults + field->offset);
 }
 
-// Fields that a kind has; kind -1: those of every kind, required where no kind lacks them.
+// Adds the fields of a kind. Kind -1 adds the fields of all kinds; then only fields that every kind
+// has can be required.
 static void add_record(type *to, const cau_record *record, const void *defaults, int kind)
 {
 	for (int i = 0; i < record->field_count; i++) {

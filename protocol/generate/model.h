@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every JSON type of the wire in one form: objects of messages.def, commands, scenes. What is
-// printed for people, other languages and machines all comes from here.
+// All JSON types of the protocol in one form: objects of messages.def, commands and scenes. The
+// pages, the code for other languages and AsyncAPI are all generated from this model.
 #pragma once
 
 #include "rpc/message_table.h"
@@ -16,8 +16,8 @@ typedef enum property_kind {
 	PROPERTY_NAME,
 	PROPERTY_HEX64,
 	PROPERTY_CHOICE,
-	PROPERTY_CHOICES, // a set
-	PROPERTY_OBJECT,  // of type `type`
+	PROPERTY_CHOICES, // a set of words
+	PROPERTY_OBJECT,  // an object of type `type`
 	PROPERTY_OBJECTS, // array of at most `count`
 } property_kind;
 
@@ -25,14 +25,14 @@ typedef struct property {
 	const char *name;
 	property_kind kind;
 	bool required;
-	const char *unless; // with this member it is not needed, and without it is; or NULL
+	const char *unless; // a member without which this one is required, or NULL
 	double least, most;
 	int32_t count, least_count;
 	const cau_choices *choices;
-	int32_t fixed; // CHOICE: the one word allowed, or -1
+	int32_t fixed; // CHOICE: the only allowed word, or -1
 	const char *type;
 	const char *unit, *meaning;
-	const double *default_value; // NUMBER of a scene or command, or NULL
+	const double *default_value; // default of a NUMBER in a scene or command, or NULL
 } property;
 
 enum { NAME_BYTES = 48, PROPERTIES_MAX = 48, TYPES_MAX = 128, VARIANTS_MAX = 4 };
@@ -40,20 +40,21 @@ enum { NAME_BYTES = 48, PROPERTIES_MAX = 48, TYPES_MAX = 128, VARIANTS_MAX = 4 }
 typedef struct type {
 	char name[NAME_BYTES]; // PascalCase
 	const char *meaning;
-	bool strict; // other members are refused
+	bool strict; // unknown members are refused
 	int property_count;
 	property properties[PROPERTIES_MAX];
-	int variant_count; // a union: one of these types, and no properties
+	int variant_count; // number of types in a union, which has no properties
 	char variants[VARIANTS_MAX][NAME_BYTES];
 } type;
 
 typedef struct model {
 	int type_count;
 	type types[TYPES_MAX];
-	char params[CAU_METHOD_COUNT][NAME_BYTES];  // type of each method's params
-	char results[CAU_METHOD_COUNT][NAME_BYTES]; // and result; empty: none
+	char params[CAU_METHOD_COUNT][NAME_BYTES]; // type of each method's params
+	// type of each method's result; empty if there is none
+	char results[CAU_METHOD_COUNT][NAME_BYTES];
 } model;
 
-// Fills *made, which is large: keep it static. Aborts if a bound above is too small.
+// Fills *made, which is large, so make it static. Aborts if one of the bounds above is too small.
 void model_make(model *made);
 const type *model_find(const model *of, const char *name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wire in Python: types, and a class with a function for each request.
+// Writes the protocol in Python: types, and a class with a function for each request.
 #include <string.h>
 
 #include "cautery/frame_codec.h"
@@ -57,7 +57,7 @@ static void write_value_type(FILE *out, const property *of)
 	}
 }
 
-// A word of Python's own, which is a member of the wire too.
+// True for a Python keyword that is also the name of a member.
 static bool is_keyword(const char *name)
 {
 	static const char *const keywords[] = {"as", "class", "from", "global", "in", "is", "lambda"};
@@ -85,7 +85,7 @@ static void write_range(FILE *out, const property *of)
 		        has_unit ? of->unit : "");
 }
 
-// In a class, or in a dictionary, where any word may be a key.
+// Writes a member in a class, or in a dictionary, where any word may be a key.
 static void write_member(FILE *out, const property *of, bool in_class)
 {
 	fprintf(out, "\n    # %s", of->meaning);

@@ -197,7 +197,7 @@ static void write_lists(FILE *out)
 	fputs("] as const;\n", out);
 }
 
-// What viewers ask of a shape, and what a material is chosen from.
+// Writes the traits of tool shapes, and the choices for materials.
 static void write_descriptors(FILE *out)
 {
 	fputs("\n/** What a tool of a shape has. */\n"
@@ -221,7 +221,7 @@ static void write_descriptors(FILE *out)
 	fputs("] as const;\n", out);
 }
 
-// Numbers with range, unit and default, for panels that edit them.
+// Writes numbers with range, unit and default, for panels that edit them.
 static void write_parameters(FILE *out, const model *from, const char *key, const char *name)
 {
 	const type *of = model_find(from, name);

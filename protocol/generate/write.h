@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The generated files, each from the model or, the examples, from the codecs.
+// Writers of the generated files. They use the model; the examples use the codecs.
 #pragma once
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command may hold.
+// The members that a command may have.
 #include "cautery/assert.h"
 #include "json/field_macros.h"
 #include "json/fields.h"
@@ -12,7 +12,7 @@ CHOICES(material_kind_choices, CAU_LAYER_TABLE)
 	(KIND(TOOL_REMOVE) | KIND(TOOL_CONFIGURE) | KIND(TOOL_MOVE) | KIND(TOOL_ENERGIZE) |            \
 	 KIND(TOOL_GRASP) | KIND(TOOL_RELEASE) | KIND(TOOL_HOLD))
 
-// clang-format off: rows of tables
+// clang-format off: tables
 static const cau_field command_fields[] = {
 	{.name = "command",
      .type = CAU_FIELD_CHOICE,
@@ -30,7 +30,7 @@ static const cau_field command_fields[] = {
 #undef KIND
 RECORD(cau_command_record, "a command", command_fields, &command_choices)
 
-// Members inside the union, told from the struct that holds them.
+// Declares a member inside the union, with its offset from the struct that contains it.
 #define INSIDE(member, group)                                                                      \
 	.name = #member,                                                                               \
 	.offset = offsetof(cau_command, as.group.member) - offsetof(cau_command, as.group)

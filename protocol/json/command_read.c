@@ -7,7 +7,7 @@
 #include "json/fields.h"
 #include "json/instrument.h"
 
-// A new material starts from the defaults of its kind of layer, which must be read before it.
+// Reads the kind first, then fills a new material with the defaults of that kind of layer.
 static void read_material_kind(cau_reader *reader, const cJSON *value, cau_command *command)
 {
 	cau_read_field(reader, value, &cau_material_record.fields[0], &command->as.material);
@@ -16,7 +16,7 @@ static void read_material_kind(cau_reader *reader, const cJSON *value, cau_comma
 		cau_default_sheet_material(&command->as.material.sheet, kind);
 }
 
-// Shape and sizes, those of the instrument that is named where they are absent.
+// Reads shape and sizes of a tool. Absent members are those of the named instrument.
 static void read_tool(cau_reader *reader, const cJSON *value, cau_command *command)
 {
 	cau_tool_choice choice;

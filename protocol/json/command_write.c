@@ -15,7 +15,8 @@ static bool kinds_exist(const cau_command *command)
 void cau_write_command(cau_json_writer *writer, const char *key, const cau_command *command)
 {
 	cau_part parts[CAU_MAX_PARTS];
-	cau_command *shared = (cau_command *)command; // parts are not const; writing leaves it alone
+	// A part's base is not const, but writing does not change it.
+	cau_command *shared = (cau_command *)command;
 	if (!kinds_exist(command)) {
 		cau_json_fail(writer, CAU_BAD_VALUE, "the kind of the command does not exist");
 		return;

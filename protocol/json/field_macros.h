@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shorthand for the tables of fields. STRUCT is defined as the struct whose fields follow. All but
-// SCALAR go inside braces, where more members (.required, .kinds) may follow.
+// Macros for the tables of fields. STRUCT must be defined as the struct whose fields follow. All
+// macros except SCALAR are used inside braces, where more members (.required, .kinds) may follow.
 #pragma once
 
 #define CHOICE_NAME(code, json_name) json_name,
@@ -9,7 +9,7 @@
 	static const cau_choices variable = {variable##_names,                                         \
 	                                     (int)(sizeof variable##_names / sizeof(char *))};
 
-// The same of a table X(code, word, ...) whose words are no strings.
+// Defines choices from a table X(code, word, ...) whose words are identifiers, not strings.
 #define CHOICE_WORD(code, word, ...) #word,
 #define CHOICES_OF_WORDS(variable, TABLE)                                                          \
 	static const char *const variable##_names[] = {TABLE(CHOICE_WORD)};                            \
@@ -22,7 +22,7 @@
 
 #define SCALAR_OF(member, least_, most_, unit_, meaning_)                                          \
 	PLACE(member), .type = CAU_FIELD_NUMBER, RANGE(least_, most_), MEANS(unit_, meaning_)
-// A row of a table X(field, default, least, most, unit, meaning) of scene.h.
+// A field from an entry of a table X(field, default, least, most, unit, meaning) of scene.h.
 #define SCALAR(member, default_, least_, most_, unit_, meaning_)                                   \
 	{SCALAR_OF(member, least_, most_, unit_, meaning_)},
 #define VECTOR(member, count_, least_, most_, unit_, meaning_)                                     \

@@ -10,12 +10,13 @@
 
 enum { PROFILE_BYTES = 1 << 16, INSTRUMENTS = 64, NUMBERS = 64 };
 
-// What a mode may set of a tool, beside the range of its power. The ranges are a tool's.
+// The settings of a tool that a mode may set, besides the range of its power. They have the ranges
+// of a tool's members.
 static const char *const settings[] = {"power_w", "peak_v", "crest_factor", "current_max_a",
                                        "load_rise_off"};
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 
-// clang-format off: rows of tables
+// clang-format off: tables
 #define STRUCT cau_choice_names
 static const cau_field choice_fields[] = {
 	{OTHER(
@@ -49,14 +50,15 @@ static RECORD(mode_record, "a mode", mode_fields, NULL)
 	// ---- sources
     // ------------------------------------------------------------------------------------
 
-	// A range has the source of the number inside it.
+	// The limits of a range need no source, because the number inside the range has one.
 	static bool has_source(const cJSON *member)
 {
 	return cJSON_IsNumber(member) && strcmp(member->string, "power_least_w") != 0 &&
 	       strcmp(member->string, "power_most_w") != 0;
 }
 
-// Each number of `numbers` has a text in the member `sources` of `object`, which has no other.
+// Checks that each number in `numbers` has a text in the member `sources` of `object`, and that
+// `sources` has no other members.
 static void read_sources(cau_reader *reader, const cJSON *object, const cJSON *numbers)
 {
 	const char *names[NUMBERS];
@@ -193,7 +195,7 @@ cau_status cau_instrument_read(int32_t index, cau_instrument *instrument, cau_er
 	return cau_instrument_from_json(file->name, file->text, file->bytes, instrument, error);
 }
 
-// ---- choosing -----------------------------------------------------------------------------------
+// ---- choosing an instrument ---------------------------------------------------------------------
 
 static int read_instrument_name(cau_reader *reader, const cJSON *value)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tool's `instrument` and `mode`, inside the object that describes the tool.
+// Reads the members `instrument` and `mode` of the object that describes a tool.
 #pragma once
 
 #include "cautery/instrument.h"
@@ -10,22 +10,24 @@ typedef struct cau_choice_names {
 } cau_choice_names;
 
 typedef struct cau_tool_choice {
-	cau_choice_names names; // as the object has them
+	cau_choice_names names; // names as the object has them
 	bool chosen;
-	cau_instrument_mode mode; // if chosen
+	cau_instrument_mode mode; // only if chosen
 } cau_tool_choice;
 
 extern const cau_record cau_instrument_record; // cau_choice_names
 
-// Before the members of a tool are read: gives it those of the instrument that `object` names.
+// Call it before the members of a tool are read. It gives the tool the members of the instrument
+// that `object` names.
 void cau_begin_tool(cau_reader *reader, const cJSON *object, cau_tool_def *tool,
                     cau_tool_choice *choice);
-// After they were read: fails if its power is not one that the mode has.
+// Call it after the members of a tool are read. It fails if the tool's power is outside the mode's
+// range.
 void cau_end_tool(cau_reader *reader, const cau_tool_def *tool, const cau_tool_choice *choice);
 
-// The profiles that the build contains, by name.
+// The profiles in the build, sorted by name.
 typedef struct cau_instrument_file {
-	const char *name; // of the file, without its ending
+	const char *name; // file name without its ending
 	const char *text;
 	size_t bytes;
 } cau_instrument_file;

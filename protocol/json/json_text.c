@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strict scan: a pushdown automaton over bytes, without recursion and without allocation.
+// The strict scan is a pushdown automaton over bytes, without recursion and without allocation.
 #include "cautery/json_text.h"
 
 #include <locale.h>
@@ -14,7 +14,7 @@
 
 typedef struct level {
 	bool object;
-	size_t first_key; // index into keys of the object's first
+	size_t first_key; // index in `keys` of the object's first key
 } level;
 
 typedef struct scanner {
@@ -23,8 +23,8 @@ typedef struct scanner {
 	size_t at;
 	size_t depth;
 	level levels[CAU_JSON_MAX_DEPTH];
-	size_t key_count;                    // of all open objects
-	size_t keys[CAU_JSON_MAX_OPEN_KEYS]; // byte after each key's opening quote
+	size_t key_count;                    // number of keys of all open objects
+	size_t keys[CAU_JSON_MAX_OPEN_KEYS]; // position after each key's opening quote
 	cau_error *error;
 } scanner;
 
@@ -64,7 +64,7 @@ static void skip_space(scanner *s)
 
 // ---- strings --------------------------------------------------------------------------------
 
-// The four hexadecimal digits at `at`, or -1.
+// Returns the value of the four hexadecimal digits at `at`, or -1.
 static int hex4(const char *text, size_t at, size_t bytes)
 {
 	int code = 0;
@@ -83,7 +83,8 @@ static int hex4(const char *text, size_t at, size_t bytes)
 	return code;
 }
 
-// At the `u` of an escape: checks it and a surrogate pair's second half, and steps over.
+// Checks a \u escape and the second half of a surrogate pair, and advances past them. The scanner
+// is at the `u`.
 static cau_status scan_unicode_escape(scanner *s)
 {
 	CAU_ASSERT(peek(s) == 'u', "an escape at byte %zu that is none", s->at);
@@ -110,7 +111,7 @@ static cau_status scan_unicode_escape(scanner *s)
 static cau_status scan_escape(scanner *s)
 {
 	CAU_ASSERT(peek(s) == '\\', "an escape at byte %zu that is none", s->at);
-	s->at++; // the backslash
+	s->at++; // skip the backslash
 	int c = peek(s);
 	if (c == 'u')
 		return scan_unicode_escape(s);
@@ -120,7 +121,7 @@ static cau_status scan_escape(scanner *s)
 	return CAU_OK;
 }
 
-// At the opening quote; ends after the closing one.
+// Scans a string from its opening quote and stops after its closing quote.
 static cau_status scan_string(scanner *s)
 {
 	CAU_ASSERT(peek(s) == '"', "a string at byte %zu that is none", s->at);
@@ -147,8 +148,8 @@ static cau_status scan_string(scanner *s)
 	}
 }
 
-// The next character of a string that was scanned already, its escapes resolved, into out[4].
-// Returns its bytes and moves *at; 0 at the closing quote.
+// Resolves the next character of a scanned string, including escapes, into out[4]. Returns its
+// length and advances *at; returns 0 at the closing quote.
 static size_t next_character(const scanner *s, size_t *at, char out[4])
 {
 	CAU_ASSERT(*at < s->bytes, "a character at byte %zu of %zu", *at, s->bytes);
@@ -224,7 +225,8 @@ static cau_status scan_digits(scanner *s, const char *reason)
 	return CAU_OK;
 }
 
-// The value of a number that fits the grammar. The C library reads the locale's decimal point.
+// Returns the value of a number that fits the grammar. strtod needs the decimal point of the
+// locale.
 static double number_value(const char *text, size_t bytes)
 {
 	CAU_ASSERT(bytes > 0 && bytes <= CAU_JSON_MAX_NUMBER_BYTES, "a number of %zu bytes", bytes);
@@ -304,7 +306,7 @@ static void close_level(scanner *s)
 	s->at++;
 }
 
-// A name and its colon.
+// Scans a name and its colon.
 static cau_status scan_member_start(scanner *s)
 {
 	skip_space(s);
@@ -320,7 +322,7 @@ static cau_status scan_member_start(scanner *s)
 	return CAU_OK;
 }
 
-// After a value: closes levels, and stops before the next value or at the end (*done).
+// Continues after a value: closes levels, then stops before the next value or at the end (*done).
 static cau_status scan_after_value(scanner *s, bool *done)
 {
 	for (;;) {
@@ -341,7 +343,8 @@ static cau_status scan_after_value(scanner *s, bool *done)
 	}
 }
 
-// Opens the array or object here. *value is true if its first value follows, false if it was empty.
+// Opens the array or object at the present position. *value is true if a first value follows, and
+// false if it is empty.
 static cau_status scan_opening(scanner *s, bool *value)
 {
 	cau_status status = open_level(s);

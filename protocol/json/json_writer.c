@@ -73,7 +73,7 @@ static void put_quoted(cau_json_writer *writer, const char *text)
 	put(writer, "\"", 1);
 }
 
-// What stands before a value: comma, line break, name.
+// Writes the text before a value: comma, line break and name.
 static void put_lead(cau_json_writer *writer, const char *key)
 {
 	CAU_ASSERT(writer->depth >= 0 && writer->depth <= CAU_JSON_MAX_DEPTH, "%d levels",
@@ -133,7 +133,7 @@ void cau_json_close(cau_json_writer *writer)
 	put(writer, &writer->closing[top], 1);
 }
 
-// The shortest of 15 to 17 digits that reads back to the same bits.
+// Writes the number with the fewest digits, 15 to 17, that read back to the same bits.
 static void format_number(double value, char text[40])
 {
 	CAU_ASSERT(isfinite(value), "%g is no number of JSON", value);
@@ -145,7 +145,8 @@ static void format_number(double value, char text[40])
 	char *point = strchr(text, localeconv()->decimal_point[0]);
 	if (point)
 		*point = '.';
-	// A strict reader refuses integers that it would have to round.
+	// A strict reader refuses large integers, which it would have to round. With ".0" it reads a
+	// double.
 	else if (!strchr(text, 'e') && fabs(value) >= integer_bound)
 		memcpy(text + strlen(text), ".0", sizeof ".0");
 }

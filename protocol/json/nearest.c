@@ -9,7 +9,8 @@
 
 enum {
 	LONGEST = 63,
-	LETTERS_PER_SLIP = 3, // a word of three letters may hold one slip, one of six two
+	// a word of three letters may have one slip, a word of six letters two
+	LETTERS_PER_SLIP = 3,
 };
 
 static int least(int a, int b)
@@ -22,7 +23,7 @@ static bool same_letter(char a, char b)
 	return tolower((unsigned char)a) == tolower((unsigned char)b);
 }
 
-// Optimal string alignment distance; both at most LONGEST bytes.
+// Returns the optimal string alignment distance of words of at most LONGEST bytes.
 static int distance(const char *a, const char *b)
 {
 	int rows[3][LONGEST + 1];
@@ -52,13 +53,13 @@ const char *cau_nearest(const char *word, const char *const *words, size_t count
 	size_t length = strlen(word);
 	if (length > LONGEST)
 		return NULL;
-	// not as many as it has letters: any other word would be that near
+	// The limit is at most the number of letters, because any other word is within that distance.
 	int fewest = least((int)length, ((int)length + LETTERS_PER_SLIP - 1) / LETTERS_PER_SLIP + 1);
 	for (size_t i = 0; i < count; i++) {
 		size_t other = strlen(words[i]);
 		int away = other <= LONGEST ? distance(word, words[i]) : fewest;
-		// what was left out is likelier than another word: a unit ("young_modulus"), a command's
-		// end
+		// A shortened word is likelier than a different one: the unit is left out
+		// ("young_modulus"), or the end of a command.
 		if (other > length && strncmp(word, words[i], length) == 0)
 			away = least(away, 1);
 		if (away >= fewest)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structs told by tables: one table per struct serves reading, writing, the check for unknown
-// members and the documentation.
+// Describes structs by tables. One table for each struct serves reading, writing, the check for
+// unknown members and the documentation.
 #pragma once
 
 #include <stdbool.h>
@@ -11,6 +11,7 @@
 #include "cautery/scene.h"
 #include "json/value.h"
 
+// The types of fields. Each comment is the C type of the struct member.
 typedef enum cau_field_type {
 	CAU_FIELD_NUMBER,   // double
 	CAU_FIELD_INTEGER,  // int32_t
@@ -30,14 +31,15 @@ typedef struct cau_choices {
 typedef struct cau_field {
 	const char *name;
 	cau_field_type type;
-	size_t offset;       // in the struct
-	int32_t count;       // of a NUMBER or INTEGER: 0 for a scalar, else length of the array
-	int32_t least_count; // a shorter array that will do, the rest keeping its values; 0: none
-	double least, most;  // of each NUMBER or INTEGER
-	const cau_choices *choices; // of a CHOICE
-	unsigned kinds;             // bits of the kinds that have it; 0: all
+	size_t offset; // offset of the member in the struct
+	int32_t count; // for a NUMBER or INTEGER: 0 for a scalar, else the length of the array
+	// smallest accepted length of the array; values that are not given stay. 0: only `count`
+	int32_t least_count;
+	double least, most;         // range of each NUMBER or INTEGER
+	const cau_choices *choices; // words of a CHOICE
+	unsigned kinds;             // bits of the kinds that have this field; 0 means all
 	bool required;
-	const char *unless; // a member with which it is not required, or NULL
+	const char *unless; // a member that makes this one optional, or NULL
 	const char *unit, *meaning;
 } cau_field;
 
@@ -46,28 +48,28 @@ typedef struct cau_record {
 	const cau_field *fields;
 	int field_count;
 	const cau_choices
-		*kinds; // what the bits of cau_field.kinds are called (fields[0] says), or NULL
+		*kinds; // names of the bits of cau_field.kinds, which fields[0] chooses; or NULL
 } cau_record;
 
-// A struct to read or write. Several parts may make one JSON object.
+// A struct to read or write. One JSON object may consist of several parts.
 typedef struct cau_part {
 	const cau_record *record;
 	void *base;
-	int kind; // index of the bit, where the record has kinds
+	int kind; // the bit's index, if the record has kinds
 } cau_part;
 
 enum { CAU_MAX_PARTS = 6 };
 
-// Reads the members that the parts have; absent ones leave their values alone. Any member that is
-// neither of a part nor among `others` fails.
+// Reads the members of the parts. The values of absent members stay unchanged. A member that is
+// neither of a part nor in `others` is an error.
 void cau_read_parts(cau_reader *reader, const cJSON *object, const cau_part *parts, int part_count,
                     const char *const *others, int other_count);
 
-// Reads the one member `field` of `object` into base.
+// Reads the one member `field` of `object` into `base`.
 void cau_read_field(cau_reader *reader, const cJSON *object, const cau_field *field, void *base);
 
-// Writes all members that the parts have, inside an object that is open.
+// Writes all members of the parts into the open object.
 void cau_write_parts(cau_json_writer *writer, const cau_part *parts, int part_count);
 
-// Whether a part's record has the field for this kind.
+// True if records of this kind have the field.
 bool cau_field_applies(const cau_field *field, int kind);

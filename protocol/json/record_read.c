@@ -83,7 +83,7 @@ void cau_read_field(cau_reader *reader, const cJSON *object, const cau_field *fi
 	cau_reader_leave(reader, mark);
 }
 
-// A member that other kinds of the record have deserves a better word than "unknown".
+// Reports a member that only other kinds of the record have, with a better message than "unknown".
 static void refuse_other_kinds(cau_reader *reader, const cJSON *object, const cau_part *part)
 {
 	CAU_ASSERT_INDEX(part->kind, part->record->kinds->count);

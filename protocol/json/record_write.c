@@ -34,7 +34,7 @@ static void write_integers(cau_json_writer *writer, const cau_field *field, cons
 	cau_json_close(writer);
 }
 
-// An optional name that is empty is left out: there is no way to write it.
+// Writes a name. An empty optional name is left out, because readers refuse an empty name.
 static void write_name(cau_json_writer *writer, const cau_field *field, const char *name)
 {
 	if (field->required || name[0])

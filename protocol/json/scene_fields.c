@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene may hold. Scalars come from scene.h's tables; vectors, names and choices stand here.
+// The members that a scene may have. Scalars come from the tables of scene.h; vectors, names and
+// choices are listed here.
 #include "cautery/assert.h"
 #include "json/field_macros.h"
 #include "json/fields.h"
@@ -18,7 +19,7 @@ CHOICES(living_choices, CAU_LIVING_TABLE)
 CHOICES(select_kind_choices, CAU_SELECT_TABLE)
 CHOICES_OF_WORDS(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
 
-// clang-format off: rows of tables
+// clang-format off: tables
 #define STRUCT cau_scene_def
 static const cau_field scene_fields[] = {
 	{OTHER(name, NAME, "name of the scene"), .required = true},

@@ -9,7 +9,7 @@
 #include "json/fields.h"
 #include "json/instrument.h"
 
-// Reads the first field of a record that has kinds: defaults and members depend on it.
+// Reads the kind, the first field of a record. Defaults and members depend on it.
 static bool read_kind(cau_reader *reader, const cJSON *object, const cau_record *record, void *base)
 {
 	CAU_ASSERT(record->field_count > 0 && record->kinds, "%s has no kinds", record->title);
@@ -28,7 +28,7 @@ static void read_mesh(cau_reader *reader, const cJSON *object, void *element)
 	cau_read_parts(reader, object, &part, 1, NULL, 0);
 }
 
-// What differs from the layer's own material in one region.
+// Reads the differences of one region from the layer's own material.
 static void read_region(cau_reader *reader, const cJSON *object, cau_layer_def *layer,
                         int32_t index)
 {

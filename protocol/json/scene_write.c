@@ -5,7 +5,8 @@
 #include "json/document.h"
 #include "json/fields.h"
 
-// A part's base is not const, because reading shares the type; writing leaves it alone.
+// Writes a part. Its base is not const, because reading uses the same type, but writing does not
+// change it.
 static void write_part(cau_json_writer *writer, const cau_record *record, const void *base,
                        int kind)
 {

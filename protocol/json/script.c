@@ -18,7 +18,7 @@ static bool is_blank(const char *line, size_t bytes)
 	return true;
 }
 
-// The next line that is not blank; false at the end of the text.
+// Finds the next line that is not blank. Returns false at the end of the text.
 static bool next_line(cau_script *script, const char **line, size_t *bytes)
 {
 	CAU_ASSERT(script->offset <= script->bytes, "byte %zu of %zu", script->offset, script->bytes);

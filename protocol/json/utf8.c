@@ -6,9 +6,9 @@
 
 #include "cautery/assert.h"
 
-#define HIGH_BITS UINT64_C(0x8080808080808080) // set in bytes that are not ASCII
+#define HIGH_BITS UINT64_C(0x8080808080808080) // these bits are set in bytes that are not ASCII
 
-// Eight bytes at a time while there are eight, for most texts are ASCII alone.
+// Examines eight bytes at a time, because most texts are ASCII.
 size_t cau_utf8_ascii(const char *text, size_t bytes)
 {
 	size_t at = 0;
@@ -22,14 +22,15 @@ size_t cau_utf8_ascii(const char *text, size_t bytes)
 	return at;
 }
 
-// The second byte is what tells overlong forms, surrogates and codes beyond U+10FFFF (RFC 3629, 4).
+// Sets the range of the second byte, which excludes overlong forms, surrogates and codes beyond
+// U+10FFFF (RFC 3629, 4).
 static void second_byte_range(unsigned char first, unsigned char *least, unsigned char *most)
 {
 	*least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
 	*most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
 }
 
-// What the first byte says of the character's length; 0: no character starts with it.
+// Returns the character's length from its first byte, or 0 if no character starts with that byte.
 static size_t told_length(unsigned char first)
 {
 	if (first < 0x80)
@@ -37,7 +38,7 @@ static size_t told_length(unsigned char first)
 	return first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
 }
 
-// Whether the bytes behind the first one are such as may follow it.
+// True if the bytes after the first byte are allowed there.
 static bool may_follow(const unsigned char *at, size_t bytes)
 {
 	CAU_ASSERT(bytes >= 1 && bytes <= 4, "a character of %zu bytes", bytes);

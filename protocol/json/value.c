@@ -23,7 +23,7 @@ cau_status cau_value_parse(const char *text, size_t bytes, size_t bytes_max, cJS
 	return CAU_OK;
 }
 
-// ---- where the reader stands --------------------------------------------------------------------
+// ---- the reader's path --------------------------------------------------------------------------
 
 void cau_reader_begin(cau_reader *reader, const char *path, cau_error *error)
 {
@@ -241,7 +241,8 @@ void cau_read_rotation(cau_reader *reader, const cJSON *value, double rotation[4
 		                CAU_UNIT_TOLERANCE);
 		return;
 	}
-	// Within rounding it is left alone, so that writing and reading again changes no bit.
+	// A rotation within rounding of unit length is not changed, so that writing and reading keep
+	// all bits.
 	bool unit = fabs(square - 1.0) < 1e-15;
 	for (int i = 0; i < 4; i++)
 		rotation[i] = unit ? read[i] : read[i] / length;

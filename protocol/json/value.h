@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Typed, strict access to parsed JSON for protocol's own readers. This header and the files that
-// include it are the only places that know cJSON.
+// Typed, strict access to parsed JSON, for the readers of this folder. Only this header and the
+// files that include it use cJSON.
 #pragma once
 
 #include <cjson/cJSON.h>
@@ -9,21 +9,23 @@
 
 #include "cautery/status.h"
 
-// Scans strictly, then parses. The caller deletes *value with cJSON_Delete. See cau_json_scan.
+// Scans the text strictly, then parses it. The caller deletes *value with cJSON_Delete. See
+// cau_json_scan.
 cau_status cau_value_parse(const char *text, size_t bytes, size_t bytes_max, cJSON **value,
                            cau_error *error);
 
-// The first failure is kept and the rest skipped, so readers read straight on and ask for `status`
-// at the end. `path` is where in the document the reader stands.
+// A reader keeps the first failure and skips the rest. So callers need to check `status` only at
+// the end. `path` is the reader's position in the document.
 typedef struct cau_reader {
 	cau_status status;
-	cau_error *error; // may be NULL; error->file is kept
+	cau_error *error; // may be NULL; error->file stays unchanged
 	char path[160];
 } cau_reader;
 
 void cau_reader_begin(cau_reader *reader, const char *path, cau_error *error);
 
-// Steps into member `key` (or element `index` if key is NULL) and back. *mark remembers the way.
+// cau_reader_enter steps into member `key`, or into element `index` if key is NULL.
+// cau_reader_leave steps back to *mark.
 size_t cau_reader_enter(cau_reader *reader, const char *key, int32_t index);
 void cau_reader_leave(cau_reader *reader, size_t mark);
 
@@ -31,29 +33,30 @@ void cau_reader_leave(cau_reader *reader, size_t mark);
 __attribute__((format(printf, 4, 5))) cau_status
 cau_reader_fail(cau_reader *reader, cau_status status, const char *key, const char *format, ...);
 
-// The member of that name (case matters) or NULL.
+// Returns the member with this name (case matters), or NULL.
 const cJSON *cau_value_member(const cJSON *object, const char *key);
 
-// "a string", "the number 3", "an array", ...: what stands there, for reasons. Uses `buffer`.
+// Describes a value for an error reason: "a string", "the number 3", "an array", ... Uses `buffer`.
 const char *cau_value_describe(const cJSON *value, char *buffer, size_t bytes);
 
-// Each reads `value`, which stands at the present path; a NULL value fails as missing. `unit` may
-// be "".
-bool cau_read_object(cau_reader *reader, const cJSON *value); // fails if it is none
+// Each function reads `value`, which is at the present path. A NULL value is a missing member and
+// fails. `unit` may be "".
+bool cau_read_object(cau_reader *reader, const cJSON *value); // fails if it is not an object
 bool cau_read_array(cau_reader *reader, const cJSON *value, int32_t least, int32_t most);
 double cau_read_number(cau_reader *reader, const cJSON *value, double least, double most,
                        const char *unit);
 int64_t cau_read_integer(cau_reader *reader, const cJSON *value, int64_t least, int64_t most);
 bool cau_read_bool(cau_reader *reader, const cJSON *value);
-// Copies at most bytes - 1 bytes and a zero; longer text fails.
+// Copies at most bytes - 1 bytes and a zero. A longer text fails.
 void cau_read_text(cau_reader *reader, const cJSON *value, char *text, size_t bytes);
-// A name after CAU_NAME_RULE; `text` holds CAU_NAME_BYTES.
+// Reads a name by CAU_NAME_RULE. `text` has CAU_NAME_BYTES.
 void cau_read_name(cau_reader *reader, const cJSON *value, char *text);
-// The index of a string in `names`; -1 after a failure, which lists them and suggests the nearest.
+// Returns the index of a string in `names`, or -1 after a failure. The error lists the names and
+// suggests the nearest.
 int cau_read_choice(cau_reader *reader, const cJSON *value, const char *const *names, int count);
-// A quaternion w, x, y, z: within 1e-3 of unit length, then normalised.
+// Reads a quaternion w, x, y, z. It must be within 1e-3 of unit length and is then normalised.
 void cau_read_rotation(cau_reader *reader, const cJSON *value, double rotation[4]);
 
-// Fails for the first member whose name is not among `names`, suggesting the nearest that is.
+// Fails for the first member whose name is not in `names`, and suggests the nearest name.
 void cau_read_no_others(cau_reader *reader, const cJSON *object, const char *const *names,
                         int count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of a command line, and --help.
+// Reads a command line and prints --help.
 #include "cautery/options.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 
 enum {
 	MOST_ROWS = 32,
-	LEFT_BYTES = 40, // of an option and its argument in --help
+	LEFT_BYTES = 40, // size of the text for an option and its argument in --help
 };
 
 // ---- help --------------------------------------------------------------------------------------
@@ -33,7 +33,7 @@ static int widest(const cau_command_line *line)
 	return most;
 }
 
-// The meaning beside its option, its further lines below its first.
+// Prints the meaning beside the option. Further lines are printed below the first line.
 static void print_meaning(FILE *out, const char *left, int width, const char *meaning)
 {
 	for (const char *next = meaning; next;) {
@@ -91,15 +91,15 @@ static const cau_option *find_help(const cau_command_line *line)
 	return NULL;
 }
 
-// What a command line has been read to.
+// The state while a command line is read.
 typedef struct reading {
 	const cau_command_line *line;
 	char **arguments;
-	int argument_count, at; // `at` is the argument that is looked at
+	int argument_count, at; // `at` is the index of the present argument
 	char *into;
 	const char **words;
 	int word_count;
-	bool words_only; // `--` was met
+	bool words_only; // the argument `--` was found
 	bool helped;
 	FILE *complaints;
 } reading;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of values, and how each is read.
+// Reads the values of the kinds of options.
 #include "options/options_value.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #include "cautery/assert.h"
 
-// A number within the option's bounds; NaN is within none.
+// Reads a number within the option's bounds. NaN is out of bounds.
 static bool read_number(const cau_command_line *line, const cau_option *option, const char *text,
                         double *number, FILE *complaints)
 {

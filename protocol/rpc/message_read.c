@@ -67,7 +67,7 @@ static bool is_list(const cau_wire_field *field)
 	       field->type == CAU_WIRE_TYPE_INTEGERS;
 }
 
-// Zero, but for the capacity that the caller gives the item's own lists.
+// Zeroes an item, except the `items` and `capacity` of its own lists, which the caller provides.
 static void clear_item(cau_wire_object object, char *item)
 {
 	const cau_wire_shape *shape = &cau_wire_shapes[object];
@@ -81,7 +81,7 @@ static void clear_item(cau_wire_object object, char *item)
 			memcpy(item + shape->fields[i].offset, &kept[i], sizeof *kept);
 }
 
-// Goes to the list's next item, if the caller has room for it.
+// Enters the list's next item. Fails if the list is full.
 static bool enter_item(cau_reader *reader, const cau_wire_list *list, size_t *mark)
 {
 	if (list->count >= list->capacity) {
@@ -113,7 +113,7 @@ static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_fie
 	}
 }
 
-// Numbers, or whole ones.
+// Reads an array of doubles or integers.
 static void read_numbers(cau_reader *reader, const cJSON *value, const cau_wire_field *field,
                          cau_wire_list *list)
 {

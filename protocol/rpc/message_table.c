@@ -6,7 +6,7 @@
 #include "cautery/assert.h"
 #include "cautery/command.h"
 
-// clang-format off: rows of tables
+// clang-format off: tables
 
 // ---- words to choose from -----------------------------------------------------------------------
 #define X(code, name) name,

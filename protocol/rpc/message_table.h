@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// messages.def as data: reading, checking, writing and describing messages all go by it.
+// messages.def as data, for reading, checking, writing and describing messages.
 #pragma once
 
 #include "cautery/messages.h"
@@ -27,11 +27,11 @@ typedef struct cau_wire_field {
 	const char *unit, *meaning;
 	double least, most;         // INTEGER, NUMBER, VECTOR, NUMBERS, INTEGERS
 	const cau_choices *choices; // CHOICE, CHOICES
-	size_t offset;              // in the C type
-	size_t has_offset;          // of bool has_<name>, where it is optional
+	size_t offset;              // offset of the member in the C type
+	size_t has_offset;          // offset of the bool has_<name>, if the member is optional
 	cau_wire_type type;
 	cau_wire_object object; // PART, LIST
-	int32_t count; // VECTOR: numbers; TEXT: bytes at most; LIST, NUMBERS, INTEGERS: items at most
+	int32_t count;          // VECTOR: length; TEXT: most bytes; LIST, NUMBERS, INTEGERS: most items
 	bool required;
 } cau_wire_field;
 
@@ -40,7 +40,7 @@ enum { CAU_WIRE_FIELDS_MAX = 32 };
 typedef struct cau_wire_shape {
 	const char *name;
 	const char *meaning;
-	size_t bytes; // of the C type
+	size_t bytes; // size of the C type
 	const cau_wire_field *fields;
 	int32_t field_count;
 } cau_wire_shape;

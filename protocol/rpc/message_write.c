@@ -79,8 +79,8 @@ static void write_list(cau_json_writer *writer, const cau_wire_field *field,
 	cau_json_close(writer);
 }
 
-// Many numbers, each with the digits that every double needs to be read back: looking for fewer
-// would take three times as long.
+// Writes a number with 17 digits, which is enough for every double. It is for long arrays: finding
+// fewer digits would take three times as long.
 static void write_exact(cau_json_writer *writer, double value)
 {
 	char text[40];

@@ -8,14 +8,14 @@
 #include "rpc/message.h"
 #include "json/document.h"
 
-// What a message keeps of its text. A command's params are made what the command codec reads: its
-// envelope is taken out and "command" put in.
+// The parsed text of a message. The command codec reads the params of a command, so the envelope is
+// removed from the params and "command" is added.
 typedef struct rpc_document {
 	cJSON *root;
-	cJSON *params;          // of root, or NULL
-	cJSON *result;          // of root, or NULL
-	cJSON *session;         // taken out of a command's params, or NULL
-	cJSON *client_sequence; // likewise
+	cJSON *params;          // member of `root`, or NULL
+	cJSON *result;          // member of `root`, or NULL
+	cJSON *session;         // removed from a command's params, or NULL
+	cJSON *client_sequence; // removed from a command's params, or NULL
 } rpc_document;
 
 void cau_rpc_fault_of_code(cau_rpc_fault *fault, cau_rpc_error_code code, const char *reason)
@@ -34,7 +34,8 @@ void cau_rpc_fault_of_error(cau_rpc_fault *fault, const cau_error *error)
 
 // ---- the envelope -------------------------------------------------------------------------------
 
-static const double whole_most = 9007199254740991.0; // 2^53 - 1: up to here doubles count
+// 2^53 - 1, up to which a double represents every integer
+static const double whole_most = 9007199254740991.0;
 
 static bool read_id(const cJSON *value, cau_rpc_id *id)
 {

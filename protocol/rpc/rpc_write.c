@@ -11,7 +11,7 @@ static void begin(cau_json_writer *writer, const cau_rpc_buffer *out)
 	cau_json_string(writer, "jsonrpc", "2.0");
 }
 
-// `place`, if given, is where a value was out of its range.
+// Ends the message. `place`, if given, has the path of a value that was out of its range.
 static cau_status end(cau_json_writer *writer, cau_rpc_buffer *out, const cau_reader *place,
                       cau_error *error)
 {
@@ -58,11 +58,12 @@ cau_status cau_rpc_write_notification(cau_rpc_buffer *out, cau_method method, co
 	return write_call(out, NULL, method, params, error);
 }
 
-// The members of a command but for "command", which the method tells.
+// Writes the members of a command except "command", because the method gives the kind.
 static void write_command_members(cau_json_writer *writer, const cau_command *command)
 {
 	cau_part parts[CAU_MAX_PARTS];
-	cau_command *shared = (cau_command *)command; // parts are not const; writing leaves it alone
+	// A part's base is not const, but writing does not change it.
+	cau_command *shared = (cau_command *)command;
 	int count = cau_command_parts_to_write(shared, parts);
 	cau_record head = *parts[0].record;
 	head.fields++;

@@ -3,8 +3,8 @@
 
 #include "cautery/assert.h"
 
-// Positions, mask, tools, statistics, vessels and contacts of tools have cases of their own here,
-// in encoder and decoder.
+// The other channels (positions, mask, tools, statistics, vessels, contacts of tools) have cases of
+// their own in this file, the encoder and the decoder.
 _Static_assert(CAU_CHANNEL_COUNT - CAU_SCALAR_COUNT == 6, "a channel is a scalar or has cases");
 
 int cau_channel_of_section(int type)

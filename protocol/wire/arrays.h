@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The channels that are arrays (positions, mask, scalars): what encoder, thinner and decoder keep
-// of each as 32-bit words, by CAU_CHANNEL_INDEX_*. Channels with records have arrays of no
-// elements.
+// The channels that are arrays (positions, mask, scalars). Encoder, thinner and decoder store each
+// of them as 32-bit words, indexed by CAU_CHANNEL_INDEX_*. Channels with records have arrays
+// without elements.
 #pragma once
 
 #include "cautery/frame_codec.h"
@@ -14,17 +14,18 @@ static inline bool cau_stream_has(const cau_stream_def *def, int channel)
 	return def->channels >> channel & 1;
 }
 
-// The channel whose section this is, CAU_CHANNEL_INDEX_*, or CAU_CHANNEL_COUNT.
+// Returns the channel of a section, CAU_CHANNEL_INDEX_*, or CAU_CHANNEL_COUNT if there is none.
 int cau_channel_of_section(int type);
 
 typedef struct array_shape {
-	size_t count; // elements; 0 if the stream has not this channel, or it is no array
+	// number of elements; 0 if the stream does not have this channel, or if it is no array
+	size_t count;
 	uint32_t components;
-	uint32_t bias, most; // of values, see elements_target
+	uint32_t bias, most; // limits of the values, see elements_target
 } array_shape;
 
 array_shape cau_array_shape_of(const cau_stream_def *def, int channel);
 
-// Words of all arrays together, and scratch that any of them needs.
+// Total words of all arrays, and the largest scratch memory that an array needs.
 size_t cau_arrays_words(const cau_stream_def *def);
 size_t cau_arrays_scratch_bytes(const cau_stream_def *def);

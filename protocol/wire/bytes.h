@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Little-endian numbers in byte arrays, whatever the machine and the alignment.
+// Reads and writes little-endian numbers in byte arrays, on any machine and at any alignment.
 #pragma once
 
 #include <stdint.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `tool_contact`: README.md has the layout.
+// The section of the channel `tool_contact`. README.md in protocol/ has the layout.
 #include "wire/contact_records.h"
 
 #include <math.h>
@@ -9,21 +9,21 @@
 #include "cautery/name.h"
 #include "wire/bytes.h"
 
-// Each record without its name and its planes, in floats; a plane.
+// Sizes of a record without its name and planes, and of a plane. Numbers are floats.
 enum {
 	HEAD_BYTES = 4,
 	NUMBERS = 29,
 	PLANE_NUMBERS = 5,
 	RECORD_BYTES = HEAD_BYTES + 4 * NUMBERS,
 	PLANE_BYTES = 4 * PLANE_NUMBERS,
-	VALID = 1, // flag
+	VALID = 1, // bit of the flags
 };
 _Static_assert(4 + CAU_MAX_TOOLS *
                            (RECORD_BYTES + CAU_NAME_BYTES + 3 + CAU_CONTACT_PLANES * PLANE_BYTES) <=
                    CONTACTS_BYTES_MAX,
                "the section of all tools");
 
-// The numbers of a record in their order on the wire.
+// Lists the numbers of a record in the order of the payload.
 static void list(const cau_tool_contact *contact, double numbers[NUMBERS])
 {
 	double *at = numbers;
@@ -136,7 +136,7 @@ static const uint8_t *read_floats(const uint8_t *at, double *numbers, int count)
 	return at;
 }
 
-// Returns what follows the record; NULL if it is damaged.
+// Reads a record. Returns the position after it, or NULL if it is damaged.
 static const uint8_t *read_contact(const uint8_t *at, const uint8_t *end, cau_tool_contact *contact)
 {
 	double numbers[NUMBERS];

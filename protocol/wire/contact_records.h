@@ -14,6 +14,6 @@ const char *cau_tool_contact_check(const cau_tool_contact *contact);
 
 // Writes the payload and returns its length, CONTACTS_BYTES_MAX at most.
 size_t cau_contacts_write(uint8_t *out, const cau_tool_contact *contacts, int32_t count);
-// Reads a payload, without time_s, which is the frame's. Returns NULL, or why it is refused.
+// Reads a payload except time_s, which the frame's header has. Returns NULL, or why it is refused.
 const char *cau_contacts_read(const uint8_t *payload, size_t bytes, cau_tool_contact *contacts,
                               int32_t *count);

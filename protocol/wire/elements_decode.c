@@ -85,7 +85,7 @@ static const char *check_runs(const section *head, size_t element_count)
 	return total == head->count ? NULL : "the runs of a list do not add up to its count";
 }
 
-// Unpacks the data to elements of *stride bytes at *numbers.
+// Unpacks the section's data. *numbers points to elements that are *stride bytes apart.
 static const char *unpack(const section *head, uint8_t *scratch, const uint8_t **numbers,
                           size_t *stride)
 {
@@ -121,7 +121,7 @@ static uint32_t load_number(const uint8_t *at, uint32_t width, bool is_differenc
 	return (digits ^ balance) - balance;
 }
 
-// Sets elements [begin, end) of the target from numbers that are one after the other.
+// Sets elements [begin, end) of the target from consecutive numbers.
 static bool set_run(const section *head, const elements_target *target, size_t begin, size_t end,
                     const uint8_t *numbers, size_t stride, uint32_t previous[6])
 {

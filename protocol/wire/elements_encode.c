@@ -7,12 +7,11 @@
 #include "wire/bytes.h"
 
 enum {
-	// Unchanged elements between two changed ones that are written along: a new run costs two bytes
-	// or
-	// more, an element that did not change about half of one.
+	// Up to this number of unchanged elements between two changed elements are written. A new run
+	// costs two bytes or more, an unchanged element about half a byte.
 	MERGED_GAP = 3,
 	RUN_BYTES_MAX = 10, // two LEB128 numbers of 32 bits
-	LENGTH_BYTES = 4,   // before meshoptimizer's output
+	LENGTH_BYTES = 4,   // length field before meshoptimizer's output
 };
 
 static size_t stride_bytes(uint32_t components, uint32_t width)
@@ -56,7 +55,7 @@ static size_t next_changed(const elements_source *source, size_t element)
 	return element;
 }
 
-// One past the last element of the run that starts at `element`.
+// Returns the index after the last element of the run that starts at `element`.
 static size_t run_end(const elements_source *source, size_t element)
 {
 	CAU_RULE(element < source->count, "a run from %zu of %zu", element, source->count);
@@ -70,8 +69,8 @@ static size_t run_end(const elements_source *source, size_t element)
 	return end;
 }
 
-// The number that stands for component `i` of the array. `previous` is the index of the same
-// component in the element before it in the section, or SIZE_MAX.
+// Returns the encoded number of component `i` of the array. `previous` is the index of the same
+// component in the section's previous element, or SIZE_MAX.
 static uint32_t number_of(const elements_source *source, size_t i, size_t previous)
 {
 	CAU_RULE(previous == SIZE_MAX || previous < i, "element %zu is told from %zu", i, previous);
@@ -85,7 +84,7 @@ static uint32_t number_of(const elements_source *source, size_t i, size_t previo
 	}
 }
 
-// The width that a number needs; differences are kept in balanced digits.
+// Returns the bytes that a number needs. Differences are stored in balanced digits.
 static uint32_t width_of(uint32_t number, bool is_difference)
 {
 	if (number + (is_difference ? ELEMENTS_BALANCE & UINT8_MAX : 0) <= UINT8_MAX)
@@ -93,8 +92,8 @@ static uint32_t width_of(uint32_t number, bool is_difference)
 	return number + (is_difference ? ELEMENTS_BALANCE & UINT16_MAX : 0) <= UINT16_MAX ? 2 : 4;
 }
 
-// Writes the numbers, 4 bytes each and close together, into `numbers`; returns the width of the
-// widest.
+// Writes the numbers of elements [begin, end) into `numbers`, 4 bytes each without gaps. Returns
+// the width of the widest number.
 static uint32_t gather(const elements_source *source, size_t begin, size_t end, size_t *last,
                        uint32_t *numbers)
 {
@@ -128,7 +127,8 @@ static void store_number(uint8_t *at, uint32_t number, uint32_t width, bool is_d
 		store_u32(at, digits);
 }
 
-// Narrows numbers in place, front to back; a stride of width x components leaves no gaps.
+// Narrows numbers in place, from the first to the last. A stride of width x components leaves no
+// gaps.
 static void narrow(uint8_t *scratch, size_t count, size_t components, uint32_t width, size_t stride,
                    bool is_difference)
 {
@@ -146,7 +146,7 @@ static void narrow(uint8_t *scratch, size_t count, size_t components, uint32_t w
 	}
 }
 
-// Closes the padding between elements of `stride` bytes.
+// Removes the padding between elements of `stride` bytes.
 static void pack(uint8_t *out, const uint8_t *scratch, size_t count, size_t element_bytes,
                  size_t stride)
 {
@@ -199,7 +199,7 @@ size_t cau_elements_encode(const elements_source *source, uint8_t *scratch, uint
 	         source->components);
 	uint8_t *run = out + ELEMENTS_HEAD_BYTES;
 	size_t count = 0;
-	size_t behind = 0; // one past the last run
+	size_t behind = 0; // index after the last run
 	size_t last = SIZE_MAX;
 	uint32_t width = 1;
 	for (size_t begin = next_changed(source, 0); begin < source->count;

@@ -83,7 +83,7 @@ void cau_frame_decoder_position(const cau_frame_decoder *decoder, double *positi
 			def->origin_m[i % 3] + (present ? def->step_m * decoder->state.quantised[i] : 0.0);
 }
 
-// Whether the frame is the next one for this decoder.
+// Checks that the frame is the next one for this decoder.
 static cau_status check_place(const cau_frame_decoder *decoder, const cau_frame_header *header,
                               cau_error *error)
 {
@@ -178,7 +178,8 @@ static const char *read_tools(cau_frame_decoder *decoder, const section_cursor *
 	}
 }
 
-// Sections of channels that the stream has not are skipped, like unknown ones.
+// Reads a section. Sections of unknown channels, and of channels that the stream does not have, are
+// skipped.
 static const char *read_section(cau_frame_decoder *decoder, const section_cursor *cursor, bool key)
 {
 	cau_stream_state *state = &decoder->state;

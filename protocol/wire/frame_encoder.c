@@ -90,8 +90,8 @@ static bool wants(const cau_frame_encoder *encoder, int channel)
 	return cau_stream_has(&encoder->def, channel);
 }
 
-// What the sample has of a channel; NULL: nothing. A sample may have no tools, no vessels
-// and no contacts.
+// Returns the sample's data of a channel, or NULL. A sample may have no tools, no vessels and no
+// contacts.
 static const void *given(const cau_stream_sample *sample, int channel)
 {
 	switch (channel) {
@@ -148,9 +148,10 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 	           : cau_fail(error, CAU_NUMERICAL, "time_s", "the time is not finite");
 }
 
-// Vertices that no drawn face uses are not told anew: nobody sees them, and of fat they are most.
-// In the epoch's first frame they are, since there is nothing yet to keep for them; and always in a
-// stream without the mask, whose readers cannot know which vertices those are.
+// True if a vertex keeps its old position and scalars because no drawn face uses it. Such vertices
+// are not visible, and in fat most vertices are such. There is nothing to keep in the epoch's first
+// frame. In a stream without the mask no vertex is kept, because readers cannot know which vertices
+// are drawn.
 static bool is_kept(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
                     int32_t vertex)
 {
@@ -184,7 +185,7 @@ static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_strea
 	return CAU_OK;
 }
 
-// Tells a scalar in its steps: the nearest one, saturated; what is not a number becomes 0.
+// Converts a scalar to its nearest step, saturated. A value that is not a number becomes 0.
 static void quantise_scalar(cau_frame_encoder *encoder, const cau_stream_sample *sample,
                             cau_channel_index channel)
 {
@@ -266,10 +267,10 @@ static void end_section(frame_writer *writer, cau_section type, size_t payload_b
 	writer->section_count++;
 }
 
-// What a frame tells of the state that is held: all of it, or what differs from `base`.
+// Which part of the present state a frame has: all of it, or the differences from `base`.
 typedef struct frame_part {
-	uint32_t *const *base; // the arrays of a state, by channel; NULL: all, for a key frame
-	bool names;            // of the tools
+	uint32_t *const *base; // arrays of a state by channel; NULL for a key frame
+	bool names;            // include the names of the tools
 } frame_part;
 
 static void write_array(const cau_frame_encoder *encoder, int channel, frame_part part,
@@ -321,7 +322,8 @@ static void write_asked(const cau_tool_set *set, frame_writer *writer)
 		end_section(writer, CAU_SECTION_TOOL_FORCE, bytes);
 }
 
-// The channels in their order, which is that of their sections; what came to them later is last.
+// Writes the channels in the order of their sections. Sections that were added to a channel later
+// are last.
 static void write_sections(const cau_frame_encoder *encoder, frame_part part, frame_writer *writer)
 {
 	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
@@ -435,7 +437,7 @@ static cau_status encode(cau_frame_encoder *encoder, const cau_stream_sample *sa
 	bool first = encoder->header.sequence == 0;
 	bool renamed = take_tools(encoder, sample);
 	advance(encoder, sample);
-	// `next` has become what is held, and what was held before is in its place.
+	// Now encoder->next has the previous state, because `advance` swapped it with the present one.
 	*byte_count = first ? write_key(encoder, bytes)
 	                    : cau_encoder_write_delta(encoder, encoder->next,
 	                                              encoder->header.sequence - 1, renamed, bytes);

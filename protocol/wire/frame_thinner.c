@@ -6,9 +6,9 @@
 
 struct cau_frame_thinner {
 	const cau_frame_encoder *encoder;
-	uint64_t epoch, sequence; // of the state that is kept; epoch 0: none
+	uint64_t epoch, sequence; // epoch and sequence of the kept state; epoch 0 means no state
 	uint32_t *base[CAU_CHANNEL_COUNT];
-	cau_tool_set tools; // their names
+	cau_tool_set tools; // tools of the kept state, for their names
 };
 
 static size_t struct_bytes(void)

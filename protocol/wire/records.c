@@ -14,7 +14,7 @@ enum {
 	TOOL_SLIPPING = 1 << 3,
 	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
 	STATISTICS_COUNTS = 10,
-	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and six more
+	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and six more words
 };
 _Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
                    STATISTICS_FLOATS + STATISTICS_COUNTS + 6 == STATISTICS_WORDS,
@@ -299,12 +299,13 @@ const char *cau_tool_force_read(const uint8_t *payload, size_t bytes, cau_stream
 static int is_float_word(size_t word)
 {
 	CAU_ASSERT_INDEX(word, STATISTICS_WORDS);
-	size_t beyond =
-		STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error and three counts
+	// index of the first word after the counts: energy_gain_j, resting, error and three counts
+	size_t beyond = STATISTICS_FLOATS + STATISTICS_COUNTS;
 	return word < STATISTICS_FLOATS || word == beyond || word == beyond + 2;
 }
 
-// A statistic that is not finite (a rate over no time, say) is told as 0.
+// Writes the statistics. A statistic that is not finite, such as a rate over no time, is written as
+// 0.
 size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics)
 {
 	uint32_t words[STATISTICS_WORDS];

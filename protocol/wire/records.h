@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections of frames that are records: tool names, tools, statistics.
+// The sections of frames that consist of records: tool names, tools and statistics.
 #pragma once
 
 #include "cautery/stream.h"
@@ -12,33 +12,35 @@ enum {
 	TOOL_FORCE_BYTES = 28,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
 	STATISTICS_RECORD_BYTES = 112,
-	STATISTICS_LEAST_BYTES = 88, // without what comes after refused_commands, as servers began
+	// size without the members after refused_commands, as the first servers sent it
+	STATISTICS_LEAST_BYTES = 88,
 };
 
-// What a decoder would refuse in this tool, or NULL.
+// Returns why a decoder would refuse this tool, or NULL.
 const char *cau_stream_tool_check(const cau_stream_tool *tool);
 
-// Each writes a payload and returns its length.
+// Each function writes a payload and returns its length.
 size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
-// Poses that are asked; 0: none is another than the tool's.
+// Writes commanded poses. Returns 0 if every commanded pose is the tool's actual pose.
 size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
-// Jaws; 0: none presses, and all are as they are asked to be.
+// Writes jaws. Returns 0 if no jaws press and all jaws are as commanded.
 size_t cau_tool_jaws_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
-// Power; 0: no generator gives any.
+// Writes power. Returns 0 if no generator delivers power.
 size_t cau_tool_power_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
-// Raw forces and the filters' time constants; 0: there is no tool, or not all have a raw force.
+// Writes raw forces and the filters' time constants. Returns 0 if there is no tool, or if some tool
+// has no raw force.
 size_t cau_tool_force_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics);
 
-// Each reads a payload; returns NULL or what is wrong. tool_names_read keeps the rest of the
-// records.
+// Each function reads a payload and returns NULL, or what is wrong. cau_tool_names_read keeps the
+// other members of the tools.
 const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                                 int32_t *count);
 const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                            int32_t count);
-// These four after cau_tools_read, which takes all to be as it is asked to be, without power and
-// without raw forces.
+// Call these four after cau_tools_read. It assumes that all poses and jaws are as commanded,
+// without power and without raw forces.
 const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                                  int32_t count);
 const char *cau_tool_jaws_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,

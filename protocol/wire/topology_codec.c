@@ -28,7 +28,7 @@ size_t cau_topology_bytes_max(const cau_stream_def *def)
 	       cau_elements_bytes_max(shape.vertices, 3);
 }
 
-// The values of one section, and beside them what its coding needs.
+// Scratch memory for the values of one section and for coding them.
 size_t cau_topology_scratch_bytes(const cau_stream_def *def)
 {
 	topology_shape shape = shape_of(def);
@@ -70,7 +70,7 @@ static cau_status quantise_rest(const cau_stream_def *def, const double *positio
 
 typedef struct topology_writer {
 	uint8_t *at;
-	uint8_t *scratch; // of the coding
+	uint8_t *scratch; // scratch memory of the coding
 	uint16_t section_count;
 	bool plain;
 } topology_writer;
@@ -114,7 +114,7 @@ static cau_status write_faces(const cau_stream_def *def, const cau_topology *top
 	return CAU_OK;
 }
 
-// Faces, layers and texture as a frame has them that was encoded before.
+// Copies faces, layers and texture from a frame that was encoded before.
 static cau_status copy_faces(const cau_stream_def *def, const cau_topology *topology,
                              topology_writer *writer, cau_error *error)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `vessels`: README.md has the layout.
+// The section of the channel `vessels`. README.md in protocol/ has the layout.
 #include "wire/vessel_records.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "cautery/name.h"
 #include "wire/bytes.h"
 
-// Each vessel without its name and its points.
+// Sizes of a vessel without its name and points, and of a point.
 enum { VESSEL_BYTES = 20, POINT_BYTES = 16 };
 _Static_assert(4 + CAU_MAX_VESSELS * (VESSEL_BYTES + CAU_NAME_BYTES + 3 +
                                       CAU_VESSEL_SHOWN_POINTS * POINT_BYTES) <=
@@ -69,7 +69,7 @@ size_t cau_vessels_write(uint8_t *out, const cau_vessel_state *vessels, int32_t 
 	return (size_t)(at - out);
 }
 
-// Returns what follows the vessel; NULL if it is damaged.
+// Reads a vessel. Returns the position after it, or NULL if it is damaged.
 static const uint8_t *read_vessel(const uint8_t *at, const uint8_t *end, cau_vessel_state *vessel)
 {
 	if (end - at < VESSEL_BYTES)

@@ -17,16 +17,16 @@
 #include "log/log.h"
 
 enum {
-	WAITING_PEERS = 64,   // not accepted yet; further ones the system lets wait
-	ACCEPT_PAUSE_MS = 100 // after accept failed, for want of descriptors for example
+	WAITING_PEERS = 64,   // connections waiting for accept; the system lets further ones wait
+	ACCEPT_PAUSE_MS = 100 // pause after a failed accept, for example without free descriptors
 };
 
 struct cau_agent {
 	cau_agent_def def;
 	pthread_t thread;
-	int socket, ending; // a listening socket; an eventfd that ends the thread
+	int socket, ending; // socket: listening socket; ending: eventfd that ends the thread
 	bool started;
-	double measured_s; // when the line was made
+	double measured_s; // time when the line was made
 	char line[CAU_LOAD_LINE_BYTES];
 	size_t line_bytes;
 };
@@ -43,8 +43,9 @@ static void measure(cau_agent *agent)
 	agent->measured_s = now_s;
 }
 
-// The line fits into a new socket's buffer, so nothing here waits. What the peer has sent by now is
-// taken, since closing a socket with bytes unread resets it and may take the line along.
+// Sends the line to a peer and closes. The line fits into a new socket's buffer, so this never
+// waits. What the peer has sent is read first: closing a socket with unread bytes resets it, and
+// the line may be lost.
 static void answer(cau_agent *agent, int peer)
 {
 	char ignored[512];
@@ -55,7 +56,7 @@ static void answer(cau_agent *agent, int peer)
 	close(peer);
 }
 
-// Returns whether the thread is to go on.
+// Returns whether the thread continues.
 static bool wait_for_end(const cau_agent *agent, int patience_ms)
 {
 	struct pollfd ending = {.fd = agent->ending, .events = POLLIN};
@@ -76,13 +77,13 @@ static void *serve(void *argument)
 		int peer = accept4(agent->socket, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 		if (peer >= 0)
 			answer(agent, peer);
-		else // a peer that is gone already costs a pause, too
+		else // failed: a peer that has already gone causes a pause too
 			goes_on = wait_for_end(agent, ACCEPT_PAUSE_MS);
 	}
 	return NULL;
 }
 
-// ---- life
+// ---- creating and destroying
 static int listen_at(const struct addrinfo *at)
 {
 	int on = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy's TCP agent-check: whoever connects gets one line and is closed. Nothing is read of a
-// peer and nobody is waited for, so that a bad one costs what a good one does.
+// HAProxy's TCP agent-check: each connection gets one line and is closed. The agent reads nothing
+// and waits for no peer, so a bad peer costs no more than a good one.
 #pragma once
 
 #include <stddef.h>
@@ -10,17 +10,17 @@
 
 typedef struct cau_agent cau_agent;
 
-// `measure` says what the load is now; it is called on the agent's thread, at most every
-// CAU_AGENT_MEASURE_S, whoever asks how often.
+// `measure` returns the present load. It is called on the agent's thread, at most once in
+// CAU_AGENT_MEASURE_S, however many peers ask.
 #define CAU_AGENT_MEASURE_S 0.25
 typedef struct cau_agent_def {
-	const char *address; // a numeric one or a host's name
-	int port;            // 0: any free one
+	const char *address; // a numeric address or a host name
+	int port;            // 0: any free port
 	void (*measure)(void *user, cau_load *load);
 	void *user;
 } cau_agent_def;
 
-// Listens and starts its thread. Errors: CAU_IO (it cannot listen there), CAU_NO_MEMORY.
+// Listens and starts the thread. Errors: CAU_IO (cannot listen at the address), CAU_NO_MEMORY.
 cau_status cau_agent_create(cau_agent **agent, const cau_agent_def *def, cau_error *error);
 int cau_agent_port(const cau_agent *agent);
-void cau_agent_destroy(cau_agent *agent); // takes NULL
+void cau_agent_destroy(cau_agent *agent); // `agent` may be NULL

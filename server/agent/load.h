@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much room a daemon has for new sessions, as a proxy in front of several is told.
+// How many new sessions a daemon can take. A proxy in front of several daemons reads it.
 #pragma once
 
 #include <stdbool.h>
@@ -7,19 +7,21 @@
 #include <stdint.h>
 
 typedef struct cau_load {
-	bool takes; // new sessions; false: it starts, drains, stands aside, or its store has no room
+	// accepts new sessions; false while the daemon starts, drains or stands aside, or if its store
+	// is not ready
+	bool takes;
 	int32_t session_count, session_count_most;
-	int64_t session_bytes, session_bytes_most; // memory of all sessions, about
-	double busy_share;     // of the workers' cores that the process was running on, 0 to 1
-	double pace_share_min; // of its speed that the session furthest behind reaches, 0 to 1
+	int64_t session_bytes, session_bytes_most; // approximate memory of all sessions
+	double busy_share;                         // used share of the workers' cores, 0 to 1
+	double pace_share_min; // pace of the slowest session, as a share of its speed, 0 to 1
 } cau_load;
 
-// The least of the free shares of sessions, memory and cores, times the share of its speed that the
-// session furthest behind reaches: 1 to 100 %. Never 0, which HAProxy takes for `drain`: where all
-// daemons are full one of them has to say so.
+// Returns the free capacity, 1 to 100 %: the least of the free shares of sessions, memory and
+// cores, times pace_share_min. It is never 0, which HAProxy treats as `drain`: if all daemons are
+// full, one of them must still report it.
 int cau_load_free_percent(const cau_load *load);
 
 enum { CAU_LOAD_LINE_BYTES = 16 };
 
-// The line of HAProxy's agent-check: "ready 63%\n" or "drain\n". Returns its bytes.
+// Writes the line of HAProxy's agent-check: "ready 63%\n" or "drain\n". Returns its bytes.
 size_t cau_load_write(const cau_load *load, char line[CAU_LOAD_LINE_BYTES]);

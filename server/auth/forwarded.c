@@ -8,12 +8,12 @@
 
 static bool is_address(const char *text)
 {
-	struct in6_addr address; // the larger one
+	struct in6_addr address; // in6_addr, the larger of both types
 	return inet_pton(AF_INET, text, &address) == 1 || inet_pton(AF_INET6, text, &address) == 1;
 }
 
-// On a socket of IPv6 the system shows an IPv4 peer as ::ffff:10.0.0.1 (RFC 4291, 2.5.5.2);
-// settings name it as 10.0.0.1.
+// Replaces ::ffff:10.0.0.1 by 10.0.0.1. On an IPv6 socket the system shows an IPv4 peer in the
+// first form (RFC 4291, 2.5.5.2); settings use the second.
 static void take_off_mapping(char *address)
 {
 	static const char mapped[] = "::ffff:";
@@ -23,9 +23,9 @@ static void take_off_mapping(char *address)
 		memmove(address, inner, strlen(inner) + 1);
 }
 
-// Each proxy adds the address that it was asked from on the right. So from the right on, those that
-// are proxies of ours are believed, and the first that is none is whom they were asked by; what
-// stands to the left of it anybody may have written.
+// Each proxy adds its client's address on the right of the header. So addresses are read from the
+// right: as long as one is a trusted proxy, its entry is believed. The first address that is no
+// trusted proxy is the client. Anything left of it may be forged.
 void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
                            size_t capacity)
 {

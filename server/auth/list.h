@@ -3,5 +3,5 @@
 
 #include <stdbool.h>
 
-// Whether `text` is one of the names, separated by commas, in `list`; in any case.
+// True if `text` is one of the comma-separated names in `list`, ignoring case.
 bool cau_list_has(const char *list, const char *text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tokens are read at the start and when the daemon is told to read them anew, by the main thread,
-// while the network thread asks: a lock held for moments stands between the two.
+// Tokens. The main thread reads the file at the start and at a reload, while the network thread
+// checks tokens. A lock, held for moments, guards the list.
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,21 +19,22 @@ enum {
 	LEAST_TOKEN_BYTES = 16,
 	MOST_TOKEN_BYTES = 128,
 	NAME_BYTES = CAU_AUTH_NAME_BYTES,
-	WORD_BYTES = 160, // of a line: longer than the longest token, or list of sessions
+	WORD_BYTES = 160, // of a line's word: longer than the longest token or list of sessions
 	MOST_QUOTA = 1000000,
 };
 
 static const char hash_mark[] = "sha256:";
 
-// What is kept of a token is its hash. Tokens are random, so that none can be guessed from it.
+// A token of the file. Only its hash is kept. Tokens are random, so none can be guessed from its
+// hash.
 typedef struct token {
 	char hash[CAU_SHA256_TEXT_BYTES];
-	char name[NAME_BYTES]; // whose it is, for the log; "": not said
+	char name[NAME_BYTES]; // the owner's name, for the log; "": none given
 	int64_t expires_us;    // Unix time; INT64_MAX: never
 	cau_role role;
 	cau_auth_bounds bounds;
-	uint64_t grant; // stays as long as the token is in the file
-	int line;       // of the file
+	uint64_t grant; // stays the same as long as the token is in the file
+	int line;       // number of its line in the file
 } token;
 
 typedef struct token_list {
@@ -43,15 +44,15 @@ typedef struct token_list {
 
 struct cau_auth {
 	bool required;
-	pthread_mutex_t mutex; // guards what follows
+	pthread_mutex_t mutex; // guards the members below
 	uint64_t last_grant;
 	token_list list;
 };
 
-// Without tokens everybody has this one.
+// The grant of everyone if there is no file of tokens.
 enum { GRANT_OF_ALL = 1 };
 
-// The second word of a line: a hash, or a token whose hash is kept.
+// Reads the second word of a line: a hash, or a token whose hash is kept.
 static cau_status read_secret(token *made, const char *word, int number, cau_error *error)
 {
 	size_t bytes = strlen(word);
@@ -73,7 +74,8 @@ static cau_status read_secret(token *made, const char *word, int number, cau_err
 	return CAU_OK;
 }
 
-// `d1-anna-*,d1-demo`: no entry is empty, and a `*` ends one.
+// Reads a list such as `d1-anna-*,d1-demo`. No entry may be empty, and a `*` must be an entry's
+// last character.
 static cau_status read_sessions(token *made, const char *list, int number, cau_error *error)
 {
 	bool right = *list && strlen(list) < sizeof made->bounds.sessions;
@@ -91,7 +93,7 @@ static cau_status read_sessions(token *made, const char *list, int number, cau_e
 	return CAU_OK;
 }
 
-// `name=anna`, `expires=2027-01-31T12:00:00Z`, `sessions=d1-anna-*` or `quota=60`.
+// Reads `name=anna`, `expires=2027-01-31T12:00:00Z`, `sessions=d1-anna-*` or `quota=60`.
 static cau_status read_field(token *made, const char *word, int number, cau_error *error)
 {
 	const char *value = strchr(word, '=');
@@ -137,8 +139,8 @@ static bool same_bytes(const char *a, const char *b, size_t bytes)
 	return difference == 0;
 }
 
-// By its hash; every token of the list is looked at, so that a wrong one takes as long as a right
-// one.
+// Finds a token by its hash. Every token of the list is compared, so that a wrong token takes as
+// long as a right one.
 static const token *find_hash(const token_list *list, const char *hash)
 {
 	const token *found = NULL;
@@ -205,8 +207,7 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 	return status;
 }
 
-// Puts a list that has been read in the place of the one before. A token that was in both keeps its
-// grant.
+// Replaces the list by one that was read. A token that is in both lists keeps its grant.
 static void take_list(cau_auth *auth, token_list *read)
 {
 	pthread_mutex_lock(&auth->mutex);
@@ -260,10 +261,12 @@ void cau_auth_destroy(cau_auth *auth)
 	free(auth);
 }
 
-// Copies the token of this hash or, with NULL, of this grant, if it is there and has not expired.
+// Copies the token with this hash or, if `hash` is NULL, with this grant. Returns false if there is
+// none or it has expired.
 static bool look_up(const cau_auth *auth, const char *hash, uint64_t grant, token *copy)
 {
-	cau_auth *locked = (cau_auth *)auth; // const to callers: they change nothing that they can see
+	// `auth` is const because callers see no change; only the mutex changes
+	cau_auth *locked = (cau_auth *)auth;
 	const token *found = NULL;
 	pthread_mutex_lock(&locked->mutex);
 	if (hash)

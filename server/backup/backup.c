@@ -11,10 +11,11 @@
 #include "log/log.h"
 #include "store/backup.h"
 
-#define COPY_BYTES_PER_S 50e6 // about, read, written, synced and checked: for the builder's order
+// approximate speed of reading, writing, syncing and checking, for the order of the builder's jobs
+#define COPY_BYTES_PER_S 50e6
 
 typedef struct copying {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	cau_backups *backups;
 	cau_reply reply;
 	char folder[CAU_CONFIG_TEXT_BYTES + 16];
@@ -37,8 +38,8 @@ static void drop(cau_job *job)
 	finish((copying *)job, &error, NULL);
 }
 
-// The folder that the settings name is there, or an administrator is told; that beside the store is
-// made when it is first needed.
+// Makes the folder beside the store when it is first needed. A folder that the settings name must
+// exist; if not, the copy fails with an error.
 static cau_status make_folder(const copying *what, cau_error *error)
 {
 	bool named = *what->backups->config->backups;

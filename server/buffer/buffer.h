@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes to send, shared by reference count, with the headroom that libwebsockets writes its frame
-// header into. Servers do not mask, so connections of one thread may share a buffer.
+// Bytes to send, shared by reference count. They have the headroom into which libwebsockets writes
+// its frame header. Servers do not mask frames, so connections of one thread may share a buffer.
 #pragma once
 
 #include <stdatomic.h>
@@ -14,14 +14,15 @@ typedef struct cau_buffer {
 	atomic_int references;
 	bool binary;
 	size_t byte_count;
-	struct cau_buffer *next;           // of the one queue that owns it alone; unused while shared
-	_Alignas(16) unsigned char room[]; // CAU_BUFFER_HEADROOM, then the bytes
+	// next in the one queue that owns the buffer; unused while the buffer is shared
+	struct cau_buffer *next;
+	_Alignas(16) unsigned char room[]; // CAU_BUFFER_HEADROOM bytes, then the data
 } cau_buffer;
 
-// One reference, its bytes unset. NULL if memory ran out.
+// Makes a buffer with one reference and undefined bytes. Returns NULL if memory ran out.
 cau_buffer *cau_buffer_create(size_t capacity, bool binary);
 cau_buffer *cau_buffer_share(cau_buffer *buffer);
-void cau_buffer_release(cau_buffer *buffer); // takes NULL
+void cau_buffer_release(cau_buffer *buffer); // `buffer` may be NULL
 
 static inline unsigned char *cau_buffer_bytes(cau_buffer *buffer)
 {

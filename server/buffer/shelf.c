@@ -9,28 +9,31 @@
 #include "cautery/assert.h"
 
 enum {
-	GROWS_BY = 4,         // a piece is larger than asked by one part in so many: cuts, contacts
-	TOUCHED_BYTES = 4096, // a page is as large at least
+	// a piece is larger than requested by one part in this many, because cuts and contacts make
+	// states grow
+	GROWS_BY = 4,
+	TOUCHED_BYTES = 4096, // every page is at least this large
 };
 
 typedef struct piece {
 	cau_shelf *shelf;
-	struct piece *next; // on the shelf
-	size_t bytes;       // of `memory`
+	struct piece *next; // next piece on the shelf
+	size_t bytes;       // bytes of `memory`
 	max_align_t memory[];
 } piece;
 
 struct cau_shelf {
 	pthread_mutex_t mutex;
 	piece *first;
-	int lying, kept; // pieces that lie on it, and as many as may
+	int lying, kept; // lying: pieces on the shelf; kept: the largest number of them
 	int taken;
-	bool released; // by its owner: the last piece that comes back takes the shelf along
+	// the owner has released the shelf: it is freed with the last piece that is given back
+	bool released;
 };
 
 // ---- pieces
-// From the kernel, past the allocator: so a piece is the shelf's alone, and its pages move with it.
-// NULL: no memory.
+// Maps a piece directly from the kernel, without the allocator. So the piece's memory belongs only
+// to the shelf, and its pages move with it when it grows. Returns NULL if memory ran out.
 static piece *make(cau_shelf *shelf, size_t bytes)
 {
 	size_t all = sizeof(piece) + bytes + bytes / GROWS_BY;
@@ -41,8 +44,8 @@ static piece *make(cau_shelf *shelf, size_t bytes)
 	return made;
 }
 
-// MAP_POPULATE would not do: it has the kernel find the pages, and leaves it to the first write
-// that the host of a virtual machine does so too.
+// Writes to each page, so that memory is present. MAP_POPULATE is not enough: it makes the kernel
+// find the pages, but the host of a virtual machine finds its own only at the first write.
 static void touch(piece *made)
 {
 	volatile unsigned char *memory = (void *)made->memory;
@@ -50,7 +53,7 @@ static void touch(piece *made)
 		memory[i] = 0;
 }
 
-// NULL: no memory, and the piece is as it was.
+// Enlarges a piece. Returns NULL if memory ran out; the piece then stays as it was.
 static piece *grow(piece *old, size_t bytes)
 {
 	size_t all = sizeof *old + bytes + bytes / GROWS_BY;
@@ -121,7 +124,8 @@ void cau_shelf_stock(cau_shelf *shelf, size_t bytes, int count)
 	}
 }
 
-// Counts it as taken, so that the shelf stays until it is back. NULL: none lies there.
+// Takes a piece from the shelf; NULL if it has none. Counts a piece as taken either way, so that
+// the shelf stays until that piece is given back.
 static piece *take_lying(cau_shelf *shelf)
 {
 	pthread_mutex_lock(&shelf->mutex);

@@ -10,15 +10,15 @@
 #include "worker/priority.h"
 
 struct cau_builder {
-	pthread_mutex_t mutex; // guards all
-	pthread_cond_t work;   // there is some, or the builder stops
+	pthread_mutex_t mutex; // guards all members
+	pthread_cond_t work;   // signals that there is a job, or that the builder stops
 	const char *name;
 	int nice;
 	bool stopping;
 	cau_job_queue shorts, longs;
 	int under_way;
 	int32_t thread_count;
-	pthread_t thread[1 + CAU_BUILDER_THREADS_MOST]; // the first takes short jobs alone
+	pthread_t thread[1 + CAU_BUILDER_THREADS_MOST]; // the first takes only short jobs
 };
 
 static bool is_long(const cau_job *job)
@@ -26,7 +26,7 @@ static bool is_long(const cau_job *job)
 	return job->expected_s > CAU_BUILDER_SHORT_S;
 }
 
-// With the mutex: runs what this thread may, until the builder stops.
+// Runs the jobs that this thread may take, until the builder stops. The caller holds the mutex.
 static void work(cau_builder *builder, bool takes_long)
 {
 	while (!builder->stopping) {
@@ -102,7 +102,7 @@ void cau_builder_submit(cau_builder *builder, cau_job *job)
 	if (!late) {
 		cau_job_queue_put(is_long(job) ? &builder->longs : &builder->shorts, job,
 		                  cau_monotonic_s());
-		pthread_cond_broadcast(&builder->work); // not every thread may take it
+		pthread_cond_broadcast(&builder->work); // wake all: not every thread may take the job
 	}
 	pthread_mutex_unlock(&builder->mutex);
 	if (late)
@@ -118,7 +118,7 @@ static void drop_all(cau_job_queue *queue)
 void cau_builder_stop(cau_builder *builder)
 {
 	pthread_mutex_lock(&builder->mutex);
-	builder->stopping = true; // nothing is queued from here on
+	builder->stopping = true; // later jobs are dropped instead of queued
 	pthread_cond_broadcast(&builder->work);
 	pthread_mutex_unlock(&builder->mutex);
 	for (int32_t i = 0; i < builder->thread_count; i++)

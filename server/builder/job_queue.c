@@ -5,7 +5,7 @@ void cau_job_queue_put(cau_job_queue *queue, cau_job *job, double now_s)
 {
 	job->rank = now_s + CAU_JOB_PATIENCE * job->expected_s;
 	cau_job **place = &queue->first;
-	while (*place && (*place)->rank <= job->rank) // equals in the order they came
+	while (*place && (*place)->rank <= job->rank) // jobs of equal rank stay in order
 		place = &(*place)->next;
 	job->next = *place;
 	*place = job;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order of the builder's jobs: the shortest first, and none starves. A job is overtaken only by
-// jobs that come within CAU_JOB_PATIENCE times its own length after it.
+// The order of the builder's jobs: the shortest goes first, but every job gets its turn. A job is
+// overtaken only by jobs that come within CAU_JOB_PATIENCE times its own length after it.
 #pragma once
 
 #include "builder/builder.h"
@@ -8,9 +8,9 @@
 enum { CAU_JOB_PATIENCE = 4 };
 
 typedef struct cau_job_queue {
-	cau_job *first; // by rank
+	cau_job *first; // ordered by rank
 	int count;
 } cau_job_queue;
 
 void cau_job_queue_put(cau_job_queue *queue, cau_job *job, double now_s);
-cau_job *cau_job_queue_take(cau_job_queue *queue); // NULL: empty
+cau_job *cau_job_queue_take(cau_job_queue *queue); // NULL if the queue is empty

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The server's clocks. The core has none; deadlines are on the monotonic one.
+// The server's clocks. The core has none. Deadlines use the monotonic clock.
 #pragma once
 
 #include <math.h>
@@ -13,7 +13,7 @@ static inline double cau_monotonic_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Processor time of the calling thread: what others take of the machine is not in it.
+// Returns the processor time of the calling thread, without the time of other threads and programs.
 static inline double cau_thread_cpu_s(void)
 {
 	struct timespec now;
@@ -21,7 +21,7 @@ static inline double cau_thread_cpu_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Microseconds since 1970: for clients and the store, never for deadlines.
+// Returns microseconds since 1970, for clients and the store; never used for deadlines.
 static inline int64_t cau_wall_us(void)
 {
 	struct timespec now;

@@ -23,7 +23,7 @@ cau_status cau_config_set(cau_config *config, const char *name, const char *text
 	return cau_setting_store(found, config, text, error);
 }
 
-// What others read from the environment under our prefix.
+// True for names that other programs read from the environment with our prefix.
 static bool no_setting(const char *name)
 {
 	static const char *const names[] = {"config", "meshes", "jobs"};
@@ -57,7 +57,7 @@ cau_status cau_config_read_environment(cau_config *config, char *const *environm
 	return CAU_OK;
 }
 
-// Flags that are no settings; true if this was one.
+// Reads a flag that is not a setting. Returns false if the flag is a setting.
 static bool read_request(cau_config_request *request, const char *flag)
 {
 	const struct {
@@ -74,13 +74,13 @@ static bool read_request(cau_config_request *request, const char *flag)
 	return false;
 }
 
-// `--dds` alone is `--dds true`.
+// True if the text is a switch's value. Without one, `--dds` means `--dds true`.
 static bool is_switch_value(const char *text)
 {
 	return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;
 }
 
-// One pass over the flags: only --config if `file` is given, else all but --config.
+// Reads the flags once. If `file` is given, reads only --config; otherwise all flags but --config.
 static cau_status read_flags(cau_config *config, cau_config_request *request, const char **file,
                              int count, char *const *arguments, cau_error *error)
 {

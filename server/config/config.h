@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The settings of cauteryd, from one table: flags over environment over a JSON file over defaults.
+// The settings of cauteryd, from one table. Flags override the environment, which overrides a JSON
+// file, which overrides the defaults.
 //
 //     setting `max_sessions`: flag --max-sessions 8, environment CAUTERY_MAX_SESSIONS=8,
 //     file {"max_sessions": 8}
@@ -130,31 +131,31 @@ typedef struct cau_config {
 #undef CAU_CONFIG_REAL
 #undef CAU_CONFIG_SWITCH
 
-// What the command line asked for besides settings.
+// What the command line requests besides settings.
 typedef struct cau_config_request {
 	bool help, version, json, print_config, settings_schema;
-	const char *backup; // file for a copy of the store, or NULL
+	const char *backup; // file for a copy of the store; NULL: none
 } cau_config_request;
 
 void cau_config_default(cau_config *config);
 
-// Sets one setting from text, as flags, environment and file all do. CAU_NOT_FOUND: no such
-// setting; CAU_BAD_VALUE: not of its type or out of its range.
+// Sets one setting from text, as flags, environment and file do. CAU_NOT_FOUND: there is no such
+// setting; CAU_BAD_VALUE: wrong type or out of range.
 cau_status cau_config_set(cau_config *config, const char *name, const char *text, cau_error *error);
 
-// Reads a JSON object of settings; `text` ends with a zero that is not among its bytes.
+// Reads a JSON object of settings. `text` has a zero behind its `bytes` bytes.
 cau_status cau_config_read_text(cau_config *config, const char *text, size_t bytes,
                                 cau_error *error);
-// The same from a file of at most 64 KiB.
+// Reads a JSON object of settings from a file of at most 64 KiB.
 cau_status cau_config_read_file(cau_config *config, const char *file, cau_error *error);
 
-// Reads every CAUTERY_* of a zero-ended environment. CAUTERY_CONFIG and CAUTERY_MESHES are not
-// settings.
+// Reads every CAUTERY_* variable of an environment that ends with NULL. CAUTERY_CONFIG,
+// CAUTERY_MESHES and CAUTERY_JOBS are not settings.
 cau_status cau_config_read_environment(cau_config *config, char *const *environment,
                                        cau_error *error);
 
-// Everything in order: defaults, file (--config or CAUTERY_CONFIG), environment, flags; then checks
-// what concerns several settings.
+// Reads all settings in order: defaults, file (--config or CAUTERY_CONFIG), environment, flags.
+// Then checks conditions between several settings.
 cau_status cau_config_load(cau_config *config, cau_config_request *request, int argument_count,
                            char *const *arguments, char *const *environment, cau_error *error);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A settings file is one flat JSON object. The strict scan vouches for its form, so the walk below
-// only has to cut it into names and values.
+// Reads a settings file, which is one flat JSON object. A strict scan checks its form first, so the
+// functions below only have to cut it into names and values.
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,7 +33,8 @@ static const char *skip_space(const char *at)
 	return at + strspn(at, " \t\r\n");
 }
 
-// Copies a string's content; false if it has an escape that settings do not need or is too long.
+// Copies a string's content. Returns false if the string is too long or has an escape other than
+// \", \\ and \/.
 static bool take_string(const char **at, char *text, size_t capacity)
 {
 	size_t length = 0;
@@ -50,7 +51,7 @@ static bool take_string(const char **at, char *text, size_t capacity)
 	return true;
 }
 
-// Numbers, true, false; false for anything nested.
+// Copies a number, true or false. Returns false for an object or an array.
 static bool take_plain(const char **at, char *text, size_t capacity)
 {
 	size_t length = strcspn(*at, ",} \t\r\n");

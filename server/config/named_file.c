@@ -29,7 +29,7 @@ FILE *cau_named_file_open(const char *path, int64_t most_bytes, struct stat *inf
                           char reason[CAU_NAMED_FILE_REASON_BYTES])
 {
 	struct stat own;
-	// Without O_NONBLOCK opening a FIFO waits for a writer.
+	// Without O_NONBLOCK, opening a FIFO would wait for a writer.
 	int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 	if (descriptor < 0) {
 		snprintf(reason, CAU_NAMED_FILE_REASON_BYTES, "%s", strerrordesc_np(errno));

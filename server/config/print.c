@@ -43,7 +43,7 @@ void cau_config_print(const cau_config *config, FILE *stream)
 	fputs("\n}\n", stream);
 }
 
-// The type of a setting, its bounds and its default, as members of a JSON Schema.
+// Writes a setting's type, bounds and default as members of a JSON Schema.
 static void print_type(const setting *s, FILE *stream)
 {
 	static const char *const types[] = {[SETTING_TEXT] = "string",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words that settings and files have for roles: view, operate, admin.
+// The words for roles in settings and files: view, operate, admin.
 #pragma once
 
 #include <stdbool.h>
@@ -7,4 +7,5 @@
 #include "cautery/message_choices.h"
 
 const char *cau_role_word(cau_role role);
-bool cau_role_read(const char *word, cau_role *role); // false: it is none, *role stays
+// returns false if the word is none; *role then stays
+bool cau_role_read(const char *word, cau_role *role);

@@ -16,19 +16,20 @@ typedef enum setting_kind {
 typedef struct setting {
 	const char *name;
 	setting_kind kind;
-	size_t offset; // in cau_config
+	size_t offset; // offset in cau_config
 	const char *default_text;
-	double least, most; // SETTING_INTEGER, SETTING_REAL
+	double least, most; // for SETTING_INTEGER and SETTING_REAL
 	const char *meaning;
 } setting;
 
 extern const setting cau_settings[];
 extern const size_t cau_setting_count;
 
-// NULL if there is none. Takes both spellings, `max_sessions` and `max-sessions`.
+// Finds a setting; NULL if there is none. Both spellings are accepted, `max_sessions` and
+// `max-sessions`.
 const setting *cau_setting_find(const char *name);
 
-// Whether both have the same value of it.
+// True if both configurations have the same value of the setting.
 bool cau_setting_same(const setting *setting, const cau_config *a, const cau_config *b);
 
 // Checks and stores one value.

@@ -30,20 +30,20 @@
 #include "worker/priority.h"
 
 enum {
-	CLOSING_S = 2, // for connections to take their close frames
+	CLOSING_S = 2, // time for connections to take their close frames
 	REAP_MS = 250,
-	SCENES_S = 1,         // between looks at the folder of scenes
-	LAST_WORD_US = 50000, // for the log to take a line
+	SCENES_S = 1,         // time between checks of the folder of scenes
+	LAST_WORD_US = 50000, // time for the log to take a line
 };
 
 struct cau_daemon {
 	cau_config *config;
 	cau_auth *auth;
 	cau_static_files *files;
-	cau_static_files *manual; // NULL: none is installed
+	cau_static_files *manual; // NULL if no manual is installed
 	cau_scenes *scenes;
-	cau_store *store, *memory; // memory: of ephemeral sessions
-	cau_lease *lease;          // NULL: not wanted
+	cau_store *store, *memory; // memory: the store of ephemeral sessions
+	cau_lease *lease;          // NULL if not configured
 	cau_worker_pool *pool;
 	cau_builder *builder, *mover;
 	cau_hub *hub;
@@ -51,14 +51,16 @@ struct cau_daemon {
 	cau_watchdog *watchdog;
 	cau_service *service;
 	cau_network *network;
-	cau_dds *dds;     // NULL: not wanted
-	cau_agent *agent; // NULL: not wanted
+	cau_dds *dds;     // NULL if not configured
+	cau_agent *agent; // NULL if not configured
 	cau_load_meter meter;
 	cau_restart restart;
 	atomic_bool draining, stands_aside;
 	unsigned long ticks_seen;
-	bool network_moved, store_moved, watchdog_moved; // since systemd was last told
-	double scenes_due_s;                             // the next look at the folder of scenes
+	// these threads have run since the last notice to systemd
+	bool network_moved, store_moved, watchdog_moved;
+	// time of the next check of the folder of scenes
+	double scenes_due_s;
 };
 
 static void on_armed(void *user)
@@ -67,7 +69,8 @@ static void on_armed(void *user)
 	cau_watchdog_wake(daemon->watchdog);
 }
 
-// A look comes before the lease's end, too: the thread that renews it may be stuck.
+// Checks the sessions' deadlines and the lease, on the watchdog's thread. The lease is checked here
+// too, because the thread that renews it may be stuck.
 static double on_look(void *user, double now_s)
 {
 	cau_daemon *daemon = user;
@@ -75,10 +78,10 @@ static double on_look(void *user, double now_s)
 	return daemon->lease ? fmin(look_s, now_s + cau_lease_check(daemon->lease)) : look_s;
 }
 
-// ---- the label
-// The process ends as a kill would end it, which is what the store is held to: energy is off with
-// it, nobody hears another word, and what was acknowledged is on the disk. A reader of the log that
-// takes nothing must not hold that up, so a signal of the kernel's comes behind the line.
+// ---- losing the label
+// Ends the process as a kill would. The store withstands a kill: what was acknowledged is on the
+// disk. Energy ends with the process, and no client gets another message. If the reader of the log
+// blocks, the kernel's timer signal still ends the process.
 __attribute__((noreturn)) static void on_label_lost(void *user, const char *reason)
 {
 	const cau_daemon *daemon = user;
@@ -90,7 +93,8 @@ __attribute__((noreturn)) static void on_label_lost(void *user, const char *reas
 	_exit(EXIT_FAILURE);
 }
 
-// On the store's thread: what is on the disk is not told once the label may be another's.
+// Checks the lease on the store thread, so that no commit is acknowledged once another daemon may
+// have the label.
 static void on_commit(void *user)
 {
 	cau_daemon *daemon = user;
@@ -148,14 +152,14 @@ static cau_status take_label(cau_daemon *daemon, cau_error *error)
 static void tell_state(cau_daemon *daemon, bool ephemeral, cau_store_state state,
                        const char *reason)
 {
-	if (daemon->hub) // sessions first: who reads the log may act on it at once
+	if (daemon->hub) // sessions first, because a reader of the log may act on the line at once
 		cau_hub_store_takes(daemon->hub, ephemeral, state == CAU_STORE_READY, reason);
 	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL,
 	        ephemeral ? "memory_state" : "store_state", "state=%s reason=\"%s\"",
 	        cau_store_state_name(state), reason);
 }
 
-// On the store's thread, as the next one.
+// Callbacks of the two stores, on their store threads.
 static void on_store_state(void *user, cau_store_state state, const char *reason)
 {
 	tell_state(user, false, state, reason);
@@ -166,7 +170,7 @@ static void on_memory_state(void *user, cau_store_state state, const char *reaso
 	tell_state(user, true, state, reason);
 }
 
-// On the store's thread.
+// Logs a change of the budget's state, on the store thread.
 static void on_store_budget(void *user, cau_store_budget_state state, int64_t bytes,
                             int64_t dropped)
 {
@@ -195,7 +199,7 @@ static cau_status open_store(cau_daemon *daemon, cau_error *error)
 	return cau_store_open(&store, &daemon->store, error);
 }
 
-// Of ephemeral sessions. Nobody waits for a disk, so no commit waits for company.
+// Opens the store of ephemeral sessions. It has no disk, so no commit waits for more batches.
 static cau_status open_memory(cau_daemon *daemon, cau_error *error)
 {
 	cau_store_config memory = cau_store_default_config();
@@ -213,7 +217,7 @@ static int32_t count_workers(const cau_config *config)
 	return config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
 }
 
-// As many as could work at once.
+// Returns the number of builder threads: one for each worker, up to the limit.
 static int32_t count_builders(int32_t workers)
 {
 	return workers < CAU_BUILDER_THREADS_MOST ? workers : CAU_BUILDER_THREADS_MOST;
@@ -237,7 +241,8 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status = cau_builder_create(&daemon->builder, "cautery-build", count_builders(workers),
 		                            CAU_NICE_BUILDER, error);
-	if (!status) // who waits for a session that moves does not wait for what workers leave
+	// a client that waits for a moving session must not wait for processor time that workers leave
+	if (!status)
 		status = cau_builder_create(&daemon->mover, "cautery-move", 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
@@ -279,7 +284,7 @@ static cau_status open_network(cau_daemon *daemon, cau_error *error)
 	return status;
 }
 
-// On the agent's thread. Who has no place for new sessions may have some that go on.
+// Measures the load, on the agent's thread. `takes`: the daemon accepts new sessions.
 static void measure_load(void *user, cau_load *load)
 {
 	cau_daemon *daemon = user;
@@ -301,8 +306,8 @@ static cau_status open_agent(cau_daemon *daemon, cau_error *error)
 	return cau_agent_create(&daemon->agent, &def, error);
 }
 
-// Scenes there must be. Without a viewer a plain page says that there is none. Without a manual its
-// addresses do.
+// Finds the folders of viewer, manual and scenes. Only the scenes are required. Without a viewer, a
+// plain page says that there is none; without a manual, its addresses say so.
 static cau_status find_files(cau_config *config, cau_error *error)
 {
 	if (!*config->viewer)
@@ -316,8 +321,8 @@ static cau_status find_files(cau_config *config, cau_error *error)
 	                "folder of scenes with the setting scenes");
 }
 
-// With `dds_optional` the daemon goes without DDS where the machine lacks ports or an interface for
-// it. Wrong settings, roles or identities end the daemon with and without `dds_optional`.
+// Opens DDS. With `dds_optional` the daemon continues without DDS if the machine lacks ports or an
+// interface for it. Wrong settings, roles or identities always end the daemon.
 static cau_status open_dds(cau_daemon *daemon, cau_error *error)
 {
 	cau_status status = cau_dds_create(&daemon->dds, daemon->config, daemon->hub, error);
@@ -389,9 +394,9 @@ cau_status cau_daemon_start(cau_daemon **made, cau_config *config, cau_error *er
 	return CAU_OK;
 }
 
-// Energy goes off by the network and the watchdog, and nothing is acknowledged without the store:
-// one of them that hangs is a daemon that hangs, and systemd is to take it for one. Workers may be
-// busy for as long as a step takes.
+// Notifies systemd that the daemon is alive, if network, store and watchdog threads have all run.
+// Network and watchdog turn energy off, and nothing is acknowledged without the store, so the
+// daemon hangs if any of these hangs. Workers are not checked: a step may take long.
 static void tell_alive(cau_daemon *daemon)
 {
 	unsigned long ticks = cau_service_ticks(daemon->service);
@@ -405,8 +410,8 @@ static void tell_alive(cau_daemon *daemon)
 	daemon->network_moved = daemon->store_moved = daemon->watchdog_moved = false;
 }
 
-// Scenes are added, changed and removed while it runs. One that cannot be read leaves all as they
-// were, and is logged once.
+// Reads the folder of scenes again if it changed. If a scene cannot be read, all scenes stay as
+// they were, and the error is logged once.
 static void follow_scenes(cau_daemon *daemon)
 {
 	bool changed;
@@ -482,11 +487,11 @@ void cau_daemon_stop(cau_daemon *daemon)
 	sd_notify(0, "STOPPING=1");
 	daemon->draining = true;
 	if (daemon->hub)
-		cau_hub_stop_time(daemon->hub); // before anything that may wait
+		cau_hub_stop_time(daemon->hub); // first, because the calls below may wait
 	if (daemon->service)
 		cau_service_drain(daemon->service);
 	cau_dds_stop(daemon->dds);
-	double drained_s = cau_monotonic_s() + daemon->config->drain_s; // at the latest
+	double drained_s = cau_monotonic_s() + daemon->config->drain_s; // latest end of the drain
 	cau_moves_drain(daemon->moves);
 	if (daemon->hub)
 		cau_hub_drain(daemon->hub, drained_s - cau_monotonic_s());
@@ -501,7 +506,8 @@ void cau_daemon_stop(cau_daemon *daemon)
 	if (daemon->service)
 		cau_service_set_network(daemon->service, NULL);
 	cau_network_destroy(daemon->network);
-	// Answers to what waits go to transports, which may hold sessions, which know the hub.
+	// Destroy in this order: answers to waiting requests go to transports; transports may hold
+	// sessions; sessions use the hub.
 	cau_moves_stop(daemon->moves);
 	cau_hub_stop(daemon->hub);
 	cau_builder_destroy(daemon->builder);
@@ -513,7 +519,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 	cau_worker_pool_destroy(daemon->pool);
 	cau_store_close(daemon->store);
 	cau_store_close(daemon->memory);
-	cau_lease_give_back(daemon->lease); // nothing is written any more
+	cau_lease_give_back(daemon->lease); // nothing is written to the store any more
 	cau_scenes_destroy(daemon->scenes);
 	cau_static_files_destroy(daemon->manual);
 	cau_static_files_destroy(daemon->files);

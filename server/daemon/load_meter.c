@@ -6,7 +6,7 @@
 
 #include "clock/clock.h"
 
-// Shorter windows would tell single steps; longer ones, sessions that are gone.
+// A shorter window would show single steps; a longer one, sessions that have ended.
 #define WINDOW_S 0.5
 
 static double process_cpu_s(void)
@@ -26,7 +26,8 @@ void cau_load_meter_init(cau_load_meter *meter, const cau_config *config, cau_hu
 	                          .window_cpu_s = process_cpu_s()};
 }
 
-// Processor time of all threads: builders and the network take of the same cores as the workers.
+// Measures the processor time of all threads, because builders and network use the same cores as
+// the workers.
 static void measure_cores(cau_load_meter *meter)
 {
 	double now_s = cau_monotonic_s(), cpu_s = process_cpu_s();

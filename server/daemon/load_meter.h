@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the daemon's load for whoever places new sessions.
+// Measures the daemon's load, by which a proxy places new sessions.
 #pragma once
 
 #include "agent/load.h"
@@ -10,11 +10,12 @@ typedef struct cau_load_meter {
 	const cau_config *config; // borrowed
 	cau_hub *hub;
 	int32_t worker_count;
-	double window_s, window_cpu_s; // where the present window began: monotonic, processor time
-	double busy_share;             // of the last window
+	// start of the present window: monotonic time, and processor time by then
+	double window_s, window_cpu_s;
+	double busy_share; // share of the cores used in the last window
 } cau_load_meter;
 
 void cau_load_meter_init(cau_load_meter *meter, const cau_config *config, cau_hub *hub,
                          int32_t worker_count);
-// All but `takes`. One thread.
+// Fills all members except `takes`. One thread uses this.
 void cau_load_meter_read(cau_load_meter *meter, cau_load *load);

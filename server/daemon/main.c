@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cauteryd: reads its settings, starts the daemon, waits for signals, drains.
+// cauteryd: reads its settings, starts the daemon, waits for signals, and drains.
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,10 +14,10 @@
 #include "log/log.h"
 #include "store/backup.h"
 
-// Ends 0 after a drain, 1 if the daemon could not start, 2 for bad settings.
+// Exit codes: 0 after a drain, 1 if the daemon could not start, 2 for wrong settings.
 enum { EXIT_STARTED = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
-enum { FILES = 8192 }; // as deploy/systemd/common.conf
+enum { FILES = 8192 }; // the same number as in deploy/systemd/common.conf
 
 static void block_signals(sigset_t *signals)
 {
@@ -27,13 +27,14 @@ static void block_signals(sigset_t *signals)
 	sigaddset(signals, SIGHUP);
 	sigaddset(signals, SIGUSR1);
 	sigaddset(signals, SIGUSR2);
-	pthread_sigmask(SIG_BLOCK, signals, NULL); // every thread made later inherits it
+	pthread_sigmask(SIG_BLOCK, signals, NULL); // later threads inherit the mask
 	signal(SIGPIPE, SIG_IGN);
-	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is the store's to answer
+	signal(SIGXFSZ, SIG_IGN); // the store handles the error of a file that may not grow
 }
 
-// Connections without hello alone may be thousands (transport_ws/strangers.c), and a shell gives
-// its programs 1,024 descriptors. Whoever wants fewer sets the hard limit.
+// Raises the limit on descriptors. Connections without hello may be thousands
+// (transport_ws/strangers.c), but a shell gives its programs 1,024 descriptors. Set the hard limit
+// for a lower number.
 static void raise_file_limit(void)
 {
 	struct rlimit files;
@@ -52,7 +53,8 @@ static int fail(const char *event, const cau_error *error)
 
 static void print_ready(const cau_config *config)
 {
-	bool bracketed = strchr(config->listen, ':') != NULL; // RFC 3986: an IPv6 address
+	// RFC 3986: an IPv6 address is in brackets
+	bool bracketed = strchr(config->listen, ':') != NULL;
 	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"%s://%s%s%s:%lld/\", \"pid\": %d}\n",
 	       config->listen, (long long)config->port, *config->tls_certificate ? "https" : "http",
 	       bracketed ? "[" : "", config->listen, bracketed ? "]" : "", (long long)config->port,
@@ -60,15 +62,15 @@ static void print_ready(const cau_config *config)
 	fflush(stdout);
 }
 
-// What the program was called with, and what that made of the settings at the start.
+// The program's arguments, and the settings at the start.
 typedef struct call {
 	int argument_count;
 	char **arguments;
 	cau_config settings;
 } call;
 
-// Of the settings the level of the log follows at once; others that have changed in the file need a
-// restart, which is said.
+// Reads the settings again. Only the log level takes effect at once. For other changed settings,
+// logs that they need a restart.
 static void reload_settings(call *called)
 {
 	cau_config now;
@@ -121,7 +123,7 @@ static int run(cau_config *config, bool json, call *called)
 	return EXIT_STARTED;
 }
 
-// The store's copy, for no other user to read.
+// Copies the store to a file that other users cannot read.
 static int back_up(const cau_config *config, const char *file)
 {
 	cau_error error = {0};

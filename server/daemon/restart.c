@@ -6,7 +6,7 @@
 #include "clock/clock.h"
 #include "log/log.h"
 
-#define PACE_S 2.0 // between two lines of the log
+#define PACE_S 2.0 // time between two lines of the log
 
 void cau_restart_begin(cau_restart *restart, cau_hub *hub, int32_t sessions)
 {

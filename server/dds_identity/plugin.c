@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plugin that Cyclone loads: its own authentication, with some of its functions listened to.
+// The plugin that Cyclone loads. It passes all calls to Cyclone's own authentication, and notes
+// what some of them report.
 #include <dds/security/dds_security_api.h>
 #include <dlfcn.h>
 #include <stddef.h>
@@ -8,9 +9,11 @@
 #include "dds_identity/identity.h"
 #include "dds_identity/proofs.h"
 
-static void *library;                     // Cyclone's plugin; stays open
-static dds_security_authentication own;   // its functions; the same for every domain
-static const char certificate[] = "c.id"; // the property of a credential token that holds it
+static void *library; // handle of Cyclone's plugin; stays open
+// functions of Cyclone's plugin; the same for every domain
+static dds_security_authentication own;
+// the property of a credential token that has the certificate
+static const char certificate[] = "c.id";
 
 static DDS_Security_ValidationResult_t
 meet(dds_security_authentication *instance, DDS_Security_IdentityHandle *identity,
@@ -57,7 +60,8 @@ begin_reply(dds_security_authentication *instance, DDS_Security_HandshakeHandle 
 	return result;
 }
 
-// Cyclone asks for this once a handshake has succeeded, to check the peer's permissions.
+// Passes the credential on and notes the certificate. Cyclone calls this after a successful
+// handshake, to check the peer's permissions.
 static DDS_Security_boolean tell_credential(dds_security_authentication *instance,
                                             DDS_Security_AuthenticatedPeerCredentialToken *token,
                                             const DDS_Security_HandshakeHandle handshake,

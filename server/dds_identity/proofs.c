@@ -10,17 +10,18 @@ enum { PROOFS_MOST = 512, GUID_BYTES = 16 };
 
 typedef struct proof {
 	bool used;
-	uint64_t since; // the count of meetings: the oldest makes room
+	uint64_t since; // the value of `meetings` when it was added; the oldest proof is replaced first
 	uint8_t guid[GUID_BYTES];
-	int64_t identity, handshake;         // the plugin's handles; 0: none
-	char subject[CAU_DDS_SUBJECT_BYTES]; // "": not proved
+	int64_t identity, handshake;         // handles of the plugin; 0: none
+	char subject[CAU_DDS_SUBJECT_BYTES]; // "" if not proved
 } proof;
 
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static proof proofs[PROOFS_MOST];
 static uint64_t meetings;
 
-// The proof of this GUID, else a free one, else the oldest: whoever that was is nobody from now on.
+// Returns the proof with this GUID, else a free one, else the oldest, whose participant then counts
+// as not proved.
 static proof *place_for(const uint8_t guid[GUID_BYTES])
 {
 	proof *place = &proofs[0];
@@ -51,7 +52,8 @@ void cau_dds_proofs_begin(int64_t identity, int64_t handshake)
 	pthread_mutex_unlock(&mutex);
 }
 
-// False: no certificate, or a name that does not fit, which must not pass for a shorter one.
+// Reads the certificate's subject name. Returns false if there is no certificate, or if the name is
+// too long: a cut name must not pass for a shorter one.
 static bool read_subject(const char *pem, char subject[CAU_DDS_SUBJECT_BYTES])
 {
 	BIO *from = BIO_new_mem_buf(pem, -1), *to = BIO_new(BIO_s_mem());

@@ -24,7 +24,7 @@ static cau_status set_directory(const char *folder, size_t bytes, cau_scene_def 
 	return CAU_OK;
 }
 
-// The folder of `path` into scene->directory, where its relative mesh files are looked up.
+// Sets scene->directory to the folder of `path`, in which relative names of mesh files are found.
 static cau_status set_folder_of(const char *path, cau_scene_def *scene, cau_error *error)
 {
 	const char *slash = strrchr(path, '/');
@@ -44,7 +44,7 @@ cau_status cau_scene_from_file(const char *path, cau_scene_def *scene, cau_error
 	return status ? status : set_folder_of(path, scene, error);
 }
 
-// A scene for the caller to free. It is large, hence on the heap.
+// Allocates a scene, which the caller frees. A scene is too large for the stack.
 static cau_scene_def *new_scene(cau_error *error)
 {
 	cau_scene_def *scene = malloc(sizeof *scene);
@@ -59,7 +59,7 @@ static cau_status create(const char *name, const cau_scene_def *scene,
 	cau_session_def def = wanted ? *wanted : cau_default_session_def();
 	def.scene = scene;
 	if (error)
-		error->file[0] = 0; // the core fills it where a mesh file is wrong
+		error->file[0] = 0; // the core sets the file if a mesh file is wrong
 	cau_status status = cau_session_create(&def, session, error);
 	if (status && error && !error->file[0])
 		snprintf(error->file, sizeof error->file, "%.255s", name ? name : "");

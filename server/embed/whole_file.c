@@ -24,7 +24,7 @@ static cau_status check_size(const struct stat *info, size_t most, cau_error *er
 	return CAU_OK;
 }
 
-// `capacity` bytes at most, and a zero behind them.
+// Reads at most `capacity` bytes and adds a zero behind them.
 static cau_status read_all(FILE *file, size_t capacity, char **text, size_t *bytes,
                            cau_error *error)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a file as a whole.
+// Reads a whole file into memory.
 #pragma once
 
 #include <stddef.h>

@@ -19,12 +19,13 @@
 #include "cautery/assert.h"
 
 enum { LOOK_MS = 100, ARGUMENTS_MAX = 24, NUMBER_BYTES = 32, PATH_BYTES = 4096 };
-static const double wall_share = 4; // of the processor time: a busy machine gives little of it
+// allowed wall time over allowed processor time: a busy machine gives the process little time
+static const double wall_share = 4;
 
 struct cau_filling {
 	atomic_int holders;
 	atomic_bool cancelled, ended;
-	atomic_bool done; // after bytes and byte_count
+	atomic_bool done; // set after bytes and byte_count
 	void *bytes;
 	size_t byte_count;
 };
@@ -83,8 +84,10 @@ bool cau_filling_solid(const cau_filling *filling, const void **bytes, size_t *b
 // ---- the process
 typedef struct process {
 	pid_t pid;
-	int in, out, said;                    // files: standard input and output; pipe: standard error
-	char text[CAU_FILL_REPORT_BYTES - 1]; // room for the line feed that the last line may lack
+	// in, out: files of standard input and output; said: pipe of standard error
+	int in, out, said;
+	// one byte less, for a line feed that the last line may lack
+	char text[CAU_FILL_REPORT_BYTES - 1];
 	size_t text_bytes;
 } process;
 
@@ -101,7 +104,7 @@ static void add(command *of, const char *word)
 	of->word[of->count++] = (char *)word;
 }
 
-// cautery-mesh lies beside the program that runs.
+// Finds cautery-mesh, which is in the folder of the running program.
 static bool find_program(char path[static PATH_BYTES])
 {
 	ssize_t length = readlink("/proc/self/exe", path, PATH_BYTES - 1);
@@ -152,7 +155,7 @@ static bool write_all(int file, const void *bytes, size_t byte_count)
 	return lseek(file, 0, SEEK_SET) == 0;
 }
 
-// Its environment is empty: secrets of the daemon's are none of its business.
+// Starts the process, with an empty environment, so that it cannot read secrets of the daemon.
 static int spawn(process *of, command *line, int said)
 {
 	posix_spawn_file_actions_t files;
@@ -203,7 +206,7 @@ static cau_status start(process *of, const cau_fill_wish *wish, cau_error *error
 	           : CAU_OK;
 }
 
-// Reads output of the process from its pipe. False: the process has ended.
+// Reads output of the process from its pipe. Returns false if the process has ended.
 static bool hear(process *of)
 {
 	size_t room = sizeof of->text - 1 - of->text_bytes;
@@ -222,7 +225,7 @@ static double now_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Waits until the process ends, or kills it. Returns its exit state. *why: the reason of a kill.
+// Waits until the process ends, or kills it. Returns its exit status. *why: the reason for a kill.
 static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish *wish,
                     const char **why)
 {
@@ -248,8 +251,8 @@ static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish
 	return state;
 }
 
-// ---- reports and complaints of the process
-// Leaves out lines of progress.
+// ---- reports and errors of the process
+// Copies the report without the lines of progress.
 static void take_report(char *text, char *report)
 {
 	size_t used = 0;
@@ -265,7 +268,8 @@ static void take_report(char *text, char *report)
 	report[used] = 0;
 }
 
-// "cautery-mesh: FILE: --edge: asks for ..." as a reason, and the parameter that it is about.
+// Turns "cautery-mesh: FILE: --edge: asks for ..." into an error: its reason, and the parameter
+// that it concerns.
 static cau_status take_complaint(const char *file_name, const char *text, cau_error *error)
 {
 	static const char *const parameters[][2] = {
@@ -281,7 +285,7 @@ static cau_status take_complaint(const char *file_name, const char *text, cau_er
 		size_t length = strlen(parameters[i][0]);
 		if (strncmp(at, parameters[i][0], length) != 0)
 			continue;
-		at += i == 2 ? 2 : length; // "strict refuses ..." is a sentence
+		at += i == 2 ? 2 : length; // "strict refuses ..." is part of the sentence, so it stays
 		return cau_fail(error, CAU_BAD_MESH, parameters[i][1], "%.*s", (int)strcspn(at, "\n"), at);
 	}
 	return cau_fail(error, CAU_BAD_MESH, "", "%.*s", (int)strcspn(at, "\n"), at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// session.advance: commands first, all or none; then ticks, one by one (run.c); then the answer.
+// session.advance: applies all commands or none, then the ticks one by one (run.c), then answers.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 
 // ---- commands -----------------------------------------------------------------------------------
 
-// None is taken unless the core takes all. Paths of the core begin in the command.
+// Checks that the core accepts all commands. The error's path names the command.
 static cau_status check(cau_session *core, const cau_advance *advance, cau_error *error)
 {
 	int32_t index;
@@ -24,8 +24,9 @@ static cau_status check(cau_session *core, const cau_advance *advance, cau_error
 	return status;
 }
 
-// An enable that states what holds is none: it is neither the core's nor the log's. Lock-step
-// states it with every request, and each entry costs a stored session some KiB.
+// True if the command repeats an enable that is already in effect. Such a command goes neither to
+// the core nor to the log. Lock-step repeats the enable with every request, and each log entry
+// costs a stored session some KiB.
 static bool holds_already(cau_session *core, const cau_command *command, const cau_drive *drive)
 {
 	cau_frame frame;
@@ -52,7 +53,7 @@ static void apply(cau_hosted *h, const cau_order *order, cau_command *command)
 	    cau_session_submit(h->core.session, command, &error))
 		cau_log(CAU_LOG_ERROR, h->identity.id, "advance_lost", "tool=%s reason=\"%s\"",
 		        command->tool,
-		        error.reason); // it was checked, and nothing came between
+		        error.reason); // cannot fail: the commands were checked just before
 	cau_record_command(&h->record, command, NULL, NULL, 0);
 	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE && command->as.energized && !drive.lit)
 		cau_timeline_add(&h->timeline, CAU_EVENT_ENERGY_ON, command->tool, order->asker.name, 0,
@@ -83,8 +84,8 @@ cau_outcome_kind cau_apply_advance(cau_hosted *h, cau_order *order, const cau_ac
 
 // ---- the answer ---------------------------------------------------------------------------------
 
-// The ticks are in the log where there is one on the disk. An ephemeral session needs no entry for
-// each: it is never brought up again.
+// Makes the new tick reachable after a restart, if the store is on a disk. An ephemeral session
+// needs no log entry, because it is never restarted.
 static void record(cau_hosted_record *record, const cau_advance *advance)
 {
 	if (record->core->tick != advance->began_tick && !record->identity->around->ephemeral)
@@ -99,14 +100,14 @@ void cau_advance_answer(cau_hosted *h, cau_order *order)
 	size_t bytes = 0;
 	const cau_advance *advance = order->as.advance;
 	record(&h->record, advance);
-	h->frames.dirty = true; // the last state is shown, whatever the streams' rates
+	h->frames.dirty = true; // publish the last state, whatever the rates of the streams
 	char *text = cau_advance_text(h, order, &bytes, &error);
 	cau_outcome outcome = {.text = text, .text_bytes = bytes, .error = text ? NULL : &error};
 	if (!text || h->identity.around->ephemeral) {
 		cau_reply_answer(&order->reply, &outcome);
 		free(text);
 	} else {
-		cau_record_batch(&h->record); // so that there is a commit to wait for
+		cau_record_batch(&h->record); // creates a batch, whose commit sends the answer
 		cau_record_reply(&h->record, &order->reply, text, bytes);
 	}
 	free(order);

@@ -80,7 +80,7 @@ void cau_answer_notify(const cau_hosted_identity *identity, cau_audience audienc
 	identity->around->sink.notify(identity->around->sink.user, audience, buffer);
 }
 
-// ---- of the whole session -----------------------------------------------------------------------
+// ---- answers about the whole session ------------------------------------------------------------
 
 void cau_answer_order(cau_hosted_record *record, cau_order *order, const void *result)
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders at a tick border, once it is decided that they are to be done: what the core says, what
-// the log keeps.
+// Applies accepted orders at a tick border: passes commands to the core, and writes the log.
 #include <stdlib.h>
 
 #include "hosted_session/answer.h"
@@ -8,7 +7,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define READS_SLICE_S 0.002 // for requests that only read; the last one begun may go beyond it
+#define READS_SLICE_S 0.002 // time for requests that only read; the last request may exceed it
 
 static void note_energy(cau_hosted_timeline *timeline, const cau_order *order,
                         const cau_action *action)
@@ -19,7 +18,7 @@ static void note_energy(cau_hosted_timeline *timeline, const cau_order *order,
 		                 order->as.command.tool, order->asker.name, 0, NULL);
 }
 
-// What the daemon itself notes of a command that the core has taken.
+// Reports what a command that the core has accepted changed, to the timeline and to clients.
 static void note(cau_hosted *h, const cau_order *order, const cau_action *action)
 {
 	const cau_command *command = &order->as.command;
@@ -49,7 +48,8 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 	}
 }
 
-// The log of a faulted session ends with the fault; its core goes dark all the same.
+// True for an energy-off in a faulted session. The log of a faulted session ends with the fault, so
+// such a command is not logged. The core still turns energy off.
 static bool is_off_of_faulted(cau_hosted_decisions *decisions, const cau_command *command)
 {
 	return cau_decisions_state(decisions) == CAU_SESSION_FAULTED &&
@@ -75,8 +75,8 @@ static void answer_command(cau_hosted_record *record, cau_hosted_decisions *deci
 		cau_record_reply(record, &order->reply, text, bytes);
 }
 
-// Energy off acts although it cannot be logged. Every other command is refused: a restart would
-// not replay it.
+// Applies a command that cannot be logged, if it is an energy-off. Every other command is refused,
+// because a restart would not replay it.
 static cau_outcome_kind apply_unstored(cau_hosted *h, cau_order *order, const cau_error *error)
 {
 	cau_command *command = &order->as.command;
@@ -89,8 +89,8 @@ static cau_outcome_kind apply_unstored(cau_hosted *h, cau_order *order, const ca
 	return CAU_DONE;
 }
 
-// Only a command of the tick that begins now has a frame to wait for. While the session is paused
-// no tick begins by itself.
+// Measures the time until a frame shows the command. Only a command of the tick that begins now has
+// such a frame. In a paused session no tick begins by itself.
 static void await_frame(cau_hosted *h, const cau_order *order)
 {
 	bool next = order->as.command.tick <= h->core.tick;

@@ -15,7 +15,7 @@ static void destroy(cau_beginning *beginning)
 	free(beginning);
 }
 
-// The scene's definition as it is stored; malloc'ed, or NULL without memory.
+// Returns the scene's definition as the store has it; malloc'ed, or NULL if memory runs out.
 static char *define(const cau_scene_def *scene, size_t *byte_count)
 {
 	cau_error error;
@@ -40,7 +40,7 @@ void cau_beginnings_init(cau_beginnings *all)
 	pthread_mutex_init(&all->mutex, NULL);
 }
 
-// ---- with the mutex
+// ---- with the mutex locked
 static cau_beginning **place_of(cau_beginnings *all, const char *definition, size_t byte_count)
 {
 	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
@@ -49,7 +49,7 @@ static cau_beginning **place_of(cau_beginnings *all, const char *definition, siz
 	return NULL;
 }
 
-// An empty place goes before any other.
+// Returns an unused slot if there is one, otherwise the slot with the oldest request.
 static cau_beginning **asked_for_longest_ago(cau_beginnings *all)
 {
 	cau_beginning **oldest = &all->kept[0];
@@ -65,7 +65,7 @@ static void give_up(cau_beginning *beginning)
 		destroy(beginning);
 }
 
-// ---- without
+// ---- with the mutex unlocked
 cau_beginning *cau_beginnings_hold(cau_beginnings *all, const cau_scene_def *scene)
 {
 	size_t byte_count = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Building a session as a job of the builder, and how it comes back to the workers or to an end.
+// Builds a session as a job of the builder. Afterwards the session returns to the workers, or ends.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,12 +9,12 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// Time of a step, s for each vertex, until the first is measured: 0.12 s for a sheet of 250,000.
+// First estimate of a step's time, s for each vertex: 0.12 s for a sheet of 250,000 vertices.
 #define STEPPED_VERTEX_S 5e-7
 
 // ---- the job
 typedef struct building {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	cau_hosted *hosted;
 } building;
 
@@ -24,7 +24,8 @@ static bool is_resend(const cau_order *order, const cau_order *first)
 	       strcmp(order->asker.client_id, first->asker.client_id) == 0;
 }
 
-// Sent twice while it was built: the answer is stored once.
+// Answers a session.destroy that was sent twice while the session was built. The answer is stored
+// only once.
 static void answer_resend(cau_hosted_record *record, cau_order *order)
 {
 	cau_error error = {0};
@@ -37,7 +38,8 @@ static void answer_resend(cau_hosted_record *record, cau_order *order)
 	free(order);
 }
 
-// The first destroyed it; to the others but its resends there is no such session any more.
+// Answers the session.destroy orders. The first one destroys the session. Its resends get the same
+// answer. All other orders are refused, because the session is gone.
 static void answer_destroyers(cau_hosted *h)
 {
 	cau_order *first = h->suspension.destroyers;
@@ -53,13 +55,13 @@ static void answer_destroyers(cau_hosted *h)
 	h->suspension.destroyers = NULL;
 }
 
-// Its last slice is the builder's. What a resend is looked for in must be on the disk by then:
-// there is no border any more at which it could be looked for again.
+// Ends the session in a last slice of the builder. The store is flushed first, because a resend
+// must find its earlier answer on the disk. No later tick border could repeat that search.
 static void come_to_an_end(cau_hosted *h)
 {
 	cau_store_flush(h->identity.around->store);
 	if (!*h->life.moved.session &&
-	    cau_suspension_is_cancelled(h)) // else it is destroyed where it is now
+	    cau_suspension_is_cancelled(h)) // a moved session is destroyed on its new daemon
 		answer_destroyers(h);
 	cau_hosted_refuse_rest(h);
 	cau_hosted_end_slice(h);
@@ -74,7 +76,7 @@ static void come_back(cau_hosted *h)
 	cau_error error = {0};
 	cau_hosted_end_slice(h);
 	for (cau_order *late = cau_suspension_end(&h->suspension), *next; late;
-	     late = next) { // after the last border
+	     late = next) { // orders that came after the last border
 		next = late->next;
 		if (cau_hosted_submit(h, late, &error))
 			cau_answer_fail(late, &error, 0);
@@ -93,7 +95,7 @@ void cau_building_over(cau_hosted *h)
 static void end(building *b)
 {
 	cau_hosted *h = b->hosted;
-	if (h->creation.replaying) // in slices of the workers
+	if (h->creation.replaying) // workers continue the replay, in slices
 		cau_suspension_name_stage(&h->suspension, "replaying");
 	h->pace.piece_s = STEPPED_VERTEX_S * h->core.info.vertex_count;
 	cau_building_over(h);
@@ -109,7 +111,7 @@ static void drop(cau_job *job)
 	end(b);
 }
 
-// ---- of a move: it is built and waits to be accepted --------------------------------------------
+// ---- a session that arrives by a move: it is built and waits to be accepted ---------------------
 
 static void wait_to_come(building *b)
 {
@@ -131,7 +133,7 @@ static void wait_to_come(building *b)
 	h->creation.job = &b->job;
 	outcome.text = text;
 	if (waits)
-		cau_reply_answer(&reply, &outcome); // from here on it may come
+		cau_reply_answer(&reply, &outcome); // from here on cau_hosted_come may be called
 	free(text);
 }
 

@@ -7,14 +7,16 @@
 
 #define MEGABYTE 1e6
 
-// Of a session, for the builder's order, s for each vertex: a sheet of 250,000 is built in 10 s.
+// Time to build a session, s for each vertex; orders the builder's jobs. A sheet of 250,000
+// vertices takes 10 s.
 #define BUILT_VERTEX_S 4e-5
 
 // ---- time ---------------------------------------------------------------------------------------
 
-enum { BYTES_OF_VERTEX = 100 }; // of a mesh file
+enum { BYTES_OF_VERTEX = 100 }; // estimated bytes of a mesh file for each vertex
 
-// Where the core will read it: core/mesh/mesh_make.c. One that is not there ends the building soon.
+// Size of a mesh file, looked up where the core will read it (core/mesh/mesh_make.c). Returns 0 if
+// there is no such file, because the building then ends soon.
 static double bytes_of_file(const char *directory, const char *file)
 {
 	char path[600];

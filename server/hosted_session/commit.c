@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slice's batch on its way to the disk, and what follows its commit: answers, or a loss. A
-// request that is sent again gets the stored answer.
+// Commits a slice's batch to the disk. After the commit, the waiting answers are sent, or a loss is
+// noted. A request that is sent again gets the stored answer.
 #include <stdlib.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/resend.h"
 
-// What travels with a batch.
+// What the store's thread needs when a batch is committed.
 typedef struct commit {
 	cau_hosted *hosted;
 	cau_pending *pending;
-	uint64_t from_tick; // if it fails, the log is lost from here on
-	bool making;        // the session's first rows: without them there is no session
-	bool made;          // the batch also has the answer to its creator
+	uint64_t from_tick; // if the commit fails, the log lacks entries from this tick on
+	bool making;        // the batch has the session's first rows, without which there is no session
+	bool made;          // the batch also has the answer to the session's creator
 } commit;
 
 static cau_pending *reversed(cau_pending *list)
@@ -47,8 +47,8 @@ static void answer_all(cau_pending *list, cau_status status, const char *reason)
 	}
 }
 
-// The store has not taken the session's first rows, so there is no session. While its past is
-// replayed, the answer to its creator is not among the pending ones.
+// Ends a session whose first rows the store rejected. Also fails the creator's reply: during a
+// replay it is not among the pending answers.
 static void end_making(cau_hosted *h, cau_status status, const char *reason)
 {
 	cau_error error = {.status = status};
@@ -58,11 +58,11 @@ static void end_making(cau_hosted *h, cau_status status, const char *reason)
 	cau_hosted_fail_creator(&h->creation, &error, cau_hosted_commit_code(status));
 }
 
-// On the store's thread.
+// Called on the store's thread.
 static void committed(void *user, cau_status status, const char *reason)
 {
 	commit *done = user;
-	if (!status && done->hosted->commits.unmade) { // of a session whose first rows are lost
+	if (!status && done->hosted->commits.unmade) { // the session's first rows are lost
 		status = (cau_status)done->hosted->commits.unmade;
 		reason = "the session could not be stored";
 	}
@@ -73,7 +73,7 @@ static void committed(void *user, cau_status status, const char *reason)
 		if (done->making)
 			end_making(done->hosted, status, reason);
 	}
-	if (done->made && !status) // before the answer: the creator may use the session at once
+	if (done->made && !status) // before the answer is sent: the creator may use the session at once
 		done->hosted->creation.unanswered = false;
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {
@@ -100,7 +100,7 @@ void cau_record_commit(cau_hosted *h)
 		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "no command could be stored");
 		return;
 	}
-	// The store may have failed meanwhile what comes before the entries of this batch.
+	// An earlier batch may have failed in the meantime. The log entries of this batch need it.
 	cau_status status = h->record.batch_acts ? cau_record_check(&h->record, &error) : CAU_OK;
 	commit *travelling = status ? NULL : malloc(sizeof *travelling);
 	if (!status && !travelling)
@@ -142,8 +142,9 @@ static cau_status send_again(void *user, const cau_store_answer *answer)
 	return CAU_OK;
 }
 
-// The stored answer of a resent request: CAU_OK (answered), CAU_NOT_FOUND (act), CAU_BAD_STATE
-// (wait), CAU_ALREADY_EXISTS (acted upon, and the answer is not kept any more).
+// Looks up the stored answer of a request that was sent again. Returns CAU_OK if it was answered,
+// CAU_NOT_FOUND if the order is new, and CAU_BAD_STATE if the order must wait. CAU_ALREADY_EXISTS:
+// the order was done, but its answer is no longer stored.
 static cau_status look_up(const cau_hosted_identity *identity, const cau_order *order,
                           cau_error *error)
 {
@@ -157,7 +158,7 @@ static cau_status look_up(const cau_hosted_identity *identity, const cau_order *
 cau_outcome_kind cau_record_resend(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
-	if (h->record.pending) // its first may be in this very slice's batch
+	if (h->record.pending) // the earlier order may be in this slice's batch
 		cau_record_commit(h);
 	cau_status status = look_up(&h->identity, order, &error);
 	if (status == CAU_BAD_STATE)

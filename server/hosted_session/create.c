@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a session comes among the others, and what the daemon wants of it at the end.
+// Creates a session and adds it to the worker pool. Also stops and drains sessions for the daemon.
 #include <stdlib.h>
 
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// The store tells of changes only.
+// Notes the store's present state. Later the store reports only changes.
 static void note_store(cau_hosted *h)
 {
 	cau_store_health health;
@@ -14,7 +14,7 @@ static void note_store(cau_hosted *h)
 		cau_hosted_store_takes(h, false, health.reason);
 }
 
-// NULL: there is no memory for it.
+// Returns NULL if memory runs out.
 static cau_hosted *allocate(int32_t orders)
 {
 	cau_hosted *h = calloc(1, sizeof *h);
@@ -34,7 +34,7 @@ static cau_hosted *allocate(int32_t orders)
 	return NULL;
 }
 
-// As it is until the builder has built it.
+// Sets the members to their values before the session is built.
 static void init(cau_hosted *h, const cau_surroundings *around, const cau_hosted_def *def)
 {
 	h->task.run = cau_hosted_run;
@@ -95,7 +95,7 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	}
 	cau_worker_pool_remove(around->pool, &h->task);
 give_up:
-	h->identity.scene = NULL; // stays the caller's
+	h->identity.scene = NULL; // the caller keeps these on failure
 	h->identity.meshes = NULL;
 	cau_hosted_release(h);
 	return status;
@@ -104,7 +104,7 @@ give_up:
 void cau_hosted_stop(cau_hosted *h)
 {
 	cau_worker_pool_remove(h->identity.around->pool, &h->task);
-	if (h->suspension.active) // the builder has it, and refuses what waits as it gives it back
+	if (h->suspension.active) // the builder has the session, and refuses its waiting orders later
 		return;
 	cau_hosted_end(h);
 	cau_hosted_refuse_rest(h);

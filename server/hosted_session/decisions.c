@@ -80,7 +80,7 @@ bool cau_decisions_broken(cau_hosted_decisions *decisions, char *reason, size_t 
 
 // ---- the trace ----------------------------------------------------------------------------------
 
-enum { TRACES_MOST = 1000 }; // of one session in one folder
+enum { TRACES_MOST = 1000 }; // most traces of one session in one folder
 
 void cau_decisions_open_trace(cau_hosted_decisions *decisions, const cau_hosted_identity *identity)
 {
@@ -103,8 +103,8 @@ void cau_decisions_open_trace(cau_hosted_decisions *decisions, const cau_hosted_
 	cau_log(CAU_LOG_INFO, identity->id, "traced", "file=\"%s\"", path);
 }
 
-// After a slice, so that little is lost with a daemon that is killed. What could not be written
-// ends the trace: one with a gap could not be played again.
+// Writes the trace to its file after a slice, so that a killed daemon loses little of it. A write
+// error ends the trace, because a trace with a gap cannot be replayed.
 void cau_decisions_flush_trace(cau_hosted_decisions *decisions, const char *id)
 {
 	if (!decisions->trace)
@@ -122,7 +122,7 @@ void cau_decisions_flush_trace(cau_hosted_decisions *decisions, const char *id)
 	cau_log(CAU_LOG_WARNING, id, "trace_ended", "reason=\"%s\"", strerror(reason));
 }
 
-// ---- making them --------------------------------------------------------------------------------
+// ---- creation and destruction -------------------------------------------------------------------
 
 void cau_decisions_init(cau_hosted_decisions *decisions, int32_t orders, double step_s)
 {

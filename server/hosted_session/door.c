@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What transports, the watchdog and the store tell a session, as events of its decisions.
+// Turns calls of transports, the watchdog and the store into events of a session's decisions.
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,8 +49,8 @@ static cau_part *part_of(cau_asked *asked, const char *tool, int32_t command)
 	return made;
 }
 
-// What an advance does with each tool. Whoever makes the order sees to it that its commands are
-// about CAU_MAX_TOOLS at most, and that a tool's energy stands in one of them.
+// Describes what an advance does with each tool. The transport ensures that its commands use at
+// most CAU_MAX_TOOLS tools, and that at most one command sets a tool's energy.
 static void describe_parts(const cau_advance *advance, cau_asked *asked)
 {
 	asked->ticks = advance->ticks;
@@ -78,7 +78,7 @@ static void name_tool(const cau_order *order, cau_asked *asked)
 	snprintf(asked->tool, sizeof asked->tool, "%s", tool);
 }
 
-// What there is to decide about an order.
+// Describes an order for the decisions.
 static void describe(const cau_order *order, cau_asked *asked)
 {
 	*asked = (cau_asked){.ticket = (uintptr_t)order,
@@ -166,7 +166,8 @@ void cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason)
 	                                 .cause = reason});
 }
 
-// The order names the maker. The maker is gone, so no answer is sent.
+// Submits an order to destroy the session in the name of its creator. The creator is gone, so no
+// answer is sent.
 static void destroy_for(cau_hosted *h)
 {
 	cau_error error = {0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notices to clients: drivers, energy, and refused motion.
+// Notifies clients of drivers, energy and refused motion.
 #include <string.h>
 
 #include "hosted_session/answer.h"
@@ -19,7 +19,8 @@ void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *dri
 
 // ---- refused motion -----------------------------------------------------------------------------
 
-// The place of this tool, or a free one; NULL: all are others'. Under the mutex.
+// Returns the entry of this tool or an unused entry, NULL if other tools use all entries. Call this
+// under the lock.
 static cau_refused_motion *find_place(cau_hosted_refusals *refusals, const char *tool)
 {
 	cau_refused_motion *unused = NULL;
@@ -83,7 +84,7 @@ void cau_refusals_report(cau_hosted_refusals *refusals, const cau_hosted_identit
 	}
 }
 
-// ---- of transports ------------------------------------------------------------------------------
+// ---- motion that transports refused -------------------------------------------------------------
 
 void cau_hosted_refuse(cau_hosted *h, const char *tool, const cau_asker *asker, uint64_t sequence,
                        const cau_error *error)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The door between the session's decisions (server/session) and the threads around them: events go
-// in under one short lock, and what they lead to is done here, but for what is the worker's.
+// Connects the session's decisions (server/session) with other threads. An event is handled under
+// one short lock. Its effects are carried out here, except acts of the worker.
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,8 @@ static cau_order *order_of(uint64_t ticket)
 
 // ---- effects ------------------------------------------------------------------------------------
 
-// Under the lock, so that nobody hears of two decisions in the other order.
+// Notifies clients under the lock, so that they receive decisions in the order in which they were
+// made.
 static void tell(cau_hosted *h, const cau_effects *effects)
 {
 	for (int32_t i = 0; i < effects->count; i++)
@@ -43,7 +44,8 @@ void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order)
 	free(order);
 }
 
-// After the lock is given back. The refusal of the order that is just being submitted goes to *own.
+// Carries out effects after the lock is released. If the order that is being submitted was refused,
+// *own is that refusal.
 static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *submitted,
                     const cau_effect **own)
 {
@@ -74,8 +76,8 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 	}
 }
 
-// Into the trace, if there is one, goes each call before it is made and what came of it, under the
-// lock: it is the order of both that counts.
+// Handles one event under the lock. The trace gets the event before the call and its effects after
+// it. The lock makes the order of the trace that of the calls.
 static void apply(cau_hosted *h, const cau_logic_event *event, cau_effects *effects)
 {
 	cau_trace_take(h->decisions.trace, event);
@@ -113,9 +115,10 @@ cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *as
 	return own->error.status;
 }
 
-// ---- what waits for later ticks -----------------------------------------------------------------
+// ---- commands that wait for later ticks ---------------------------------------------------------
 
-// A ticket in the queue is an order that lives: orders leave it under the lock.
+// Describes a waiting command. Its ticket points to an order that is still allocated, because
+// orders leave the queue only under the lock.
 static void describe_later(const cau_waiting *waiting, cau_wire_waiting_command *to)
 {
 	const cau_asked *asked = &waiting->asked;
@@ -163,10 +166,10 @@ int32_t cau_hosted_cancel(cau_hosted *h, uint32_t client, uint64_t number)
 	return cancelled;
 }
 
-// ---- the worker's side --------------------------------------------------------------------------
+// ---- acts of the worker -------------------------------------------------------------------------
 
-// Whether the core heats what the machine has on, and nothing else, in the tick that is to begin.
-// Under the lock, so that no cut comes between.
+// Compares the tools that the core would heat in the next tick with the tools whose energy is on.
+// Called under the lock, so that no energy cut-off comes in between.
 static void compare(cau_hosted_decisions *decisions, const cau_session *core)
 {
 	const char *allowed[CAU_MAX_TOOLS];
@@ -230,7 +233,8 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 	cau_session_frame(h->core.session, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++) {
 		memcpy(tools[i].name, frame.tools[i].name, sizeof tools[i].name);
-		// what waits in a core of an older build's store may light or move it yet: that goes too
+		// A store of an older build may have commands that wait in the core. They could still
+		// enable or move the tool, so they are voided too.
 		tools[i].lit = frame.tools[i].energized ||
 		               cau_session_waiting(h->core.session, frame.tools[i].name) > 0;
 	}

@@ -8,7 +8,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// ---- cuts ---------------------------------------------------------------------------------------
+// ---- energy cut-off -----------------------------------------------------------------------------
 
 bool cau_energy_off_or_hold(const cau_hosted_identity *identity, cau_present_core *core,
                             const cau_command *command)
@@ -29,15 +29,17 @@ bool cau_energy_off_or_hold(const cau_hosted_identity *identity, cau_present_cor
 	return true;
 }
 
-// A command of the daemon's own: logged for nobody, with no driver's number. It cannot fail.
+// Applies a command of the daemon itself. The log entry has no client and no sequence number. The
+// command cannot fail.
 static void tell_core(cau_hosted *h, int kind, const char *tool)
 {
 	cau_command command;
-	cau_default_command(&command, kind); // of energy: off
+	cau_default_command(&command, kind); // an energize command is an off by default
 	snprintf(command.tool, sizeof command.tool, "%s", tool);
 	command.tick = h->core.tick;
 	cau_energy_off_or_hold(&h->identity, &h->core, &command);
-	if (cau_decisions_state(&h->decisions) != CAU_SESSION_FAULTED) // there the log ends
+	// the log of a faulted session has ended
+	if (cau_decisions_state(&h->decisions) != CAU_SESSION_FAULTED)
 		cau_record_command(&h->record, &command, NULL, NULL, 0);
 }
 
@@ -52,7 +54,7 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 	cau_published_count(&h->published, &(cau_hosted_counts){.watchdog_cuts = watchdog});
 	cau_timeline_add(&h->timeline, watchdog ? CAU_EVENT_WATCHDOG : CAU_EVENT_ENERGY_OFF,
 	                 drive->tool, drive->driver.name, 0, drive->cut_cause);
-	if (watchdog) // who holds a pedal down must not wonder why nothing burns
+	if (watchdog) // shows the driver why the tool stays cold although the pedal is pressed
 		cau_log(CAU_LOG_WARNING, h->identity.id, "energy_cut",
 		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"energy stays off until the driver "
 		        "releases and enables it anew\"",

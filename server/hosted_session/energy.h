@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the core and the log get of drivers and energy. Who drives, and which energy is on, is
-// decided in server/session/drive.c.
+// Passes changes of drivers and energy on to the core and the log. server/session/drive.c decides
+// who drives and which energy is on.
 #pragma once
 
 #include "hosted_session/identity.h"
 #include "hosted_session/present_core.h"
 
-// Does an energy off or a hold, which cannot fail. False: the command is another.
+// Applies an energy-off or a hold, which cannot fail. Returns false if the command is of another
+// kind.
 bool cau_energy_off_or_hold(const cau_hosted_identity *identity, cau_present_core *core,
                             const cau_command *command);
-// Energy off by the daemon itself, in the log without a client.
+// Turns the tool's energy off by the daemon itself. The log entry names no client.
 void cau_energy_turn_off(cau_hosted *h, const char *tool);
-// Energy off and the tool where it is, as was decided.
+// Cuts off energy as was decided. Also stops the tool where it is if its drive says `freeze`.
 void cau_energy_cut(cau_hosted *h, const cau_action *action);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files made of a session: the tissue for other programs, the log as a script. The worker copies
-// what steps change, at a tick border; the builder writes the file of the copy.
+// Makes files of a session: the tissue for other programs, and the log as a script. At a tick
+// border the worker copies what steps change. The builder then writes the file from the copy.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,8 +10,8 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define LINE_S 1e-6        // what a line of such a file takes, about
-#define LOG_EXPECTED_S 0.1 // nobody knows how long a log is before it is read
+#define LINE_S 1e-6        // estimated time for one line of such a file
+#define LOG_EXPECTED_S 0.1 // estimate: the length of a log is known only after reading it
 
 static atomic_uint last_transfer;
 
@@ -60,7 +60,7 @@ static void fail(const cau_reply *reply, cau_status status, const char *reason)
 }
 
 // ---- the copy
-// What a file shows of a tick. The arrays follow the struct, in the piece of memory that it is in.
+// What a file shows of a tick. The arrays follow the struct in the same memory block.
 typedef struct tissue_copy {
 	const double *position; // m, (vertex_count x 3)
 	const float *exposure;  // (vertex_count)
@@ -68,7 +68,8 @@ typedef struct tissue_copy {
 	const uint8_t *alive;   // (tetrahedron_count)
 } tissue_copy;
 
-// Of the arrays, in their order: those of wider numbers come first, so that each is aligned.
+// Sizes of the arrays in their order, bytes. Arrays of wider numbers come first, so that each is
+// aligned.
 typedef struct copy_sizes {
 	size_t position, exposure, mask, alive;
 } copy_sizes;
@@ -115,7 +116,7 @@ static tissue_copy *copy_tissue(const cau_present_core *core, cau_shelf *copies)
 	return copy;
 }
 
-// ---- the file. `info` is the same for a session's whole life, so any thread may read it.
+// ---- the file. `info` never changes, so any thread may read it.
 static bool is_drawn(const tissue_copy *copy, int32_t face)
 {
 	return !(copy->mask[face / 32] >> (face % 32) & 1);
@@ -141,9 +142,9 @@ static void write_obj(const cau_read_job *job, FILE *stream)
 	}
 }
 
-// The cells that are left: tetrahedra, then drawn faces of sheets.
+// The remaining cells: tetrahedra, then drawn faces of sheets.
 typedef struct cells {
-	int32_t *vertex; // 4 each, -1 in a triangle's last
+	int32_t *vertex; // 4 for each cell; the last one of a triangle is -1
 	int32_t count;
 } cells;
 

@@ -7,9 +7,10 @@
 #include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
 
-#define GAIN_MOST 0.01 // of a tick's energy: beyond it a gain is reported
+#define GAIN_MOST 0.01 // largest gain that is not reported, relative to the tick's energy
 
-enum { GAIN_QUIET_TICKS = 600 }; // after a report of gained energy: one in ten seconds is enough
+// ticks after a report before the next one; one report in ten seconds is enough
+enum { GAIN_QUIET_TICKS = 600 };
 
 void cau_findings_know(cau_hosted_findings *findings, const cau_session *core)
 {
@@ -21,7 +22,7 @@ void cau_findings_know(cau_hosted_findings *findings, const cau_session *core)
 		findings->vessel_flags[i] = frame.vessels[i]->flags;
 }
 
-// Who pulls: the first whose jaws hold something.
+// Reports a tear. The first tool whose jaws hold tissue is named as its cause.
 static void note_tear(cau_hosted_timeline *timeline, const cau_frame *frame, int32_t torn)
 {
 	const cau_tool_state *puller = NULL;
@@ -55,7 +56,8 @@ static void note_cut(cau_hosted_findings *findings, cau_hosted_timeline *timelin
 	                 cutter ? cutter->driver.name : NULL, removed, NULL);
 }
 
-// Once for each layer, until all of it is right again.
+// Reports a layer with inverted tetrahedra once, and again only after all of its tetrahedra were
+// upright.
 static void note_inverted(cau_hosted_findings *findings, cau_hosted_timeline *timeline,
                           const cau_scene_def *scene, const cau_statistics *now)
 {
@@ -139,12 +141,12 @@ void cau_hosted_fault(cau_hosted *h, const cau_error *error)
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_FAULT,
 	                                 .time_s = cau_monotonic_s(),
 	                                 .cause = error->reason});
-	h->pace.realtime_factor = 0; // it stands still, as a paused one does
+	h->pace.realtime_factor = 0; // a faulted session does not advance, as a paused one
 	cau_hosted_tell_fault(h, error);
 }
 
-// The core would heat a tool whose energy the state machine has off. The cause is not known, so all
-// energy goes off, and this session alone is faulted.
+// Faults the session because the core would heat a tool whose energy is off in the state machine.
+// The cause is unknown, so all energy goes off. Other sessions are not affected.
 void cau_fault_stop_unsound(cau_hosted *h)
 {
 	cau_error error = {0};
@@ -152,7 +154,7 @@ void cau_fault_stop_unsound(cau_hosted *h)
 	cau_session_frame(h->core.session, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++)
 		cau_energy_turn_off(h, frame.tools[i].name);
-	cau_energy_turn_off(h, h->decisions.odd_tool); // which may be still to be added
+	cau_energy_turn_off(h, h->decisions.odd_tool); // this tool may not have been added yet
 	cau_fail(&error, CAU_FAULTED, "", "tool %s had energy on without a valid enable",
 	         h->decisions.odd_tool);
 	cau_log(CAU_LOG_ERROR, h->identity.id, "energy_disagrees", "tick=%llu tool=%s",
@@ -161,8 +163,8 @@ void cau_fault_stop_unsound(cau_hosted *h)
 	cau_hosted_tell_fault(h, &error);
 }
 
-// A safety rule of the decisions was broken. They have faulted the session by themselves, and their
-// cuts follow as ordinary acts.
+// Reports a broken safety rule of the decisions. They have already faulted the session, and their
+// energy cut-offs follow as ordinary acts.
 void cau_fault_report_broken_rule(cau_hosted *h)
 {
 	cau_error error = {0};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What steps did to the tissue, as far as it was reported, and faults: numerical trouble and broken
-// safety rules, each of which stops this session alone. All by the thread that has the session.
+// Reports what steps did to the tissue, and faults. A fault is numerical trouble or a broken safety
+// rule, and stops this session alone. Only the session's owning thread (internal.h) calls these
+// functions.
 #pragma once
 
 #include "cautery/session.h"
@@ -9,20 +10,22 @@
 typedef struct cau_hosted_findings {
 	int32_t elements_removed, elements_torn;
 	uint32_t vessel_flags[CAU_MAX_VESSELS];
-	uint32_t inverted_layers;  // whose tetrahedra were reported, a bit each
-	uint64_t gain_tick;        // of the last report that steps gained energy; 0: none
-	uint32_t refused_commands; // also those refused when they came
+	uint32_t inverted_layers;  // one bit for each layer whose inverted tetrahedra were reported
+	uint64_t gain_tick;        // tick of the last report that steps gained energy; 0: none
+	uint32_t refused_commands; // commands that were refused on arrival or at a tick
 } cau_hosted_findings;
 
-// Takes what the core has cut, and its vessels, as reported: after a replay or a rewind.
+// Takes the core's present cuts and vessels as already reported. Call this after a replay or a
+// rewind.
 void cau_findings_know(cau_hosted_findings *findings, const cau_session *core);
 // Reports the findings of a step: cuts, tears, vessels, layers, refused commands.
 void cau_findings_note(cau_hosted *h, const cau_frame *frame);
 
-// Numerical trouble outside a step. The session is faulted; all clients are notified.
+// Faults the session because of numerical trouble outside a step, and notifies all clients.
 void cau_hosted_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);
-// The core would heat decisions.odd_tool, whose energy the state machine has off.
+// Faults the session because the core would heat decisions.odd_tool, whose energy is off in the
+// state machine.
 void cau_fault_stop_unsound(cau_hosted *h);
-// Reports a safety rule of the decisions that was broken, once.
+// Reports a broken safety rule of the decisions, once.
 void cau_fault_report_broken_rule(cau_hosted *h);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session's side of its streams: what there is to be seen of the core, and who joins.
+// Fills frames from the core, and lets clients join streams.
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,13 +39,13 @@ static const cau_stream_sample *fill_sample(void *user)
 	return &shown->sample;
 }
 
-// What costs the core work of its own is made as long as somebody watches it.
+// Makes the core compute its costly channels only while a subscriber receives them.
 static void follow_channels(cau_session *core, cau_streams *streams)
 {
 	cau_session_watch(core, cau_streams_watched(streams));
 }
 
-// Without subscribers, or ticks, no frame shows what waits for one.
+// False if no frame will show a waiting command, because there are no subscribers or no ticks.
 static bool frame_is_near(cau_hosted_frames *frames, cau_hosted_decisions *decisions)
 {
 	cau_stream_counts streams;
@@ -64,7 +64,7 @@ void cau_frames_publish(cau_hosted *h, double now_s)
 	cau_stream_moment moment = {
 		.now_s = now_s,
 		.all = atomic_exchange(&h->frames.dirty,
-	                           false), // what changes from here on is shown next time
+	                           false), // later changes are published next time
 		.moving = decided.state == CAU_SESSION_RUNNING || decided.steps_left,
 		.sample = fill_sample,
 		.user = &p,

@@ -25,7 +25,7 @@ static cau_status take_beginning(void *user, const cau_store_event *event)
 	return CAU_OK;
 }
 
-// "name=five branch=0", somewhere in the event's detail.
+// Reads "name=five branch=0" from anywhere in the event's detail.
 static bool read_snapshot(const char *text, cau_named_snapshot *made)
 {
 	static const char name[] = "name=", branch[] = " branch=";

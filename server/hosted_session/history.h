@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The branches of a session and its named snapshots. They belong to the thread that has the
-// session.
+// The branches and the named snapshots of a session. Only the session's owning thread (internal.h)
+// uses them.
 #pragma once
 
 #include "hosted_session/identity.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session that moves to another daemon stands still where it leaves. It is the builder's then, as
-// while it is built, with no job under way; what is asked of it waits.
+// Suspends a session that moves to another daemon. The builder has the session then, as while it is
+// being built, but without a running job. Orders wait.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,16 +9,16 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define STOPS_EXPECTED_S 0.01 // a commit, for the builder's order
+#define STOPS_EXPECTED_S 0.01 // time of a commit; orders the builder's jobs
 
 typedef struct cau_holding {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	cau_hosted *hosted;
-	cau_order *order; // to stand still, until it is answered
+	cau_order *order; // the order to suspend the session, until it is answered
 	uint64_t hash;
 } cau_holding;
 
-// ---- standing still -----------------------------------------------------------------------------
+// ---- suspension ---------------------------------------------------------------------------------
 
 static void finish(cau_holding *holding)
 {
@@ -40,7 +40,7 @@ static void run_on(cau_job *job)
 	finish(holding);
 }
 
-// All that it was is on the disk once the store has answered what it was given.
+// Answers the hold. The session's whole state is on the disk once the store has flushed.
 static void run_stop(cau_job *job)
 {
 	cau_holding *holding = (cau_holding *)job;
@@ -59,7 +59,8 @@ static void run_stop(cau_job *job)
 		cau_fail(&error, CAU_IO, "", "the store has not written all commands yet: try again later");
 	outcome.text = text;
 	outcome.error = text ? NULL : &error;
-	cau_reply_answer(&order->reply, &outcome); // from here on the session may go on or away
+	// from here on cau_hosted_go_on or cau_hosted_go_away may be called
+	cau_reply_answer(&order->reply, &outcome);
 	free(order);
 	free(text);
 	if (error.status)

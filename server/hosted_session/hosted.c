@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who holds a session, and what never changes of it.
+// References to a session, its creator's reply, and its constant values.
 #include "hosted_session/hosted.h"
 
 #include <stdlib.h>
@@ -38,7 +38,8 @@ void cau_hosted_refuse_gone(const cau_hosted_life *life, cau_order *order)
 void cau_hosted_end(cau_hosted *h)
 {
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_END, .time_s = cau_monotonic_s()});
-	h->life.ended = true; // who sees this may refuse what waits, and needs the decision for it
+	// set after the decision: a thread that sees `ended` may refuse waiting orders, which needs it
+	h->life.ended = true;
 	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 }
 

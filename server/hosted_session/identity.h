@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What never changes of a session from its creation on. Any thread reads it, without a lock.
+// The values of a session that never change after its creation. Any thread reads them without a
+// lock.
 #pragma once
 
 #include "hosted_session/hosted.h"
@@ -8,9 +9,9 @@ typedef struct cau_hosted_identity {
 	char id[CAU_NAME_BYTES];
 	uint32_t number;
 	const cau_surroundings *around; // outlives the session
-	cau_scene_def *scene;           // as it was made; owned
+	cau_scene_def *scene;           // as it was at creation; owned
 	void *meshes;                   // source bytes of the scene's meshes; owned
 	size_t mesh_bytes;
 	cau_asker creator;
-	int64_t creator_sequence; // 0: none
+	int64_t creator_sequence; // 0: no sequence number
 } cau_hosted_identity;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session, made of parts. Each part has an owner, which its header names: a lock, a thread, or
-// the thread that has the session. That is the worker of its slice, or, while the session is
-// suspended, the builder.
+// A session and its parts. Each part has an owner, which its header names: a lock, a thread, or the
+// session's owning thread. The owning thread is the worker that runs the session's slice. While the
+// session is suspended, it is the builder.
 #pragma once
 
 #include "clock/clock.h"
@@ -20,11 +20,11 @@
 #include "trace/trace.h"
 
 struct cau_hosted {
-	cau_task task; // first
+	cau_task task; // must be the first member
 	atomic_int references;
 	cau_hosted_identity identity; // never changes
 
-	// of the thread that has the session
+	// only for the owning thread
 	cau_present_core core;
 	cau_hosted_history history;
 	cau_hosted_timeline timeline;
@@ -33,19 +33,19 @@ struct cau_hosted {
 	cau_hosted_record record;
 	cau_replay replay;
 
-	// of that thread too, except members that are atomic or under their own lock
+	// only for the owning thread, except members that are atomic or have their own lock
 	cau_hosted_creation creation;
 	cau_hosted_suspension suspension;
 	cau_hosted_frames frames;
 
-	// under a lock each
+	// each has a lock
 	cau_hosted_decisions decisions;
 	cau_hosted_published published;
 	cau_hosted_refusals refusals;
 	cau_hosted_reads reads;
 	cau_past_views past;
 
-	// atomic
+	// all members are atomic
 	cau_hosted_commits commits;
 	cau_hosted_life life;
 };

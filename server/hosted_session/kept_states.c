@@ -17,8 +17,9 @@ static void drop(cau_kept_states *kept, int32_t index)
 	kept->state[kept->count] = (cau_kept_state){0};
 }
 
-// How far a replay would have to go at most, if this one were gone. What lies before the first is
-// the store's.
+// Longest replay, in ticks, to a tick near this state if the state were dropped. The first and the
+// last state have only one neighbour, so the distance to it is doubled. Ticks before the first
+// state are reached from the store.
 static uint64_t gap_without(const cau_kept_states *kept, int32_t index)
 {
 	uint64_t tick = kept->state[index].tick;
@@ -36,7 +37,7 @@ static int32_t least_missed(const cau_kept_states *kept)
 	return least;
 }
 
-// Where a state of this tick is or belongs.
+// Returns the index where a state of this tick is, or would be inserted.
 static int32_t place_of(const cau_kept_states *kept, uint64_t tick)
 {
 	int32_t place = 0;

@@ -9,14 +9,15 @@
 #include "hosted_session/internal.h"
 #include "log/log.h"
 
-// For the builder's order, about:
-#define READ_BYTES_PER_S 20e6 // of text
-#define FILL_S 1.0            // of what may be filled: the thread for short jobs leaves it alone
+// Estimates of a job's time; they order the builder's jobs.
+#define READ_BYTES_PER_S 20e6 // reading speed for text
+// Added if the surface may be filled. The thread for short jobs then leaves the job to others.
+#define FILL_S 1.0
 
 enum { MENDS_MAX = 16 };
 
 typedef struct reading {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	cau_builder *builder;
 	cau_mesh_asked asked;
 	cau_reply reply;
@@ -26,7 +27,8 @@ typedef struct reading {
 	cau_wire_mesh_mend mend[MENDS_MAX];
 	cau_wire_mesh_region region[CAU_MESH_REGION_MAX];
 	cau_wire_mesh_reading result;
-	char filled[CAU_FILL_REPORT_BYTES]; // what became of the inside; "": nothing did
+	// report on the filling with tetrahedra; "": nothing was filled
+	char filled[CAU_FILL_REPORT_BYTES];
 } reading;
 
 static void finish(reading *what, const cau_error *error, const cau_outcome *done)
@@ -98,7 +100,7 @@ static void fill(reading *what, cau_wire_mesh_report *to)
 	fill_lists(what, to);
 }
 
-// The report in words: of the file, of what filled it, and of the mesh that came of it.
+// Writes the report as text: on the file, on the filling, and on the resulting mesh.
 static void put_text(const reading *what, const cau_mesh_report *file, char *text, size_t bytes)
 {
 	char own[CAU_MESH_TEXT_BYTES], solid[CAU_MESH_TEXT_BYTES];
@@ -114,7 +116,7 @@ static void put_text(const reading *what, const cau_mesh_report *file, char *tex
 	snprintf(text, bytes, "%s%s%s", own, what->filled, mesh ? mesh : solid);
 }
 
-// What the user may not expect of the scene.
+// Adds a note for the user if the kind of the resulting tissue may be unexpected.
 static void note(const reading *what, cau_wire_mesh_reading *result)
 {
 	const cau_mesh_report *report = &what->report;
@@ -149,7 +151,7 @@ static cau_status fill_upload(reading *what, double unit_m, cau_error *error)
 	return cau_fill(asked->filling, &wish, what->filled, error);
 }
 
-// Reads bytes with a scene around them.
+// Reads the bytes as a mesh, and makes a scene with it.
 static cau_status read_bytes(reading *what, const void *bytes, size_t byte_count, double unit_m,
                              cau_error *error)
 {
@@ -176,7 +178,8 @@ static cau_status read_solid(reading *what, double unit_m, cau_error *error)
 	return status;
 }
 
-// A surface is read as it is first, for its report and its unit. `as` may ask for a solid of it.
+// Reads a surface unfilled first, for its report and its unit. *has_inside: it is then to be
+// filled.
 static cau_status read_surface(reading *what, bool *has_inside, cau_error *error)
 {
 	int32_t kind = what->asked.layer_kind;
@@ -212,8 +215,7 @@ static cau_status read_mesh(reading *what, cau_mesh_report *file, cau_error *err
 	                  error);
 }
 
-// What a report says of the file is that of the file that was uploaded, not of the solid made of
-// it.
+// Puts the uploaded file's numbers into the report, in place of those of the solid made from it.
 static void keep_of_file(reading *what, const cau_mesh_report *file)
 {
 	cau_mesh_report *to = &what->report;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What session.advance answers with.
+// The answer to session.advance, with the memory for its lists.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 typedef struct observation {
 	cau_frame frame;
 	const cau_advance *wanted;
-	int32_t vertex_count; // of positions and scalars
+	int32_t vertex_count; // vertices in positions and scalars
 	cau_wire_advanced result;
 	cau_wire_observed_scalar scalars[CAU_SCALAR_COUNT];
 	cau_wire_observed_tool tools[CAU_MAX_TOOLS];
@@ -46,7 +46,7 @@ cau_status cau_advance_check(const cau_session_info *info, const cau_advance *ad
 	return CAU_OK;
 }
 
-// The vertex at this place of the answer.
+// Returns the vertex at this index of the answer.
 static int32_t vertex_at(const observation *o, int32_t place)
 {
 	return o->wanted->chosen ? o->wanted->vertices[place] : place;
@@ -197,7 +197,7 @@ static void observe_energy(const cau_session *core, observation *o)
 	                                              .vapour_kg_s = cau_session_vapour(core)};
 }
 
-// What costs the core work of its own is made for this answer, and for the streams that have it.
+// Fills the answer. The core computes the costly channels that this answer or a stream needs.
 static bool observe(cau_hosted *h, observation *o)
 {
 	cau_session_watch(h->core.session,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is asked of a session. Orders wait in one queue, whatever transport they came by; the
-// queue's order is the truth. They take effect at tick borders.
+// Orders to a session. Orders of all transports wait in one queue, and take effect in its order, at
+// tick borders.
 #pragma once
 
 #include "cautery/command.h"
@@ -9,11 +9,11 @@
 #include "hosted_session/sink.h"
 #include "session/asker.h"
 
-// Kinds of orders, a row each, and what serves them at a tick border (slice.h).
+// The kinds of orders, and the functions that serve them at a tick border (slice.h).
 //
-//     CHANGE(KIND, ask, apply)  waits in the session's queue. ask: what the decision knows it as,
-//                               CAU_ASK_<ask> of session/logic.h; of a COMMAND it is its command's
-//     READ(KIND, apply)         changes nothing, and waits apart from the drivers (read_requests.c)
+//    CHANGE(KIND, ask, apply)  waits in the session's queue. ask: CAU_ASK_<ask> of session/logic.h,
+//                              as which it is decided; for a COMMAND it depends on the command
+//    READ(KIND, apply)         changes nothing, and waits in a queue of its own (read_requests.c)
 #define CAU_ORDER_TABLE(CHANGE, READ)                                                              \
 	CHANGE(COMMAND, TISSUE, cau_apply_command) /* as.command */                                    \
 	CHANGE(PAUSE, PAUSE, cau_apply_pause)                                                          \
@@ -45,11 +45,11 @@
 typedef enum cau_order_kind { CAU_ORDER_TABLE(KIND, KIND) CAU_ORDER_COUNT } cau_order_kind;
 #undef KIND
 
-// ---- what some of them ask for ------------------------------------------------------------------
+// ---- arguments of some orders -------------------------------------------------------------------
 
 typedef struct cau_tool_order {
 	char tool[CAU_NAME_BYTES];
-	uint32_t to; // HAND_OVER: to this client; 0: to none
+	uint32_t to; // HAND_OVER: number of the new driver; 0: no driver
 	char to_name[65];
 	double to_deadline_s;
 	cau_role to_role;
@@ -81,23 +81,23 @@ typedef struct cau_frame_at_order {
 	double step_m;
 	bool plain;
 	uint32_t channels;
-	int64_t branch; // the rest is filled in when it is served
+	int64_t branch; // this and the next member are filled in when the order is served
 	uint64_t epoch;
 } cau_frame_at_order;
 
 typedef struct cau_order {
 	struct cau_order *next;
 	cau_order_kind kind;
-	bool motion; // a tool.move that nobody waits for: only the newest of a tick counts
+	bool motion; // a tool.move without an answer: only the newest of a tick counts
 	cau_asker asker;
-	int64_t client_sequence; // 0: none
-	double came_s;           // to the session; set by cau_hosted_submit
-	double alive_s;          // its asker's newest sign of life, monotonic; 0: this order is one
+	int64_t client_sequence; // 0: no sequence number
+	double came_s;           // arrival at the session; set by cau_hosted_submit
+	double alive_s; // newest sign of life of the client, monotonic; 0: this order is the newest
 	cau_reply reply;
 	union {
 		cau_command command;
 		int64_t ticks;
-		cau_advance *advance; // behind the order, in the same memory
+		cau_advance *advance; // follows the order in the same memory block
 		double speed;
 		uint64_t tick;
 		char name[CAU_NAME_BYTES];
@@ -111,7 +111,7 @@ typedef struct cau_order {
 	} as;
 } cau_order;
 
-// Puts it at the end of a list.
+// Appends the order to a list.
 static inline void cau_order_append(cau_order **list, cau_order *order)
 {
 	while (*list)

@@ -5,8 +5,8 @@
 
 #include "clock/clock.h"
 
-#define FACTOR_WINDOW_S 1.0 // realtime_factor is over this
-#define PIECE_KEPT 0.9      // of the longest step, from each to the next
+#define FACTOR_WINDOW_S 1.0 // window over which realtime_factor is measured
+#define PIECE_KEPT 0.9 // piece_s falls by this factor from step to step, unless a step is longer
 
 _Static_assert((int)CAU_HOSTED_STAGES == (int)CAU_STAGE_COUNT,
                "a histogram for each stage of the core");

@@ -8,8 +8,8 @@
 #include "hosted_session/build_limits.h"
 #include "hosted_session/shown.h"
 
-// A state is kept where the nearest one before it is this far: half a second of most scenes, which
-// is replayed faster than a hand notices.
+// A state is kept if the nearest earlier kept state is at least this many ticks back. In most
+// scenes this is half a second, which is replayed faster than a user notices.
 enum { KEPT_TICKS = 30 };
 
 // ---- building -----------------------------------------------------------------------------------
@@ -38,16 +38,16 @@ cau_status cau_past_core_build(cau_past_core *past, cau_past_core_border *go_on,
 	def.thread_count = (int32_t)past->identity->around->config->session_threads;
 	def.border = cross_border;
 	def.user = &at;
-	def.unsettled = true; // it is restored to what it shows
+	def.unsettled = true; // the core will be restored to a past state
 	cau_status status = cau_session_create(&def, &past->session, error);
 	if (status)
 		cau_past_core_finish(past);
 	return status;
 }
 
-// ---- going there --------------------------------------------------------------------------------
+// ---- reaching a tick ----------------------------------------------------------------------------
 
-// In place of the checkpoint's snapshot.
+// Replaces the checkpoint's snapshot by that of a kept state.
 static cau_status begin_at_kept(cau_past_core *past, const cau_kept_state *kept, cau_error *error)
 {
 	cau_replay *replay = &past->replay;
@@ -96,7 +96,8 @@ cau_status cau_past_core_restore(cau_past_core *past, cau_error *error)
 	return status;
 }
 
-// What it came by is a gift: where there is no memory for it nothing is kept.
+// Keeps the core's state for later views. Nothing depends on it, so nothing is kept if memory runs
+// out.
 static void keep(cau_past_core *past)
 {
 	size_t budget = (size_t)past->identity->around->config->look_bytes;
@@ -126,14 +127,14 @@ cau_status cau_past_core_slice(cau_past_core *past, double seconds, bool *over, 
 	return status;
 }
 
-// ---- showing it ---------------------------------------------------------------------------------
+// ---- the frame ----------------------------------------------------------------------------------
 static cau_status encode(const cau_stream_sample *sample, const cau_stream_def *def, uint64_t epoch,
                          void *storage, void *scratch, size_t *bytes, cau_error *error)
 {
 	cau_frame_encoder *encoder;
 	cau_status status =
 		cau_frame_encoder_init(storage, cau_frame_encoder_bytes(def), def, epoch, &encoder, error);
-	if (!status) // the epoch's first is a key frame
+	if (!status) // the first frame of an epoch is a key frame
 		status = cau_frame_encode(encoder, sample, scratch, cau_frame_bytes_max(def), bytes, error);
 	return status;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A view of the past rewinds no session, and no worker waits for it: a second core (past_core.c)
-// goes there on the builder, in turns. A session has one such core, and views wait for it in line,
-// one for each client: a client that asks again gives up the one before. Between turns a view is
-// given up whose client cancelled, is gone, or has no session any more.
+// Computes views of past ticks. A view rewinds no session, and no worker waits for it: a second
+// core (past_core.c) goes to the tick on the builder, alternating with other jobs. A session has
+// one such core, and requests wait for it in a queue, one for each client. A client's new request
+// cancels its previous one. Between two turns a request is dropped if its client has cancelled it
+// or is gone, or if the session has ended.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,12 +15,13 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// What the stages take, for the builder's order (rewind.c).
+// Estimated times of the stages; they order the builder's jobs (rewind.c).
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
-#define SLICE_S 0.1 // of a replay, before other short jobs have their turn
+#define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
 
-#define KEPT_S 60.0 // an idle core goes after this: it takes as much memory as the session's own
+// An unused core is freed after this time, because it takes as much memory as the session's own.
+#define KEPT_S 60.0
 
 // ---- answers ------------------------------------------------------------------------------------
 static cau_stream_def define(const cau_hosted_identity *identity, const cau_session_info *info,
@@ -95,9 +97,10 @@ static void tell_progress(cau_past_views *views)
 	                  CAU_METHOD_SESSION_FRAME_PROGRESS, &progress);
 }
 
-// ---- the line -----------------------------------------------------------------------------------
-// The next that waits, as the present one. False: there is none, and the builder lets go; from the
-// lock's release on another of its threads may have the views, so nothing of them is read then.
+// ---- the queue ----------------------------------------------------------------------------------
+// Makes the next waiting request the present one. Returns false if none waits; then the builder
+// releases the views. Another thread of the builder may have the views as soon as the lock is
+// released, so nothing of them is read after that.
 static bool take_next(cau_past_views *views)
 {
 	pthread_mutex_lock(&views->lock);
@@ -181,7 +184,7 @@ static int32_t code_of(const cau_hosted_life *life)
 	return life->ended ? CAU_RPC_NOT_HERE : life->drain_wanted ? CAU_RPC_DRAINING : 0;
 }
 
-// One stage of the present view, or one turn of its replay.
+// Runs one stage of the present request, or one turn of its replay.
 static void advance(cau_past_views *views)
 {
 	cau_error error = {0};
@@ -202,11 +205,12 @@ static void advance(cau_past_views *views)
 static void let_go(cau_past_views *views)
 {
 	cau_hosted *h = views->hosted;
-	cau_worker_pool_wake(h->identity.around->pool, &h->task); // it frees the core in time
+	// the worker frees the unused core later
+	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 	cau_hosted_release(h);
 }
 
-// On the builder, which has the core for as long as `busy`.
+// Runs on the builder, which has the core while `busy` is set.
 static void run(cau_job *job)
 {
 	cau_past_views *views = (cau_past_views *)job;
@@ -224,7 +228,7 @@ static void run(cau_job *job)
 	go_on(views);
 }
 
-// The builder ends.
+// Drops all requests because the builder ends.
 static void drop(cau_job *job)
 {
 	cau_past_views *views = (cau_past_views *)job;
@@ -245,7 +249,7 @@ void cau_past_views_init(cau_past_views *views, cau_hosted *h)
 	pthread_mutex_init(&views->lock, NULL);
 }
 
-// The builder has it from here on, unless it had it already.
+// Submits the job to the builder, unless the builder has it already.
 static void wake(cau_past_views *views, bool was_busy)
 {
 	if (was_busy)
@@ -274,8 +278,8 @@ void cau_apply_frame_at(cau_hosted *h, cau_order *order)
 		return;
 	}
 	order->as.frame_at.branch = h->history.branch;
-	order->as.frame_at.epoch = epoch == UINT64_MAX ? 1 : ~epoch; // that of no stream
-	cau_record_commit(h); // what the builder reads from the store is on its way there
+	order->as.frame_at.epoch = epoch == UINT64_MAX ? 1 : ~epoch; // an epoch that no stream has
+	cau_record_commit(h); // submits what the builder will read from the store
 	cau_past_views_give_up(&h->past, order->asker.client);
 	line_up(&h->past, order);
 }
@@ -286,7 +290,7 @@ void cau_apply_frame_cancel(cau_hosted *h, cau_order *order)
 	cau_answer_order(&h->record, order, &(cau_wire_nothing){0});
 }
 
-// Under the lock.
+// Returns the time at which the core must be freed. Call this under the lock.
 static double tires_s(const cau_past_views *views)
 {
 	return !views->busy && views->core.session ? views->idle_since_s + KEPT_S : INFINITY;
@@ -313,7 +317,7 @@ void cau_past_views_tire(cau_past_views *views, double now_s)
 
 // ---- from any thread ----------------------------------------------------------------------------
 
-// Out of the line, or NULL. Under the lock.
+// Removes the client's request from the queue, or returns NULL. Call this under the lock.
 static cau_order *take_of_client(cau_past_views *views, uint32_t client)
 {
 	cau_order **place = &views->waiting;

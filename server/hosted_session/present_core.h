@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core at the session's present tick. It belongs to the thread that has the session: the worker
-// of its slice, or the builder while the session is suspended (suspension.h).
+// The core with the session's present state. Only the session's owning thread uses it: the worker
+// of the slice, or the builder while the session is suspended (suspension.h).
 #pragma once
 
 #include "cautery/session.h"
 
 typedef struct cau_present_core {
-	cau_session *session;     // NULL until it is built
-	cau_session_info info;    // of one that is built; it never changes, so any thread may read it
-	cau_scene_def *described; // memory for a description of the present
+	cau_session *session; // NULL until the core is built
+	// description of a built core; it never changes, so any thread may read it
+	cau_session_info info;
+	cau_scene_def *described; // memory for a description of the present state
 	uint64_t tick;
-	bool adopted; // its threads have the workers' priority
+	bool adopted; // the core's threads have the priority of workers
 } cau_present_core;

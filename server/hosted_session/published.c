@@ -22,7 +22,7 @@ void cau_hosted_publish_summary(cau_hosted *h)
 		.epoch = h->frames.epoch,
 		.has_fault = decided.state == CAU_SESSION_FAULTED && *decided.fault,
 	};
-	now.has_stored = h->identity.around->ephemeral; // and false
+	now.has_stored = h->identity.around->ephemeral; // `stored` stays false
 	now.has_stage = *h->suspension.stage;
 	snprintf(now.stage, sizeof now.stage, "%s", h->suspension.stage);
 	memcpy(now.session, h->identity.id, sizeof now.session);
@@ -54,7 +54,7 @@ void cau_published_count(cau_hosted_published *published, const cau_hosted_count
 
 void cau_hosted_summary(cau_hosted *h, cau_wire_session_summary *summary)
 {
-	cau_stream_counts streams; // subscribers come and go without a slice
+	cau_stream_counts streams; // counted now: subscribers join and leave without a slice
 	cau_streams_count(&h->frames.streams, &streams);
 	pthread_mutex_lock(&h->published.lock);
 	*summary = h->published.summary;

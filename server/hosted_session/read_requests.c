@@ -6,11 +6,12 @@
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
-#define BORDER_SOON_S 0.0334 // a running session's reads wait for a border that is this near
+// If the next tick border of a running session is at most this far, reads wait for it.
+#define BORDER_SOON_S 0.0334
 
 enum {
-	FILES_AT_ONCE = 2, // of one session with the builder: each holds a copy of its state
-	CLIENT_SHARE = 4,  // one client has at most this part of the queue
+	FILES_AT_ONCE = 2, // most files of one session with the builder: each has a copy of its state
+	CLIENT_SHARE = 4,  // one client may use at most this part (1/4) of the queue
 };
 
 bool cau_reads_are(const cau_order *order)
@@ -33,7 +34,7 @@ static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
 	int64_t most = h->identity.around->config->queue_reads, its_own = 0;
 	if (h->life.ended)
 		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
-	if (h->life.drain_wanted) // its last slice serves what waits by now
+	if (h->life.drain_wanted) // the last slice serves only the requests that wait by now
 		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending");
 	cau_order **end = &h->reads.first;
 	for (; *end; end = &(*end)->next)
@@ -54,8 +55,8 @@ static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
 	return CAU_OK;
 }
 
-// Looked at once the order waits: a slice that pauses the session publishes that before it looks
-// for waiting requests.
+// True if the next tick border comes soon anyway. Must be called after the order was queued: a
+// slice that pauses the session publishes this before it looks for waiting requests.
 static bool border_is_near(cau_hosted *h)
 {
 	cau_wire_session_summary summary;
@@ -65,7 +66,7 @@ static bool border_is_near(cau_hosted *h)
 
 cau_status cau_reads_submit(cau_hosted *h, cau_order *order, cau_error *error)
 {
-	if (!order->reply.answer) { // the asker is gone
+	if (!order->reply.answer) { // the client is gone
 		free(order);
 		return CAU_OK;
 	}
@@ -129,10 +130,10 @@ bool cau_reads_wait(cau_hosted_reads *reads)
 	return order != NULL;
 }
 
-// ---- with the builder ---------------------------------------------------------------------------
+// ---- requests that the builder answers ----------------------------------------------------------
 
 typedef struct reading {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	cau_read_job read;
 	cau_read_work *work;
 	void (*finish)(void *copy);
@@ -146,7 +147,8 @@ static void end(reading *r)
 	if (cau_reads_make_file(r->read.order))
 		atomic_fetch_sub(&h->reads.files, 1);
 	free(r->read.order);
-	cau_worker_pool_wake(h->identity.around->pool, &h->task); // others may have waited for this
+	// other requests may have waited for this one
+	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 	cau_hosted_release(h);
 	free(r);
 }
@@ -185,6 +187,6 @@ void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, v
 	               .finish = finish};
 	if (cau_reads_make_file(order))
 		atomic_fetch_add(&h->reads.files, 1);
-	cau_record_commit(h); // what the builder reads from the store is on its way there
+	cau_record_commit(h); // submits what the builder will read from the store
 	cau_builder_submit(h->identity.around->builder, &r->job);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that only read a session wait apart from its drivers' orders.
+// Requests that only read a session. They wait in a queue apart from the orders of drivers.
 #pragma once
 
 #include <pthread.h>
@@ -11,42 +11,43 @@
 
 typedef struct cau_hosted_reads {
 	pthread_mutex_t lock;
-	cau_order *first;  // lock: those that wait
-	int32_t count;     // lock
-	atomic_int files;  // of this session that the builder makes
-	cau_shelf *copies; // memory for what files show
+	cau_order *first;  // under the lock: the waiting requests
+	int32_t count;     // under the lock: number of waiting requests
+	atomic_int files;  // files of this session that the builder makes now
+	cau_shelf *copies; // memory for the copies from which files are made
 } cau_hosted_reads;
 
 bool cau_reads_are(const cau_order *order);
 bool cau_reads_make_file(const cau_order *order);
-// Like cau_hosted_submit, for those.
+// Queues a request that only reads; otherwise like cau_hosted_submit.
 cau_status cau_reads_submit(cau_hosted *h, cau_order *order, cau_error *error);
-// How many wait. Noted before a slice takes the drivers' queue, so that each is served after all
-// commands that came before it.
+// Returns the number of waiting requests. A slice notes this number before it takes orders of
+// drivers. So each noted request is served after all commands that came before it.
 int32_t cau_reads_note(cau_hosted_reads *reads);
-// The first of the `*noted` oldest that can be served now, NULL: none; counts down those it looked
-// at.
+// Removes the first of the `*noted` oldest requests that can be served now, or returns NULL.
+// Reduces *noted by the requests that it has passed.
 cau_order *cau_reads_take(cau_hosted_reads *reads, int32_t *noted);
-bool cau_reads_wait(cau_hosted_reads *reads); // some can be served now
-void cau_reads_refuse(cau_hosted *h);         // all, of a session that has ended
+bool cau_reads_wait(cau_hosted_reads *reads); // true if a request can be served now
+void cau_reads_refuse(cau_hosted *h);         // refuses all requests of a session that has ended
 
-// ---- with the builder
+// ---- requests that the builder answers
 
-// What the builder needs for an answer; its thread must look at nothing of the session that steps
+// What the builder needs for an answer. Its thread must not read anything of the session that steps
 // change.
 typedef struct cau_read_job {
 	cau_hosted *hosted;
 	cau_order *order;
-	uint64_t tick; // of the slice that handed it over
+	uint64_t tick; // tick of the slice that handed the request over
 	int64_t branch;
 	void *copy;
 } cau_read_job;
-typedef void cau_read_work(cau_read_job *job); // answers the order, which is not its to free
-// Leaves an order to the builder, whose thread does `work` and then, also without having done it,
-// `finish` (may be NULL) with the copy. Takes order and copy.
+typedef void cau_read_work(cau_read_job *job); // answers the order, but does not free it
+// Hands an order to the builder, whose thread calls `work` and then `finish` (may be NULL) with the
+// copy. If the job is dropped, only `finish` is called. Takes ownership of the order and the copy.
 void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, void *copy,
                          void (*finish)(void *copy), double expected_s);
 
 // ---- export.c
-size_t cau_export_copy_bytes(const cau_session_info *info); // of what a file shows of a tick
-uint32_t cau_export_number(void);                           // of the next file
+// bytes of a copy of all that a file shows
+size_t cau_export_copy_bytes(const cau_session_info *info);
+uint32_t cau_export_number(void); // returns a new number for a file's transfer

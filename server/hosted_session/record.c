@@ -8,12 +8,13 @@
 #include "cautery/command_json.h"
 #include "clock/clock.h"
 
-// Of checkpoints for each tick that a paused session is stepped: one that is stepped for long has a
-// checkpoint from time to time, and a restart does not replay all of it. The disk takes each byte
-// twice, in the write-ahead log and in the file. So a tick stays below 16 KiB with its log entries.
+// Bytes of checkpoints for each tick that a paused session is stepped. A session that is stepped
+// for long then has checkpoints from time to time, and a restart does not replay all of it. The
+// disk takes each byte twice, in the write-ahead log and in the file. So a tick stays below 16 KiB
+// with its log entries.
 enum { REACHED_BYTES = 2048 };
 
-enum { QUIET_DOUBLINGS = 6 }; // a session at rest has a checkpoint every 64 checkpoint_s at least
+enum { QUIET_DOUBLINGS = 6 }; // a resting session has a checkpoint at least every 64 checkpoint_s
 
 void cau_record_init(cau_hosted_record *record, const cau_hosted_identity *identity,
                      const cau_present_core *core, const cau_hosted_history *history,
@@ -36,7 +37,8 @@ cau_store_batch *cau_record_batch(cau_hosted_record *record)
 	return record->batch;
 }
 
-// A log that misses something is only good again from the next checkpoint on. Any thread.
+// Notes that the log lacks entries from this tick on. The log is complete again from the next
+// checkpoint on. Any thread may call this.
 void cau_commits_lose(cau_hosted_commits *commits, uint64_t from_tick)
 {
 	uint64_t known = commits->lost_from;
@@ -55,7 +57,7 @@ void cau_record_gap(cau_hosted_record *record, const cau_error *error)
 	                                      : record->core->tick);
 }
 
-// The next entry of the log, at the tick of now.
+// Returns a new log entry for the present tick.
 static cau_store_command next_entry(cau_hosted_record *record, int32_t kind)
 {
 	if (record->logged_tick != record->core->tick) {
@@ -72,8 +74,9 @@ static cau_store_command next_entry(cau_hosted_record *record, int32_t kind)
 	                           .kind = kind};
 }
 
-// A checkpoint at tick T comes before the commands logged at T. Once some are with the core, this
-// border is past that: the log leads here from the checkpoint before, and the next border gets one.
+// True if commands of this tick are already logged. A checkpoint of a tick comes before the
+// commands of that tick, so it is too late for one. The log then leads here from the previous
+// checkpoint, and the next tick border gets a checkpoint.
 static bool is_past_commands(const cau_hosted_record *record)
 {
 	return record->logged_tick == record->core->tick && record->logged_acts;
@@ -86,7 +89,7 @@ void cau_record_command(cau_hosted_record *record, const cau_command *command,
 	size_t json_bytes = 0;
 	record->touched = true;
 	if (record->commits->lost_from <= record->core->tick && is_past_commands(record))
-		return; // a cut of the daemon's own, behind a command that was lost
+		return; // an energy cut-off by the daemon after a command that was lost
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(record);
 	cau_store_command row = next_entry(record, command->kind);
@@ -127,7 +130,8 @@ void cau_record_state(cau_hosted_record *record, int session_state)
 		cau_record_gap(record, &error);
 }
 
-// What was lost ends with the checkpoint of this tick, in the same batch: nobody is led through it.
+// Ends the gap of the log with this tick's checkpoint, in the same batch. The store then leads no
+// replay through the gap.
 static cau_status end_gap(cau_hosted_record *record, cau_store_batch *batch, cau_error *error)
 {
 	uint64_t from = atomic_exchange(&record->commits->lost_from, UINT64_MAX);
@@ -139,7 +143,7 @@ static cau_status end_gap(cau_hosted_record *record, cau_store_batch *batch, cau
 	if (status)
 		cau_commits_lose(record->commits, from);
 	else if (from < record->batch_lost)
-		record->batch_lost = from; // lost again if the batch is
+		record->batch_lost = from; // if the batch is lost, the log is lost from there on again
 	return status;
 }
 
@@ -209,7 +213,7 @@ bool cau_record_is_due(cau_hosted_record *record, bool running, bool energy_on, 
 		record->quiet_checkpoints = 0;
 	else if (due && record->quiet_checkpoints < QUIET_DOUBLINGS)
 		record->quiet_checkpoints++;
-	// A store without capacity is not tried: once it has capacity again it asks for a checkpoint.
+	// A full store is not tried. Once it has capacity again, it asks for a checkpoint.
 	return (due || record->commits->checkpoint_wanted) && store_is_ready(record);
 }
 
@@ -244,7 +248,7 @@ void cau_record_event(cau_hosted_record *record, const cau_wire_timeline_event *
 		CAU_EVENT_TABLE(X)
 #undef X
 	};
-	char text[4096]; // the longest detail, every byte escaped
+	char text[4096]; // holds the longest detail with every byte escaped
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(record);
 	cau_wire_event_notice notice = {.event = *event};

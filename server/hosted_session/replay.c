@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The way back to a state: the nearest checkpoint, then the log. Runs in slices, so that other
-// sessions keep their pace.
+// Brings a core to a stored state: restores the nearest checkpoint, then replays the log. It runs
+// in slices, so that other sessions keep their pace.
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,7 +64,7 @@ cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *ses
 	if (!status)
 		status = cau_store_read_log(store, session, branch, replay->from, before, take_command,
 		                            replay, error);
-	// Asked last: retention may have taken some of it meanwhile.
+	// Checked last, because retention may have removed some of the log in the meantime.
 	if (!to_end && (!status || status == CAU_NOT_FOUND)) {
 		cau_status reached = cau_store_check_reach(store, session, branch, tick, error);
 		status = reached ? reached : status;
@@ -99,7 +99,7 @@ static void submit_due(cau_replay *replay, cau_session *core)
 	     replay->at++)
 		if (replay->commands[replay->at].acts &&
 		    cau_session_submit(core, &replay->commands[replay->at].command, NULL))
-			replay->exact = false; // it was taken when it was logged
+			replay->exact = false; // the core accepted the command when it was logged
 }
 
 cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The way of a core to a state of the store: the nearest checkpoint, then the log, in slices.
+// Brings a core to a stored state: restores the nearest checkpoint, then replays the log, in
+// slices.
 #pragma once
 
 #include "hosted_session/record.h"
@@ -8,35 +9,37 @@
 typedef struct cau_replayed {
 	uint64_t tick;
 	uint32_t order;
-	bool acts; // it has a command: see CAU_STORE_REACHED
+	bool acts; // false: the entry has no command (CAU_STORE_REACHED)
 	cau_command command;
 } cau_replayed;
 
-// By one thread at a time.
+// Only one thread at a time may use this.
 typedef struct cau_replay {
-	void *snapshot; // of the checkpoint, until the core has it
+	void *snapshot; // snapshot of the checkpoint, until the core is restored from it
 	size_t snapshot_bytes;
-	uint64_t from, until; // ticks
-	uint64_t tick;        // where the core is
+	uint64_t from, until; // ticks between which the log is replayed
+	uint64_t tick;        // tick of the core
 	bool exact;
-	double stepped_s; // processor time of its steps
+	double stepped_s; // processor time of the replayed steps
 	cau_replayed *commands;
 	size_t count, capacity, at;
 } cau_replay;
 
-// On the builder. Before the past is read, all of it that is on its way must be in the store.
-// CAU_BAD_VALUE: that tick cannot be reached; `present`: the branch is the present one.
+// Checks whether a tick can be reached. Runs on the builder. First waits until all submitted
+// batches are in the store. Returns CAU_BAD_VALUE if the tick cannot be reached. `present`: the
+// branch is the session's present branch.
 cau_status cau_replay_check(const cau_hosted_identity *identity, const cau_hosted_commits *commits,
                             int64_t branch, bool present, uint64_t tick, cau_error *error);
 // Reads the checkpoint and the log of a session's branch up to `tick` (UINT64_MAX: the end).
 cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *session,
                            int64_t branch, uint64_t tick, cau_error *error);
-// Has the core be at that checkpoint. After CAU_CORRUPT it is as it was, after another failure it
-// may be anywhere.
+// Restores the core from that checkpoint. After CAU_CORRUPT the core is unchanged. After another
+// failure its state is undefined.
 cau_status cau_replay_restore(cau_replay *replay, cau_session *core, cau_error *error);
-// Steps on along the log, until that is over or some seconds are.
+// Replays the log until its end, or for about `seconds`.
 cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,
                             cau_error *error);
-// The core is, or the snapshot will take it, further than the checkpoint: at `tick`, on this way.
+// Starts the replay later than at the checkpoint: the core, or the snapshot that replaces the
+// checkpoint's, is at `tick`.
 void cau_replay_shorten(cau_replay *replay, uint64_t tick);
 void cau_replay_finish(cau_replay *replay);

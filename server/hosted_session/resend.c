@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-// The method whose name is the answer's id; empty: stored by a version that named none.
+// Reads the method's name from the answer's id. The name is empty if an older version stored the
+// answer without it.
 static void read_method(const char *text, size_t bytes, char name[CAU_RPC_ID_BYTES])
 {
 	static const char before[] = "{\"jsonrpc\":\"2.0\",\"id\":\"";

@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Going back: rewind, reset and restore, and where a fork starts from.
+// Rewind, reset and restore, and the check of a fork's tick.
 //
-// The worker leaves the session to the builder, at a tick border and dark; orders wait meanwhile.
-// The builder has it for itself, as while it builds one, in stages: what is to be reached is read,
-// the core is brought to the checkpoint, the log is replayed in slices. At the borders between them
-// it is told how far it is, and who destroys the session is heard. The state that is left is kept
-// until another is reached: where that fails, the session goes on as if it had not been asked.
+// The worker hands the session to the builder, at a tick border with energy off. Orders wait
+// meanwhile. The builder alone uses the session, as while it builds one, and works in stages: it
+// reads the past, restores the checkpoint, and replays the log in slices. Between the stages it
+// reports its progress and checks whether a client destroys the session. The present state is kept
+// until the new one is reached. If that fails, the session continues from its present state.
 #include <stdlib.h>
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// What the stages take, for the builder's order: a sheet of 250,000 vertices is restored in 1.5 s.
+// Estimated times of the stages; they order the builder's jobs. Restoring a sheet of 250,000
+// vertices takes 1.5 s.
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
-#define SLICE_S 0.1 // of a replay, before other short jobs have their turn
+#define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
 
 typedef struct going {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	cau_hosted *hosted;
 	cau_order *order;
 	enum { READING, RESTORING, REPLAYING, STAGE_COUNT } stage;
-	int64_t branch; // where to
+	int64_t branch; // branch and tick to reach
 	uint64_t tick, present_tick;
-	bool left;     // the core is not at the present any more
-	void *present; // its snapshot; NULL: there is none
+	bool left;     // the core has left the present state
+	void *present; // snapshot of the present state; NULL: none
 	size_t present_bytes;
 } going;
 
@@ -33,7 +34,8 @@ static const char *const stage_names[STAGE_COUNT] = {"reading", "restoring", "re
 
 // ---- the past -----------------------------------------------------------------------------------
 
-// What the store lacks is told to it by the checkpoint that ends it; until then nobody goes there.
+// Ends a gap of the log with a checkpoint, which reports the gap to the store. Until the checkpoint
+// is stored, no rewind may reach into the gap.
 static void end_gap(cau_hosted_record *record)
 {
 	if (record->commits->lost_from != UINT64_MAX)
@@ -93,7 +95,7 @@ static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 	cau_answer_order(&h->record, order, &result);
 }
 
-// ---- staying ------------------------------------------------------------------------------------
+// ---- after a failure ----------------------------------------------------------------------------
 
 static cau_status return_to_present(going *g, cau_error *error)
 {
@@ -108,7 +110,7 @@ static cau_status return_to_present(going *g, cau_error *error)
 	                           error);
 }
 
-// It goes on where it was, dark, as if nobody had asked.
+// Continues the session at its present tick after a failed rewind, with energy off.
 static void stay(going *g)
 {
 	cau_hosted *h = g->hosted;
@@ -135,7 +137,7 @@ static cau_status read_past(going *g, cau_error *error)
 	                                g->branch, g->tick, error);
 }
 
-// A session that is faulted has nothing that must be kept.
+// Takes a snapshot of the present state. A faulted session may go without one.
 static cau_status keep_present(going *g, cau_error *error)
 {
 	cau_hosted *h = g->hosted;
@@ -183,7 +185,7 @@ static double expected_s(const going *g)
 	return h->pace.piece_s > SLICE_S ? h->pace.piece_s : SLICE_S;
 }
 
-// Leaves it for its next turn; another thread may have it at once.
+// Submits the next stage. Another thread may have the job at once, so it is not used after this.
 static void go_on(going *g)
 {
 	g->job.expected_s = expected_s(g);
@@ -285,7 +287,7 @@ cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_actio
 
 // ---- forks --------------------------------------------------------------------------------------
 
-// On the builder, beside the session's slices.
+// Runs on the builder while the session's slices continue.
 static void make_fork(cau_read_job *job)
 {
 	cau_hosted *h = job->hosted;

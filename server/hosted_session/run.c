@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One slice of a session on a worker: cuts, orders, one step, frames, the commit.
+// One slice of a session on a worker: energy cut-offs, orders, one step, frames, the commit.
 #include <math.h>
 
 #include "hosted_session/answer.h"
@@ -7,8 +7,8 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define STEPPING_SLICE_S 0.01 // session.step runs so long before others get the worker
-#define REPLAY_SLICE_S 0.008  // and so long a replay, so that other sessions keep their pace
+#define STEPPING_SLICE_S 0.01 // longest slice of session.step, before other sessions get the worker
+#define REPLAY_SLICE_S 0.008  // longest slice of a replay, so that other sessions keep realtime
 
 static void step(cau_hosted *h)
 {
@@ -37,7 +37,7 @@ static void step(cau_hosted *h)
 	                         .resting = frame.statistics.resting});
 }
 
-// ---- what is to be done now
+// ---- the next act
 static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 {
 	cau_order *order = (cau_order *)(uintptr_t)action->ticket;
@@ -65,15 +65,16 @@ static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 	return CAU_DONE;
 }
 
-// A resend whose first was committed while it was looked for must not wait for a commit to come.
+// Reports that no commit is under way. An earlier order may have been committed while its resend
+// looked for it; the resend must not wait for a further commit.
 static void note_commits(cau_hosted *h)
 {
 	if (h->commits.under_way == 0)
 		cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_COMMITTED, .time_s = cau_monotonic_s()});
 }
 
-// Does what is decided, until a tick of the clock is over or nothing is left. session.step goes as
-// fast as it can, with a border for orders and cuts before each tick.
+// Carries out acts until one tick of the clock is done or no act is left. session.step runs as fast
+// as possible, with a border for orders and energy cut-offs before each tick.
 static void act_until_tick(cau_hosted *h)
 {
 	cau_action action;
@@ -94,7 +95,7 @@ static void act_until_tick(cau_hosted *h)
 				return;
 			}
 			cau_frames_publish(h, cau_monotonic_s());
-			// After the last of the ticks that were asked for comes their answer, for the same
+			// After the last requested tick the answer follows at once, so that it is in the same
 			// commit.
 			if (cau_monotonic_s() >= end_s && cau_decisions_now(&h->decisions).steps_left)
 				return;
@@ -139,7 +140,7 @@ static void drain(cau_hosted *h)
 		h->life.drained = true;
 }
 
-// After a restart or a fork.
+// Continues the replay after a restart or a fork.
 static void go_on_replaying(cau_hosted *h)
 {
 	cau_error error = {0};
@@ -178,7 +179,7 @@ static cau_due when(cau_hosted *h)
 	if (h->life.ended || h->life.drain_wanted)
 		return (cau_due){INFINITY, INFINITY, h->pace.piece_s};
 	if (h->creation.starting)
-		return (cau_due){0, now_s + 0.1, h->pace.piece_s}; // those at wall rate go first
+		return (cau_due){0, now_s + 0.1, h->pace.piece_s}; // running sessions go first
 	double due_s = cau_decisions_due_s(&h->decisions);
 	cau_decided now = cau_decisions_now(&h->decisions);
 	if (now.state == CAU_SESSION_RUNNING)
@@ -188,7 +189,8 @@ static cau_due when(cau_hosted *h)
 	                 h->pace.piece_s};
 }
 
-// The builder made the core, and its threads have the builder's priority: they become a worker's.
+// Gives the core's threads the priority of workers. The builder has created them with its own
+// priority.
 static void adopt(cau_present_core *core, const char *id)
 {
 	cau_error error = {0};
@@ -197,7 +199,8 @@ static void adopt(cau_present_core *core, const char *id)
 		cau_log(CAU_LOG_WARNING, id, "threads_not_adopted", "reason=\"%s\"", error.reason);
 }
 
-// The first slice steps nothing: by its end the pool knows how long a step may be.
+// Runs one slice. The first slice only adopts the core and steps nothing. So the pool knows the
+// length of a step before the first step.
 static void run_slice(cau_hosted *h)
 {
 	if (h->life.drain_wanted)
@@ -210,13 +213,14 @@ static void run_slice(cau_hosted *h)
 		serve(h, cau_monotonic_s());
 }
 
-// `suspension.active` is read first. While it is set the session is the builder's, `ended` and all.
-// All that the builder did is seen once it is seen to be false, so that no session which has ended
-// there is run. In the other order it may end and be given back between the two.
+// Runs one slice as a task of the pool. `suspension.active` must be read before `ended`. While it
+// is set, the builder has the session, including `ended`. Once it is read as false, all changes of
+// the builder are visible, so a session that has ended on the builder is not run. In the other
+// order, the session might end and return between the two reads.
 cau_due cau_hosted_run(cau_task *task)
 {
 	cau_hosted *h = (cau_hosted *)task;
-	const cau_due away = {INFINITY, INFINITY, task->next.piece_s}; // as it was
+	const cau_due away = {INFINITY, INFINITY, task->next.piece_s}; // keeps the present estimate
 	if (h->suspension.active)
 		return away;
 	h->pace.stepped_s = 0;

@@ -6,7 +6,8 @@
 
 #include "clock/clock.h"
 
-// Tools that touch are always behind a little: by less than this nobody sees it.
+// A tool in contact is always a little behind its commanded pose. Below this distance a user does
+// not see it.
 static const double behind_m = 1e-5;
 
 static bool is_behind(const cau_tool_state *tool)

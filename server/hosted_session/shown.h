@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frame, tools and statistics of a core's tick, as streams carry them.
+// The frame, tools and statistics of one tick of a core, in the form that streams send.
 #pragma once
 
 #include "cautery/session.h"
 #include "stream/stream.h"
 
-// The sample points into the rest, and into the core.
+// `sample` points into the other members, and into the core.
 typedef struct cau_shown {
 	cau_frame frame;
-	cau_stream_tool tools[CAU_MAX_TOOLS]; // without drivers
+	cau_stream_tool tools[CAU_MAX_TOOLS]; // without their drivers
 	cau_stream_statistics statistics;
 	cau_stream_sample sample;
 } cau_shown;

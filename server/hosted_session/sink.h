@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What sessions say to the transports. A transport gives one sink; every function may be called
-// from any thread, must not block, and must not call back into a session.
+// What sessions send to the transports. A transport provides one sink. Any thread may call its
+// functions. They must not block, and must not call back into a session.
 #pragma once
 
 #include <stdbool.h>
@@ -12,36 +12,36 @@
 
 typedef struct cau_hosted cau_hosted;
 
-// Who is told. `id`: of the connection, the client or the session, by kind.
+// The receivers of a notification. `id` is the number of the client or of the session, by kind.
 typedef struct cau_audience {
 	enum {
-		CAU_AUDIENCE_CLIENT,    // one client, by its number
-		CAU_AUDIENCE_SESSION,   // everybody who joined a session's stream, by its number
-		CAU_AUDIENCE_EVERYBODY, // everybody who said hello
+		CAU_AUDIENCE_CLIENT,    // one client
+		CAU_AUDIENCE_SESSION,   // all clients that joined a stream of the session
+		CAU_AUDIENCE_EVERYBODY, // all clients that said hello
 	} kind;
 	uint64_t id;
 } cau_audience;
 
-// Where a session is that has moved to another daemon.
+// Where to find a session that has moved to another daemon.
 typedef struct cau_moved_to {
-	char session[CAU_NAME_BYTES]; // its id there; "": nowhere
-	char url[256];                // of that daemon; "": the same address leads there
+	char session[CAU_NAME_BYTES]; // the session's id on that daemon; "": it has not moved
+	char url[256]; // address of that daemon; "": the client's present address leads to it
 } cau_moved_to;
 
-// What became of a request.
+// The outcome of a request.
 typedef struct cau_outcome {
-	const cau_error *error;    // NULL: done
-	int32_t code;              // of the error: CAU_RPC_*; 0: the status's own
-	const cau_moved_to *moved; // of CAU_RPC_MOVED
-	const char *text;          // done: the whole JSON-RPC answer; its id is its method's name
+	const cau_error *error;    // NULL: the request succeeded
+	int32_t code;              // CAU_RPC_* code of the error; 0: the code of its status
+	const cau_moved_to *moved; // for CAU_RPC_MOVED
+	const char *text; // on success: the complete JSON-RPC answer; its id is the name of its method
 	size_t text_bytes;
-	cau_buffer *file;   // of an export; shared, the sink takes its own reference
-	uint32_t transfer;  // the file's number in chunks
-	cau_hosted *joined; // session.join: the stream that the asker now has
+	cau_buffer *file;   // file of an export; the sink takes its own reference
+	uint32_t transfer;  // number of the file in its chunks
+	cau_hosted *joined; // session.join: the session whose stream the client has joined
 	int32_t stream;
 } cau_outcome;
 
-// Whom to answer, kept with the request; copied freely.
+// Where to send an answer. It is kept with the request and may be copied.
 typedef struct cau_reply {
 	void (*answer)(void *user, const struct cau_reply *reply, const cau_outcome *outcome);
 	void *user;
@@ -52,11 +52,11 @@ typedef struct cau_reply {
 
 typedef struct cau_sink {
 	void *user;
-	// A notification, ready to send; the sink takes the buffer.
+	// Sends a finished notification. Takes ownership of the buffer.
 	void (*notify)(void *user, cau_audience audience, cau_buffer *text);
-	// Streams have new frames.
+	// Called when streams have new frames.
 	void (*frames)(void *user);
-	// A slice of the session with this number is over: its tools may be elsewhere. May be NULL.
+	// Called after a slice of the session with this number: its tools may have moved. May be NULL.
 	void (*sliced)(void *user, uint32_t session);
 } cau_sink;
 
@@ -72,5 +72,5 @@ static inline void cau_reply_fail(const cau_reply *reply, const cau_error *error
 	cau_reply_answer(reply, &outcome);
 }
 
-// Tells who asked that another daemon has the session.
+// Answers that another daemon has the session.
 void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to);

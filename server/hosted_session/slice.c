@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a slice ends, whoever has it: a worker or the builder; and what is refused in it.
+// Ends a slice, on a worker or on the builder, and refuses orders.
 #include "hosted_session/slice.h"
 
 #include "cautery/assert.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a session comes to be: from its scene, from the store, or from another session's state.
+// Starts a session: from its scene, from the store, or from a state of another session.
 #include <stdlib.h>
 
 #include "cautery/scene_json.h"
@@ -8,11 +8,12 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/mesh_reading.h"
 
-// On each shelf one piece is in use, by the store or the builder, and one is there for the next
-// slice.
+// Pieces of memory on each shelf: one is used by the store or the builder, and one is ready for the
+// next slice.
 enum { PIECES = 2 };
 
-// What the settings do not allow it to hold is made when it is needed.
+// Allocates memory in advance, if the limits allow it. Otherwise the memory is allocated when it is
+// needed.
 static void stock_shelves(cau_hosted *h)
 {
 	cau_error refused = {0};
@@ -57,7 +58,8 @@ static bool begin_as(cau_session *core, const cau_beginning *known)
 	       !cau_session_restore(core, known->snapshot, known->byte_count, &exact, NULL) && exact;
 }
 
-// As the first session of its scene began; settled by itself where that does not serve.
+// Builds the core with the rest state of the first session of this scene. If that state does not
+// fit, the core settles by itself.
 static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, cau_error *error)
 {
 	cau_status status = create(h, true, error);
@@ -95,7 +97,8 @@ static cau_status build(cau_hosted *h, cau_error *error)
 	return CAU_OK;
 }
 
-// The first rows of a session: definition, meshes, and later the first checkpoint.
+// Writes the first rows of a session to the batch: definition and meshes. The first checkpoint
+// follows later.
 static cau_status record_session(cau_hosted *h, cau_error *error)
 {
 	size_t bytes = 0;
@@ -180,7 +183,8 @@ void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)
 	cau_hosted_fail_creator(&h->creation, error, 0);
 }
 
-// Of a move: what has come is read once, so that it is known to be readable before anybody decides.
+// Reads the rows of a session that arrives by a move. This shows that they are readable before the
+// move is decided.
 static cau_status try_out(cau_hosted *h, cau_error *error)
 {
 	cau_status status = cau_replay_read(&h->replay, h->identity.around->store, h->identity.id,
@@ -224,7 +228,7 @@ void cau_hosted_start(cau_hosted *h)
 		cau_hosted_started(h);
 }
 
-// What was seen after the tick that the store leads to has not come about.
+// Removes events after the tick to which the store leads, because they have no effect any more.
 static void go_on_from_events(cau_hosted_timeline *timeline)
 {
 	cau_error error = {0};
@@ -237,8 +241,8 @@ static void go_on_from_events(cau_hosted_timeline *timeline)
 	cau_timeline_load(timeline);
 }
 
-// The next log entry follows the last one of this tick. The numbers of a tick have gaps where the
-// store was full, so the count of its entries is not the next number.
+// Continues the log after the last entry of this tick. The entries' numbers may have gaps where the
+// store was full, so the number of entries is not the next number.
 static void go_on_logging(cau_hosted_record *record, const cau_replay *replay)
 {
 	record->logged_order = 0;
@@ -282,7 +286,8 @@ void cau_hosted_started(cau_hosted *h)
 		        (unsigned long long)h->core.tick, h->replay.exact);
 	else
 		cau_timeline_add(&h->timeline, CAU_EVENT_CREATED, NULL, h->identity.creator.name, 0, NULL);
-	bool known = restarted && !h->creation.came; // to who joined it here
+	// clients that had joined here know the session already
+	bool known = restarted && !h->creation.came;
 	cau_answer_changed(h, known ? CAU_CHANGE_RESTARTED : CAU_CHANGE_CREATED,
 	                   h->identity.creator.name);
 	answer_creator(h);

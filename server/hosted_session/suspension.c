@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// While the builder has a session its stages cannot be interrupted. At the borders between them it
-// reports how far it is, compares what the session will take with the settings, and looks for
-// clients that cancelled it.
+// While the builder has a session, its stages cannot be interrupted. Between two stages the builder
+// reports its progress, compares the session's memory with the limits, and checks whether clients
+// have cancelled the session.
 #include "hosted_session/suspension.h"
 
 #include <string.h>
@@ -21,7 +21,7 @@ void cau_suspension_name_stage(cau_hosted_suspension *suspension, const char *st
 	snprintf(suspension->stage, sizeof suspension->stage, "%s", stage);
 }
 
-// ---- borders
+// ---- between the stages
 static cau_order *take_cancelling(cau_hosted_suspension *suspension)
 {
 	pthread_mutex_lock(&suspension->lock);
@@ -31,7 +31,7 @@ static cau_order *take_cancelling(cau_hosted_suspension *suspension)
 	return taken;
 }
 
-// False: it is the workers' by now.
+// Returns false if the session is no longer suspended.
 static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
 {
 	pthread_mutex_lock(&suspension->lock);
@@ -42,13 +42,14 @@ static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
 	return kept;
 }
 
-// An order that was sent before destroyed another session of this name, and gets its answer again.
+// Sorts the session.destroy orders that have come. A resend belongs to an earlier session of this
+// name, and gets its answer again.
 bool cau_suspension_is_cancelled(cau_hosted *h)
 {
 	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {
 		next = order->next;
 		cau_outcome_kind looked = cau_record_resend(h, order);
-		if (looked == CAU_POSTPONED) // its first is not on the disk yet
+		if (looked == CAU_POSTPONED) // its earlier order is not on the disk yet
 			keep_cancelling(&h->suspension, order);
 		else if (looked == CAU_DONE)
 			cau_order_append(&h->suspension.destroyers, order);
@@ -108,7 +109,8 @@ bool cau_suspension_cancel(cau_hosted_suspension *suspension, const char *id, ca
 	char name[sizeof order->asker.name];
 	if (order->kind != CAU_ORDER_DESTROY || !suspension->active)
 		return false;
-	memcpy(name, order->asker.name, sizeof name); // the order may be answered before this returns
+	// the order may be answered and freed before this returns
+	memcpy(name, order->asker.name, sizeof name);
 	bool taken = keep_cancelling(suspension, order);
 	if (taken)
 		cau_log(CAU_LOG_INFO, id, "cancelled",
@@ -116,7 +118,7 @@ bool cau_suspension_cancel(cau_hosted_suspension *suspension, const char *id, ca
 	return taken;
 }
 
-// ---- from a worker to the builder and back
+// ---- from a worker to the builder, and back
 void cau_suspension_begin(cau_hosted_suspension *suspension, const cau_surroundings *around)
 {
 	cau_job *job = suspension->job;

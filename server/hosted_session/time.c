@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders about time, and the one that ends the session.
+// Orders about time, and session.destroy.
 
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
@@ -39,7 +39,7 @@ cau_outcome_kind cau_apply_resume(cau_hosted *h, cau_order *order, const cau_act
 	return CAU_DONE;
 }
 
-// The ticks are made one by one, and the order is answered after the last: cau_time_stepped.
+// Does nothing itself. The ticks are computed one by one, then cau_time_stepped answers the order.
 cau_outcome_kind cau_apply_step(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	(void)h, (void)order, (void)action;
@@ -51,7 +51,7 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 	cau_wire_tick_result result = {(int64_t)h->core.tick, 0};
 	cau_error error = {0};
 	cau_decided decided = cau_decisions_now(&h->decisions);
-	if (failed && !*decided.fault) { // it is gone
+	if (failed && !*decided.fault) { // the session has ended
 		cau_hosted_refuse_gone(&h->life, order);
 		return;
 	}
@@ -65,7 +65,7 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 		return;
 	}
 	cau_timeline_end_cuts(&h->timeline);
-	h->frames.dirty = true; // the last state is shown, whatever the streams' rates
+	h->frames.dirty = true; // publish the last state, whatever the rates of the streams
 	cau_record_reached(&h->record);
 	cau_answer_changed(h, CAU_CHANGE_STEPPED, order->asker.name);
 	cau_answer_order(&h->record, order, &result);

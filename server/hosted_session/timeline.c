@@ -10,7 +10,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define READ_EXPECTED_S 0.02 // for a page of the timeline out of the store
+#define READ_EXPECTED_S 0.02 // to read a page of the timeline from the store
 
 static void tell(const cau_hosted_identity *identity, const cau_wire_timeline_event *what)
 {
@@ -29,8 +29,9 @@ static void publish(cau_hosted_timeline *timeline, const cau_wire_timeline_event
 }
 
 // ---- cuts and tears -----------------------------------------------------------------------------
-// Cuts of neighbouring ticks are one event, and so are tears. It is sent and stored once it is
-// whole. One of each may grow at a time.
+// Returns the event that may still grow. Cuts of neighbouring ticks are one event, and so are
+// tears. Such an event is sent and stored once it is complete. One cut and one tear may grow at a
+// time.
 static cau_wire_timeline_event *event_at(cau_hosted_timeline *timeline, uint64_t open)
 {
 	return &timeline->events[(open - 1) % EVENT_COUNT];
@@ -102,7 +103,7 @@ void cau_timeline_add(cau_hosted_timeline *timeline, int kind, const char *tool,
 }
 
 // ---- from the store -----------------------------------------------------------------------------
-// The store has the notification's text. What cannot be read is passed over.
+// Reads an event from a row, whose text is the notification. Unreadable rows are skipped.
 static cau_status take_event(void *user, const cau_store_event *row)
 {
 	cau_timeline_page *taken = user;
@@ -146,7 +147,7 @@ void cau_timeline_load(cau_hosted_timeline *timeline)
 	timeline->older = taken.count == EVENT_COUNT;
 }
 
-// ---- session.timeline: out of memory, or by the builder out of the store -----------------------
+// ---- session.timeline: from memory, or from the store on the builder ----------------------------
 
 static bool in_memory(const cau_hosted_timeline *timeline, uint64_t from_tick, uint64_t wanted)
 {
@@ -171,8 +172,8 @@ static void copy_newest(const cau_hosted_timeline *timeline, uint64_t from_tick,
 	}
 }
 
-// From where on every tick can be reached. What lies in a gap that the store does not know yet is
-// not.
+// Returns the tick from which on every tick can be reached. If the log has a gap that the store
+// does not know yet, this is the present tick.
 static uint64_t find_oldest_tick(const cau_read_job *job)
 {
 	cau_hosted *h = job->hosted;
@@ -194,7 +195,7 @@ static void answer_page(const cau_read_job *job, cau_wire_timeline_event *events
 	cau_answer_now(&job->order->reply, &result);
 }
 
-// On the builder: what memory does not hold any more.
+// Answers with events that are no longer in memory. Runs on the builder.
 static void answer_from_store(cau_read_job *job)
 {
 	cau_error error = {0};

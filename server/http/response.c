@@ -23,9 +23,8 @@ typedef struct head {
 	unsigned char *at, *end;
 } head;
 
-// RFC 9110's words for what this daemon answers. libwebsockets leaves some out,
-// and answers an upgrade in HTTP/1.0, since it has not read the version by
-// then.
+// Returns RFC 9110's phrase for a status that this daemon sends. libwebsockets lacks some phrases.
+// It also answers an upgrade in HTTP/1.0, because it has not read the version by then.
 static const char *phrase_of(unsigned status)
 {
 	static const struct {
@@ -125,7 +124,7 @@ int cau_http_answer_continue(struct lws *wsi, cau_http_body *body)
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-// All of it are the program's own words: nothing that would have to be escaped.
+// Writes the refusal as a JSON object. All its texts are the program's own, so none needs escapes.
 static int write_object(const cau_http_refusal *refusal, char *text, size_t capacity)
 {
 	return snprintf(text, capacity,

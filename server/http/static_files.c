@@ -11,7 +11,7 @@
 enum { MAX_FILES = 1024, MAX_BYTES = 64 << 20, MAX_DEPTH = 8 };
 
 struct cau_static_files {
-	const char *setting; // that names the folder, for errors
+	const char *setting; // setting that names the folder, for errors
 	cau_static_file files[MAX_FILES];
 	size_t count;
 	size_t bytes;
@@ -51,14 +51,15 @@ static const char *content_type(const char *path)
 	return "application/octet-stream";
 }
 
-// Pictures and fonts of these types are compressed already. Trying costs time at start.
+// True for types of pictures and fonts that are compressed already. Compressing them again would
+// only delay the start.
 static bool is_packed(const char *type)
 {
 	return strcmp(type, "image/png") == 0 || strcmp(type, "image/jpeg") == 0 ||
 	       strcmp(type, "image/webp") == 0 || strcmp(type, "font/woff2") == 0;
 }
 
-// Fills file->gzip if that saves a tenth.
+// Fills file->gzip if that saves at least a tenth.
 static void compress_file(cau_static_file *file)
 {
 	z_stream z = {0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files of the viewer and of the manual, read once at start and held in memory, compressed
-// where that is smaller: the network thread never touches a disk.
+// The files of the viewer and of the manual. They are read once at the start and held in memory,
+// compressed if that is smaller. So the network thread never reads a disk.
 #pragma once
 
 #include <stdbool.h>
@@ -9,23 +9,23 @@
 #include "cautery/status.h"
 
 typedef struct cau_static_file {
-	char path[256]; // as in the URL, "/assets/main.js"
+	char path[256]; // path in the URL, "/assets/main.js"
 	const char *content_type;
-	bool hashed; // its name changes with its content: may be cached for ever
+	bool hashed; // the file's name changes with its content, so it may be cached for ever
 	void *plain;
 	size_t plain_bytes;
-	void *gzip; // NULL if not smaller
+	void *gzip; // NULL if it would not be smaller
 	size_t gzip_bytes;
 } cau_static_file;
 
 typedef struct cau_static_files cau_static_files;
 
-// Reads a folder and its folders: at most 1,024 files and 64 MiB; hidden files and links are left
-// out. An empty folder name gives one plain page. `setting` (borrowed for good) is the path of
-// errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY.
+// Reads a folder and its subfolders: at most 1,024 files and 64 MiB, without hidden files and
+// links. If `folder` is "", makes one plain page. `setting` is the path of errors, and must stay
+// valid. Errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY.
 cau_status cau_static_files_load(cau_static_files **files, const char *setting, const char *folder,
                                  cau_error *error);
 void cau_static_files_destroy(cau_static_files *files);
 
-// The file at a URL path ("/" is "/index.html"), or NULL.
+// Returns the file at a URL path ("/" means "/index.html"), or NULL.
 const cau_static_file *cau_static_files_find(const cau_static_files *files, const char *path);

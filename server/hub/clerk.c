@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes sessions, one after the other, on a worker: it looks for stored answers first.
+// Creates sessions on a worker, one after the other. For each request it first looks for a stored
+// answer.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +8,8 @@
 #include "hosted_session/resend.h"
 #include "hub/internal.h"
 
-#define AGAIN_S 0.02 // for a resend whose first is on its way
+// pause before a resend is tried again, while its earlier request is being handled
+#define AGAIN_S 0.02
 
 void cau_creation_free(cau_creation *creation)
 {
@@ -57,7 +59,7 @@ static cau_creation *take(cau_hub *hub)
 	return creation;
 }
 
-// "label-name", or with a number made up if the name is empty.
+// Makes an id "label-name". If the name is empty, the id has the scene's name and a number.
 static cau_status make_id(cau_hub *hub, const cau_creation *creation, char id[CAU_NAME_BYTES],
                           cau_error *error)
 {
@@ -80,7 +82,8 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
                               cau_error *error)
 {
 	cau_moved_to to;
-	// Asked first: an arrival becomes one of the hub's sessions before it ceases to be an arrival.
+	// This must come first: an arrival becomes one of the hub's sessions before it ceases to be an
+	// arrival.
 	bool arrives = creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_arrives(hub, id);
 	cau_hosted *other = cau_hub_find(hub, id);
 	cau_hosted_release(other);
@@ -145,8 +148,9 @@ static void compare_maker(void *user, cau_hosted *hosted)
 		search->found = true;
 }
 
-// CAU_OK: answered from the store; CAU_BAD_STATE: its first is being worked on; CAU_ALREADY_EXISTS:
-// acted upon, and the answer is not kept any more; else: act.
+// Looks for an earlier answer. Returns CAU_OK if it was sent from the store, and CAU_BAD_STATE if
+// the earlier request is still being handled. CAU_ALREADY_EXISTS: the request was carried out, but
+// its answer is no longer stored. Any other result: carry out the request.
 static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 {
 	being_made search = {creation, false};
@@ -161,11 +165,13 @@ static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 	                             error);
 }
 
-// A session that was made since the request came is not what it meant.
+// Handles a request for a session that is not here. A session that was created since the request
+// came is not the one that it meant.
 static void act_on_missing(cau_hub *hub, const cau_creation *asked)
 {
 	bool destroys = asked->reply.method == CAU_METHOD_SESSION_DESTROY;
-	bool arrives = destroys && cau_hub_arrives(hub, asked->name); // first, as in check_place
+	// must come first, as in check_place
+	bool arrives = destroys && cau_hub_arrives(hub, asked->name);
 	cau_hosted *made = cau_hub_find(hub, asked->name);
 	if (!made && destroys)
 		cau_clerk_discard(hub, asked, arrives);
@@ -232,7 +238,8 @@ void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_or
 	*creation->scene = *scene;
 	memcpy(creation->name, order->as.fork.name, sizeof creation->name);
 	creation->paused = order->as.fork.paused;
-	creation->ephemeral = cau_hosted_is_ephemeral(source); // a copy has its source's store
+	// a fork is in the same store as its source
+	creation->ephemeral = cau_hosted_is_ephemeral(source);
 	creation->asker = order->asker;
 	creation->client_sequence = order->client_sequence;
 	creation->reply = order->reply;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who is here. A client outlives its connection for a while, so that it can come back to its tools.
+// The clients of the hub. A client is kept for a while after its connection is lost, so that it can
+// return to its tools.
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
@@ -9,7 +10,8 @@
 
 enum { CLIENTS_MOST = 1 << 20, OWNER_MOST_BYTES = 512 };
 
-// Fresh random bytes in hex at every call: a client_id must reveal nothing of the secret.
+// Makes new random bytes in hex at every call. A client_id must reveal nothing about the secret
+// token.
 static bool make_random(char hex[CAU_RESUME_BYTES])
 {
 	unsigned char bytes[(CAU_RESUME_BYTES - 1) / 2];
@@ -25,7 +27,7 @@ bool cau_hub_bind_client_id(char client_id[65], const char *owner)
 	char both[OWNER_MOST_BYTES + 65];
 	if (!*owner)
 		return true;
-	// The zero between the two is in neither, so that no two pairs make one text.
+	// Neither text contains a zero, so the zero between them makes each pair distinct.
 	int at = snprintf(both, OWNER_MOST_BYTES, "%s", owner) + 1;
 	int bytes = snprintf(both + at, 65, "%.64s", client_id);
 	bool bound = cau_sha256(both, (size_t)at + (size_t)bytes, client_id);
@@ -34,14 +36,15 @@ bool cau_hub_bind_client_id(char client_id[65], const char *owner)
 	return bound;
 }
 
-// Who resumes goes on under the client_id of before, so that a request sent again acts once.
+// True if a client that resumes keeps its earlier client_id. A request that is sent again then acts
+// once.
 static bool keeps_client_id(const cau_client *client, const cau_client *kept)
 {
 	return *kept->asker.client_id &&
 	       (!*client->said_id || !*kept->said_id || strcmp(client->said_id, kept->said_id) == 0);
 }
 
-// A client that says no id gets one, which distinguishes its requests from those of others.
+// Gives an id to a client that sends none, to distinguish its requests from those of others.
 static bool fill_client_id(cau_client *client, const cau_client *kept)
 {
 	cau_asker *asker = &client->asker;
@@ -95,11 +98,12 @@ static cau_client *add_client(cau_hub *hub)
 		hub->client_capacity = capacity;
 	}
 	cau_client *client = &hub->clients[hub->client_count++];
-	*client = (cau_client){.asker.client = ++hub->last_client, .lost = true}; // until it is taken
+	// until a client takes the entry
+	*client = (cau_client){.asker.client = ++hub->last_client, .lost = true};
 	return client;
 }
 
-// Puts `client` where it was known before, or in a place that was just made.
+// Puts `client` into its earlier entry, or into a new one.
 static bool take_place(cau_client *client, cau_client *kept)
 {
 	client->asker.client = kept->asker.client;

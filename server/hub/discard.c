@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that the hub does not have: one that is in the store only, since it could not be brought
-// up, is destroyed; of others there is nothing to say.
+// Requests for sessions that the hub does not have. A session that is only in the store, because it
+// could not be resumed, is destroyed on request. All other requests are refused.
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,7 +33,7 @@ static void finish(discarding *what)
 	free(what);
 }
 
-// On the store's thread.
+// Called on the store's thread.
 static void committed(void *user, cau_status status, const char *reason)
 {
 	discarding *what = user;

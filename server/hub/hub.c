@@ -44,7 +44,7 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink)
 		hub->sinks[hub->sink_count++] = *sink;
 }
 
-// ---- life
+// ---- creation and end
 cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *error)
 {
 	*made = NULL;
@@ -87,7 +87,7 @@ void cau_hub_stop(cau_hub *hub)
 	cau_worker_pool_remove(hub->def.pool, &hub->clerk);
 	for (int32_t i = 0; i < hub->session_count; i++)
 		cau_hosted_stop(hub->sessions[i]);
-	cau_store_flush(hub->def.store); // commits on their way know their sessions
+	cau_store_flush(hub->def.store); // commits under way still use their sessions
 	if (hub->def.memory)
 		cau_store_flush(hub->def.memory);
 	for (int32_t i = 0; i < hub->session_count; i++)
@@ -120,7 +120,7 @@ cau_scenes *cau_hub_scenes(const cau_hub *hub)
 }
 
 // ---- sessions
-// Takes ended sessions out of the list; they are stopped outside the lock.
+// Removes one ended session from the list, or returns NULL. The caller stops it outside the lock.
 static cau_hosted *take_ended(cau_hub *hub)
 {
 	cau_hosted *ended = NULL;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings the store's sessions up at start, and the demo.
+// Starts the sessions of the store and the demo when the daemon starts.
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,8 +87,8 @@ cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *rep
 	return status;
 }
 
-// A session that cannot be brought up is reported and left in the store; one that is on its way
-// here from another daemon is in doubt, and waits.
+// Resumes one session. A session that fails to start is reported and stays in the store. A session
+// that is still arriving from another daemon is in doubt, and waits.
 static bool resume_one(cau_hub *hub, const char *id)
 {
 	cau_error error = {0};
@@ -128,7 +128,7 @@ static cau_status make_demo(cau_hub *hub, cau_error *error)
 	}
 	snprintf(creation->name, sizeof creation->name, "%s", creation->scene->name);
 	cau_hub_submit_creation(hub, creation);
-	hub->last_resumed++; // it has the next number, since no client is there yet
+	hub->last_resumed++; // the demo gets the next number, because no client is connected yet
 	return CAU_OK;
 }
 

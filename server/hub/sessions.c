@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of sessions.
+// The list of the hub's sessions.
 #include <math.h>
 #include <string.h>
 
@@ -106,7 +106,8 @@ int64_t cau_hub_memory(cau_hub *hub)
 	return hub->memory_held;
 }
 
-// A session that has just begun to run has no factor yet, and tells 0.
+// Notes the speed of a running session. A session that has just begun to run has no realtime factor
+// yet, and reports 0.
 static void note_pace(void *user, cau_hosted *hosted)
 {
 	double *least = user;

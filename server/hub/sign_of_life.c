@@ -19,7 +19,7 @@ static void begin(cau_sign_of_life *sign, double arrival_s, double difference_s)
 	begin_window(sign, arrival_s, difference_s);
 }
 
-// A clock that was set forward, or a first message that was delayed for long.
+// Notes a smaller difference: the clock was set forward, or the first message was delayed for long.
 static void note_leap(cau_sign_of_life *sign, double arrival_s, double difference_s,
                       double deadline_s)
 {

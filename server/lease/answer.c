@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The strict scan vouches for the form, so the walk below only has to find members and values.
+// A strict scan checks the form first, so the functions below only have to find members and values.
 #include "lease/answer.h"
 
 #include <openssl/evp.h>
@@ -14,13 +14,13 @@ static cau_status refuse(cau_error *error, const char *what)
 	return cau_fail(error, CAU_CORRUPT, "etcd", "unexpected answer of etcd: %s", what);
 }
 
-// ---- walking
+// ---- moving in the text
 static const char *skip_space(const char *at)
 {
 	return at + strspn(at, " \t\r\n");
 }
 
-// Behind the closing quote.
+// Returns the position behind the closing quote.
 static const char *skip_text(const char *at)
 {
 	for (at++; *at != '"'; at++)
@@ -51,7 +51,8 @@ static const char *skip_value(const char *at)
 	return at;
 }
 
-// The value of an object's member. NULL: it is no object, or has none of that name.
+// Returns the value of an object's member. NULL: `object` is no object, or has no member of that
+// name.
 static const char *find(const char *object, const char *name)
 {
 	size_t bytes = strlen(name);
@@ -83,7 +84,8 @@ static const char *next_element(const char *element)
 }
 
 // ---- values
-// A whole number that is text, as the gateway writes 64 bits. False: it is none.
+// Reads an integer that is written as text, as the gateway writes 64 bits. Returns false if there
+// is none.
 static bool read_number(const char *at, int64_t *number)
 {
 	char digits[24];
@@ -91,7 +93,7 @@ static bool read_number(const char *at, int64_t *number)
 		return false;
 	size_t bytes = strspn(at + 1, "-0123456789");
 	if (bytes == 0 || bytes >= 20 ||
-	    at[1 + bytes] != '"') // 19 digits at most are 64 bits, or a sign
+	    at[1 + bytes] != '"') // at most 19 characters, with a sign if there is one
 		return false;
 	memcpy(digits, at + 1, bytes);
 	digits[bytes] = 0;
@@ -100,7 +102,7 @@ static bool read_number(const char *at, int64_t *number)
 	return *end == 0;
 }
 
-// Absent is 0: the gateway leaves zeros out.
+// Reads a number; an absent one is 0, because the gateway omits zeros.
 static bool read_count(const char *at, int64_t *number)
 {
 	*number = 0;

@@ -24,7 +24,7 @@ struct cau_etcd {
 	char trouble[CURL_ERROR_SIZE];
 };
 
-// ---- life
+// ---- creating and destroying
 static void start_library(void)
 {
 	curl_global_init(CURL_GLOBAL_DEFAULT);
@@ -96,8 +96,8 @@ static size_t take(char *bytes, size_t size, size_t count, void *user)
 	return size * count;
 }
 
-// No signals, since other threads have them; no proxy of the environment, since etcd is near; and
-// nothing but HTTP, wherever an answer would lead.
+// Sets up a request. No signals, because other threads handle them. No proxy from the environment,
+// because etcd is near. Only http and https, wherever an answer redirects.
 static void prepare(cau_etcd *etcd, const char *url, const char *request, double limit_s)
 {
 	CURL *curl = etcd->curl;
@@ -145,7 +145,7 @@ static cau_status after(cau_etcd *etcd, cau_status status)
 }
 
 // ---- leases
-// A lease that is gone is answered with a TTL of 0 by keepalive.
+// Lease requests. If a lease is gone, keepalive answers with a TTL of 0.
 cau_status cau_etcd_grant(cau_etcd *etcd, double ttl_s, double limit_s, cau_etcd_lease *lease,
                           cau_error *error)
 {
@@ -197,7 +197,7 @@ void cau_etcd_name_keys(const char *label, cau_etcd_keys *keys)
 	snprintf(keys->holder, sizeof keys->holder, "cautery/%.60s/holder", label);
 }
 
-// From the one key to behind the other: they follow each other.
+// Reads both keys with one range: from the first key to just behind the second, which follows it.
 cau_status cau_etcd_read(cau_etcd *etcd, const cau_etcd_keys *keys, double limit_s,
                          cau_etcd_value *generation, cau_etcd_value *holder, cau_error *error)
 {

@@ -20,8 +20,8 @@
 #include "lease/etcd.h"
 #include "log/log.h"
 
-static const double wait_s = 0.25;     // between looks at a label that another holds
-static const double give_back_s = 0.5; // for etcd to hear of it
+static const double wait_s = 0.25;     // time between checks of a label that another daemon holds
+static const double give_back_s = 0.5; // time limit for giving the label back to etcd
 
 struct cau_lease {
 	cau_lease_def def;
@@ -29,19 +29,20 @@ struct cau_lease {
 	cau_etcd *etcd;
 	cau_etcd_keys keys;
 	cau_lease_rules rules;
-	cau_lease_logic logic; // the thread's
+	cau_lease_logic logic; // used by the lease's thread
 	cau_generation held, next;
-	bool has_next; // made by this start, and not known to etcd yet
-	int64_t id;    // of the lease
+	bool has_next; // `next` was made by this start, and etcd does not know it yet
+	int64_t id;    // id of the lease in etcd
 	char holder[96];
-	uintmax_t file, stored_file;   // the database's inode: now, and as it says; 0: it says none
-	_Atomic int64_t held_until_us; // what the logic says, for other threads
-	int ending;                    // an eventfd that ends the thread
+	// inode of the database: now, and as stored in it; 0: none stored
+	uintmax_t file, stored_file;
+	_Atomic int64_t held_until_us; // the logic's held_until_s, for other threads
+	int ending;                    // eventfd that ends the thread
 	pthread_t thread;
 	bool started;
 };
 
-// Goes on while the machine sleeps, as etcd's clock does.
+// Returns the time of a clock that continues while the machine sleeps, as etcd's does.
 static double now_s(void)
 {
 	struct timespec now;
@@ -55,9 +56,9 @@ static bool wait_for_end(const cau_lease *lease, double seconds)
 	return poll(&ending, 1, (int)ceil(1000 * fmax(0, seconds))) > 0;
 }
 
-// ---- who we are
-// This start of this machine's kernel; where that cannot be read, what no other process has. Not
-// the machine's own id, which copies of its disk share.
+// ---- the holder's name
+// Names this boot of this machine's kernel. If the boot id cannot be read, the name is random. It
+// is not the machine id, because copies of a disk share it.
 static cau_status name_kernel(char name[40], cau_error *error)
 {
 	uint64_t random[2];
@@ -73,8 +74,8 @@ static cau_status name_kernel(char name[40], cau_error *error)
 	return CAU_OK;
 }
 
-// The kernel and the database's file: it lets one process at a time hold that, and now it is this
-// one. So whoever held the label under the same words is gone.
+// Names the holder by the kernel and the database's file. Only one process at a time can hold that
+// file, and now it is this one. So an earlier holder with the same name has ended.
 static cau_status name_holder(cau_lease *lease, cau_error *error)
 {
 	char kernel[40];
@@ -115,8 +116,8 @@ static cau_status store(const cau_lease *lease, cau_error *error)
 	return lease->def.store_generation(lease->def.user, text, error);
 }
 
-// ---- taking
-// One attempt. CAU_BAD_STATE with *again: another holds the label, or was faster.
+// ---- taking the label
+// Makes one attempt. CAU_BAD_STATE with *again: another daemon holds the label, or was faster.
 static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_value *holder,
                         bool *again, cau_error *error)
 {
@@ -153,7 +154,8 @@ static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_v
 	return CAU_OK;
 }
 
-// Where the answer to a claim is lost, the next attempt finds what it made in etcd, under our name.
+// Makes one attempt to take the label. If the answer to a claim is lost, the next attempt finds the
+// claim in etcd, with our name.
 static cau_status try_to_take(cau_lease *lease, bool *again, cau_error *error)
 {
 	char next[CAU_GENERATION_BYTES];
@@ -203,7 +205,7 @@ static cau_status take(cau_lease *lease, cau_error *error)
 	}
 }
 
-// ---- keeping
+// ---- renewing the lease
 static void publish(cau_lease *lease)
 {
 	atomic_store(&lease->held_until_us, (int64_t)(1e6 * lease->logic.held_until_s));
@@ -253,7 +255,7 @@ int64_t cau_lease_generation(const cau_lease *lease)
 	return lease->held.number;
 }
 
-// ---- life
+// ---- creating and destroying
 static void destroy(cau_lease *lease)
 {
 	cau_etcd_destroy(lease->etcd);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A daemon's hold on its label: taken of etcd before sessions are brought up, renewed by a thread
-// of its own, and over before etcd would give the label to another.
+// A daemon's hold on its label. It is taken from etcd before sessions are resumed, and renewed by a
+// thread of its own. It ends here before etcd would give the label to another daemon.
 #pragma once
 
 #include <stdbool.h>
@@ -13,31 +13,32 @@ typedef struct cau_lease cau_lease;
 enum { CAU_LEASE_STORED_BYTES = 2 * CAU_GENERATION_BYTES + 24 };
 
 typedef struct cau_lease_def {
-	const char *addresses; // of etcd, separated by commas
+	const char *addresses; // etcd's addresses, separated by commas
 	const char *label;
-	const char *store; // path of the database, which the caller has locked
+	const char *store; // path of the database; the caller holds its lock
 	double ttl_s;
 	bool take_label;
-	const char *stored; // what `store_generation` was given last, or ""
-	// Stores the text; returns when it is on the disk. Called in cau_lease_take alone.
+	const char *stored; // the text of the last store_generation, or ""
+	// Stores the text, and returns when it is on the disk. Called only within cau_lease_take.
 	cau_status (*store_generation)(void *user, const char *text, cau_error *error);
-	// The label is lost: does not return. On any thread, once or, in the same moment, twice.
+	// Called when the label is lost; must not return. May be called on any thread, once or, in the
+	// same moment, twice.
 	void (*lost)(void *user, const char *reason) __attribute__((noreturn));
 	void *user;
 } cau_lease_def;
 
-// Takes the label and starts the thread. Waits for etcd, and for the lease of another to end: twice
-// the time to live at most. Strings are copied. Errors: CAU_BAD_STATE (another store is newer, or
-// the label is held by another), CAU_IO (no answer of etcd), CAU_CORRUPT (what the store or etcd
-// says is no generation), CAU_BAD_VALUE, CAU_NO_MEMORY.
+// Takes the label and starts the thread. Waits for etcd, and for the end of another's lease: at
+// most twice the time to live. Strings are copied. Errors: CAU_BAD_STATE (another store is newer,
+// or another daemon holds the label), CAU_IO (no answer of etcd), CAU_CORRUPT (the text in the
+// store or in etcd is no generation), CAU_BAD_VALUE, CAU_NO_MEMORY.
 cau_status cau_lease_take(cau_lease **lease, const cau_lease_def *def, cau_error *error);
 
-// Seconds that are left, on no clock that stands still while the machine sleeps. Does not return
-// where none are. Any thread; waits for nothing.
+// Returns the seconds left, on a clock that continues while the machine sleeps. Does not return if
+// none are left. Any thread may call it; it never waits.
 double cau_lease_check(cau_lease *lease);
 
 int64_t cau_lease_generation(const cau_lease *lease);
 
-// Gives the label back, so that another may take it at once; waits half a second for etcd at most.
-// Takes NULL.
+// Gives the label back, so that another daemon may take it at once. Waits for etcd at most half a
+// second. `lease` may be NULL.
 void cau_lease_give_back(cau_lease *lease);

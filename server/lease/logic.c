@@ -23,10 +23,11 @@ void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BY
 		         generation.mark);
 }
 
-// Some are left to count on.
+// Below INT64_MAX, so that there are numbers left for later generations.
 static const int64_t number_most = 999999999999999999;
 
-// What is read must be written the same, so there is one text for each.
+// Reads a generation. The text must be exactly what cau_generation_write writes, so that each
+// generation has one text.
 bool cau_generation_read(const char *text, size_t bytes, cau_generation *generation)
 {
 	char copy[CAU_GENERATION_BYTES], again[CAU_GENERATION_BYTES];
@@ -48,12 +49,13 @@ bool cau_generation_read(const char *text, size_t bytes, cau_generation *generat
 	return true;
 }
 
-// ---- may this store be served?
+// ---- whether this store may be served
 static bool is_the_newest(const cau_claim *claim)
 {
 	if (claim->is_copy)
 		return false;
-	if (claim->known.number == 0) // the label is new to etcd, and the store to generations
+	// etcd does not know the label yet, and the store has no generation yet
+	if (claim->known.number == 0)
 		return claim->held.number == 0;
 	return cau_generation_same(claim->known, claim->held) ||
 	       cau_generation_same(claim->known, claim->next);
@@ -80,7 +82,8 @@ static void explain(const cau_claim *claim, cau_error *error)
 		         claim->held.number, claim->known.number);
 }
 
-// Nobody's lease is taken away, whatever the operator says: it ends by itself.
+// Judges the claim. A valid lease of another daemon is never taken away, whatever the operator
+// says: it must end by itself.
 cau_verdict cau_lease_judge(const cau_claim *claim, cau_error *error)
 {
 	if (!is_the_newest(claim) && !claim->take_label) {
@@ -109,13 +112,13 @@ void cau_lease_choose(cau_claim *claim, bool *has_next, uint64_t mark)
 	*has_next = true;
 }
 
-// ---- until when?
+// ---- the end of the lease
 cau_lease_rules cau_lease_rules_of(double ttl_s)
 {
 	CAU_ASSERT(ttl_s >= 2, "a time to live of %g s", ttl_s);
 	return (cau_lease_rules){
 		.ttl_s = ttl_s,
-		// Beside this, two clocks that differ by 200 ppm over a minute are 12 ms apart.
+		// For comparison: two clocks that differ by 200 ppm are 12 ms apart after a minute.
 		.margin_s = fmax(0.5, 0.1 * ttl_s),
 		.renew_s = ttl_s / 4,
 		.limit_s = ttl_s / 6,
@@ -140,7 +143,8 @@ void cau_lease_answer(cau_lease_logic *logic, cau_renewal renewal, double sent_s
                       double now_s)
 {
 	CAU_ASSERT(sent_s <= now_s, "an answer at %g s to what was sent at %g s", now_s, sent_s);
-	// An answer that comes after the end brings nothing back: the end was acted on.
+	// An answer that comes after the end cannot revive the lease, because the daemon has already
+	// acted on the end.
 	if (now_s >= logic->held_until_s || renewal == CAU_RENEWAL_GONE)
 		logic->lost = true;
 	if (logic->lost)

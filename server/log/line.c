@@ -10,9 +10,9 @@
 #include "cautery/utf8.h"
 
 enum {
-	ESCAPE_BYTES = 16, // of the longest unit: four bytes, \xHH each
+	ESCAPE_BYTES = 16, // longest escaped character: four bytes, \xHH each
 	SPEC_BYTES = 16,
-	RAW_BYTES = 512, // of a value before escapes; CAU_LOG_VALUE_BYTES cuts it anyway
+	RAW_BYTES = 512, // longest value before escapes; CAU_LOG_VALUE_BYTES cuts it anyway
 };
 
 static const char cut_mark[] = " cut=true", cut_member[] = ",\"cut\":true", more_mark[] = "...";
@@ -23,8 +23,8 @@ static bool is_bare(unsigned char byte)
 	return byte > 0x20 && byte < 0x7f && !strchr("\"=\\", byte);
 }
 
-// What breaks lines in some reader, or hides what follows: C0, DEL, C1, and the separators of lines
-// and paragraphs, U+2028 and U+2029.
+// True for characters that break lines in some readers, or hide what follows: C0, DEL, C1, and the
+// line and paragraph separators U+2028 and U+2029.
 static bool is_control(const unsigned char *at, size_t length)
 {
 	if (length == 1)
@@ -44,7 +44,8 @@ static size_t short_escape(char byte, char to[ESCAPE_BYTES])
 	return 2;
 }
 
-// Writes the character at `text` as it stands between quotes; *taken is its length.
+// Writes the character at `text` in the form that it has between quotes. *taken: its bytes in
+// `text`.
 static size_t escape(const char *text, size_t bytes, char to[ESCAPE_BYTES], size_t *taken)
 {
 	size_t length = cau_utf8_length(text, bytes), written = 0;
@@ -62,7 +63,8 @@ static size_t escape(const char *text, size_t bytes, char to[ESCAPE_BYTES], size
 	return written;
 }
 
-// The number of a character of one to three bytes, which is all that is_control() says yes to.
+// Returns the code point of a character of one to three bytes; all characters of is_control() are
+// so short.
 static unsigned character(const unsigned char *at, size_t length)
 {
 	switch (length) {
@@ -75,7 +77,7 @@ static unsigned character(const unsigned char *at, size_t length)
 	}
 }
 
-// The same as JSON has it.
+// Writes the character at `text` in JSON's form. *taken: its bytes in `text`.
 static size_t escape_json(const char *text, size_t bytes, char to[ESCAPE_BYTES], size_t *taken)
 {
 	const unsigned char *at = (const unsigned char *)text;
@@ -119,7 +121,8 @@ static void append(cau_log_line *line, const char *text, size_t bytes)
 	line->bytes += bytes;
 }
 
-// Room for the mark and the line's end is always kept.
+// True if `needed` bytes fit. Space for the mark of a cut line and for the line's end is always
+// kept.
 static bool has_room(cau_log_line *line, size_t needed)
 {
 	size_t mark_bytes = line->json ? sizeof cut_member : sizeof cut_mark;
@@ -131,7 +134,7 @@ static bool has_room(cau_log_line *line, size_t needed)
 	return !line->full;
 }
 
-// A member; a `number` is written as it stands.
+// Adds a JSON member. A `number` is written without quotes.
 static void add_member(cau_log_line *line, const char *key, size_t key_bytes, const char *value,
                        size_t value_bytes, bool number)
 {
@@ -183,7 +186,7 @@ void cau_log_line_end(cau_log_line *line)
 typedef struct raw_value {
 	char text[RAW_BYTES];
 	size_t bytes;
-	int numbers; // printed by %d, %f and their like
+	int numbers; // number of values printed by %d, %f and similar conversions
 	size_t number_bytes;
 } raw_value;
 
@@ -194,7 +197,7 @@ static void append_raw(raw_value *value, const char *text, size_t bytes)
 	value->bytes += bytes < room ? bytes : room;
 }
 
-// A va_list that functions can hand on and go on with.
+// A va_list that functions can pass on and continue to use.
 typedef struct arguments {
 	va_list list;
 } arguments;
@@ -202,7 +205,7 @@ typedef struct arguments {
 static void print_text(raw_value *value, const char *spec, size_t spec_bytes, arguments *from)
 {
 	size_t most = RAW_BYTES;
-	if (spec_bytes > 2 && spec[1] == '.') // %.*s or %.60s
+	if (spec_bytes > 2 && spec[1] == '.') // a precision: %.*s or %.60s
 		most =
 			spec[2] == '*' ? (size_t)va_arg(from->list, int) : (size_t)strtoul(spec + 2, NULL, 10);
 	const char *text = va_arg(from->list, const char *);
@@ -217,12 +220,12 @@ static void print_number(raw_value *value, const char *spec, size_t spec_bytes, 
 	assert(spec_bytes < sizeof own);
 	memcpy(own, spec, spec_bytes);
 	own[spec_bytes] = 0;
-	if (strchr("feg", own[spec_bytes - 1])) // each takes another type off the list
+	if (strchr("feg", own[spec_bytes - 1])) // each branch reads another type from the list
 		// NOLINTNEXTLINE(bugprone-branch-clone)
 		length = snprintf(text, sizeof text, own, va_arg(from->list, double));
 	else if (strstr(own, "ll"))
 		length = snprintf(text, sizeof text, own, va_arg(from->list, long long));
-	else if (strpbrk(own, "lz")) // both are as wide here
+	else if (strpbrk(own, "lz")) // both are equally wide here
 		length = snprintf(text, sizeof text, own, va_arg(from->list, long));
 	else
 		length = snprintf(text, sizeof text, own, va_arg(from->list, int));
@@ -234,7 +237,7 @@ static void print_number(raw_value *value, const char *spec, size_t spec_bytes, 
 	}
 }
 
-// Prints the conversion at `format` and returns what follows it.
+// Prints the conversion at `format` and returns the position behind it.
 static const char *print_one(raw_value *value, const char *format, arguments *from)
 {
 	size_t bytes = 1 + strspn(format + 1, "0123456789.*lz+-#") + 1;
@@ -249,8 +252,8 @@ static const char *print_one(raw_value *value, const char *format, arguments *fr
 	return format + bytes;
 }
 
-// Whether a value stands in JSON as a number: the format has printed nothing but one, and JSON has
-// a word for it (it has none for what is infinite). Readers of JSON keep 15 digits.
+// True if a value is a number in JSON: the format printed only one number, and JSON can write it
+// (JSON has no infinities). Readers of JSON keep 15 digits, so longer numbers are strings.
 static bool is_number(const raw_value *value)
 {
 	enum { DIGITS_MOST = 15 };

@@ -76,7 +76,7 @@ void cau_log(cau_log_level level, const char *session, const char *event, const 
 	cau_log_line_print(&line, format, arguments);
 	va_end(arguments);
 	cau_log_line_end(&line);
-	// A log that cannot be written has nowhere to be reported.
+	// If the log cannot be written, there is no way to report it.
 	if (write(STDERR_FILENO, line.text, line.bytes) < 0)
 		return;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery-mesh: tetrahedra inside a closed surface, or inside the labels of a segmentation. People
-// call it, and the daemon does: with bounds on memory and time, as files come from anybody.
+// cautery-mesh: makes tetrahedra inside a closed surface, or inside the labels of a segmentation.
+// Users run it, and so does the daemon, with limits on memory and time, because uploaded files are
+// untrusted.
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -17,7 +18,7 @@
 #include "cautery/solid.h"
 
 enum { EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_OUTPUT = 4 };
-static const double a_while_s = 0.5; // between lines of progress
+static const double a_while_s = 0.5; // time between lines of progress
 
 typedef struct asked {
 	const char *out, *labels, *name;
@@ -63,14 +64,14 @@ static const cau_command_line line = {
 	.row_count = sizeof rows / sizeof *rows,
 };
 
-// ---- bounds
+// ---- limits
 static bool bound(int resource, rlim_t most)
 {
 	struct rlimit limit = {most, most};
 	return setrlimit((__rlimit_resource_t)resource, &limit) == 0;
 }
 
-// Sanitizers reserve more address space than any machine has memory.
+// No memory limit under sanitizers, which reserve more address space than any machine has memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 static const bool bounds_memory = false;
 #else
@@ -84,7 +85,7 @@ static bool take_bounds(const asked *options)
 		taken = bound(RLIMIT_AS, (rlim_t)options->memory_mb << 20);
 	if (options->time_s)
 		taken &= bound(RLIMIT_CPU, (rlim_t)options->time_s);
-	taken &= bound(RLIMIT_CORE, 0); // a core file would hold what the file holds
+	taken &= bound(RLIMIT_CORE, 0); // a core file would contain the input
 	if (options->with_parent) {
 		pid_t parent = getppid();
 		taken &= prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent && parent != 1;
@@ -99,7 +100,8 @@ typedef struct shown {
 	char stage[24];
 } shown;
 
-// One line that is written over on a terminal, else a line for each stage.
+// Shows the progress: on a terminal as one line that is overwritten, otherwise as a line for each
+// stage.
 static void show(void *user, const char *stage, double share)
 {
 	shown *last = user;
@@ -134,7 +136,7 @@ static unsigned char *read_input(size_t *byte_count)
 	return bytes;
 }
 
-// Complete or not at all: written beside the target, then renamed.
+// Writes the output completely or not at all: to a file beside the target, which is then renamed.
 static bool write_output(const char *path, const cau_solid *solid)
 {
 	char beside[4096];
@@ -158,7 +160,7 @@ static bool write_output(const char *path, const cau_solid *solid)
 	return false;
 }
 
-// The words of the core in `text` as those of the options.
+// Replaces the core's words in `reason` by those of the options.
 static const char *own_words(const char *reason)
 {
 	static const char strict[] = "strict refuses";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which of the two formats an Accept header asks for, by the rules of RFC 9110, 12.5.1: of the
-// ranges that cover a type the most specific one counts, and its q says how much the type is
-// wanted.
+// Chooses the format by an Accept header, by the rules of RFC 9110, 12.5.1. Among the ranges that
+// cover a type, the most specific one counts; its q is the type's weight.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,10 +9,10 @@
 
 #include "metrics/exposition.h"
 
-// How closely a range names a type; the higher counts.
+// How specifically a range names a type; a larger number is more specific.
 enum { NOT_NAMED, ANY_TYPE, ANY_SUBTYPE, NAMED };
 
-// A type that we have, and how much it is wanted so far.
+// A format that we can write, and its weight so far.
 typedef struct offer {
 	const char *type, *any_subtype, *version;
 	int closeness;
@@ -22,14 +21,14 @@ typedef struct offer {
 
 typedef struct range {
 	char type[64];
-	char version[16]; // "": none given
+	char version[16]; // "": no version given
 	double q;
 } range;
 
 static const char blanks[] = " \t";
 
-// Copies the bytes before `end` without blanks around them and, if so, without quotes. What does
-// not fit is cut: it is no name that we know.
+// Copies the bytes before `end` without blanks and quotes around them. A text that does not fit is
+// cut: it cannot be one of our types.
 static void copy_trimmed(char *to, size_t capacity, const char *from, const char *end)
 {
 	from += strspn(from, blanks);
@@ -45,7 +44,7 @@ static void copy_trimmed(char *to, size_t capacity, const char *from, const char
 	to[bytes] = 0;
 }
 
-// A q is 0 to 1 with at most three digits after the point; anything else wants nothing.
+// Returns a q: 0 to 1 with at most three digits after the point. Any other text counts as 0.
 static double read_q(const char *text)
 {
 	size_t length = strlen(text);
@@ -69,7 +68,8 @@ static void read_parameter(range *read, const char *from, const char *end)
 		snprintf(read->version, sizeof read->version, "%s", value);
 }
 
-// One range, `type/subtype;parameter=value;...`, up to its comma. Returns what is behind it.
+// Reads one range, `type/subtype;parameter=value;...`, up to its comma. Returns the position behind
+// it.
 static const char *read_range(range *read, const char *text)
 {
 	const char *end = text + strcspn(text, ",");
@@ -94,7 +94,8 @@ static int closeness(const offer *offered, const range *asked)
 	return strcmp(asked->type, "*/*") == 0 ? ANY_TYPE : NOT_NAMED;
 }
 
-// The closest range counts; of equally close ones the one that wants the type most.
+// Weighs a format by a range. The most specific range counts; among equally specific ones, the
+// largest q.
 static void weigh(offer *offered, const range *asked)
 {
 	int close = closeness(offered, asked);
@@ -116,7 +117,8 @@ cau_metrics_format cau_metrics_choose(const char *accept)
 		weigh(&text, &asked);
 		weigh(&open, &asked);
 	}
-	// Wanted alike, the one that is named more closely: `*/*` alone is text, as ever.
+	// If both weights are equal, the format that is named more specifically is chosen; `*/*` alone
+	// gives text.
 	bool wanted = open.closeness > ANY_TYPE && open.q > 0;
 	bool more = open.q > text.q || (open.q == text.q && open.closeness >= text.closeness);
 	return wanted && more ? CAU_METRICS_OPEN : CAU_METRICS_TEXT;

@@ -12,7 +12,8 @@ const char *cau_metrics_content_type(cau_metrics_format format)
 	                                  : "text/plain; version=0.0.4; charset=utf-8";
 }
 
-// The older format leaves quotes in help as they are, and knows no escape for them there.
+// Writes a text with escapes. The older format has no escape for quotes in help, and leaves them as
+// they are.
 static void write_escaped(FILE *out, const char *text, int quotes)
 {
 	for (; *text; text++)
@@ -24,7 +25,8 @@ static void write_escaped(FILE *out, const char *text, int quotes)
 			fputc(*text, out);
 }
 
-// What stands in a family's own lines: OpenMetrics names a counter without its samples' ending.
+// Returns the ending of the name in a family's own lines. OpenMetrics names a counter there without
+// "_total", the ending of its samples.
 static const char *family_ending(cau_metrics_format format, const cau_metric_family *family)
 {
 	return format == CAU_METRICS_TEXT && family->type == CAU_METRIC_COUNTER ? "_total" : "";
@@ -45,7 +47,7 @@ void cau_metrics_begin(FILE *out, cau_metrics_format format, const cau_metric_fa
 	fputc('\n', out);
 }
 
-// Both formats write infinities with a sign, and what is no number in this one way.
+// Writes a value. Both formats write infinities with a sign, and NaN in this form only.
 static void write_value(FILE *out, double value)
 {
 	if (isnan(value))
@@ -72,7 +74,7 @@ void cau_metrics_sample_labelled(FILE *out, cau_metrics_format format,
                                  const cau_metric_family *family, const cau_metric_label *labels,
                                  size_t count, double value)
 {
-	(void)format; // samples are the same in both
+	(void)format; // samples are the same in both formats
 	write_name(out, family, family->type == CAU_METRIC_COUNTER ? "_total" : "", labels, count);
 	write_value(out, value);
 	fputc('\n', out);
@@ -92,7 +94,7 @@ void cau_metrics_histogram(FILE *out, cau_metrics_format format, const cau_metri
 	uint64_t below = 0;
 	cau_metric_label all[CAU_METRIC_LABELS_MOST + 1];
 	CAU_ASSERT(count <= CAU_METRIC_LABELS_MOST, "%zu labels of %s", count, family->name);
-	(void)format; // samples are the same in both
+	(void)format; // samples are the same in both formats
 	for (size_t i = 0; i < count; i++)
 		all[i] = labels[i];
 	all[count] = (cau_metric_label){"le", bound};

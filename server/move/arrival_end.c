@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a session's coming ends: its core is built beforehand, and it is served once the proof is
-// seen that it is served nowhere else; or it is forgotten.
+// The end of an arrival. The core is built in advance. The session is served once the proof shows
+// that no other daemon serves it. Otherwise the arrival is forgotten.
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,7 +36,7 @@ static void built(void *user, const cau_reply *reply, const cau_outcome *outcome
 	free(made);
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, cau_error *error)
 {
 	cau_moves *moves = job->moves;
@@ -52,8 +52,8 @@ static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, c
 	return status;
 }
 
-// The arrival that is to be built, marked as writing; NULL: *status says why not, or it was built
-// before, and that is answered.
+// Returns the arrival to build, marked as `writing`. Returns NULL if it cannot be built (*status),
+// or if it was built before; the latter is answered.
 static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *error)
 {
 	pthread_mutex_lock(&job->moves->mutex);
@@ -86,7 +86,7 @@ void cau_arrival_ready(cau_move_job *job)
 	cau_fault_point("move_building");
 	if (a) {
 		pthread_mutex_lock(&job->moves->mutex);
-		if (!status) // a builder that has stopped would answer at once, under the lock
+		if (!status) // a stopped builder would answer at once, under the lock
 			status = cau_arrivals_check_open(job->moves, &code, &error);
 		if (!status)
 			status = build(job, a, creation, &error);
@@ -101,20 +101,21 @@ void cau_arrival_ready(cau_move_job *job)
 
 // ---- accept -------------------------------------------------------------------------------------
 
-enum { AGAIN_MOST = 8 }; // couriers of one move that wait at once: there is one, or its successor
+// most waiting couriers of one move: usually one, and perhaps its successor
+enum { AGAIN_MOST = 8 };
 
 struct cau_accepting {
-	cau_job job; // first; on the mover, once it is on the disk
+	cau_job job; // must be the first member; runs on the mover once the acceptance is on the disk
 	cau_moves *moves;
-	arrival *arrival; // which this owns
+	arrival *arrival; // this acceptance owns the arrival
 	cau_reply reply;
-	cau_reply again[AGAIN_MOST]; // to the same request, repeated; with the lock
+	cau_reply again[AGAIN_MOST]; // replies to repetitions of the request; under the lock
 	int32_t again_count;
 };
 
 typedef cau_accepting accepting;
 
-// With the lock. The repeated request is answered when the first one has been carried out.
+// Called with the lock. The repeated request is answered once the first one has been carried out.
 static cau_status wait_too(accepting *what, const cau_reply *reply, cau_error *error)
 {
 	if (what->again_count == AGAIN_MOST)
@@ -123,7 +124,7 @@ static cau_status wait_too(accepting *what, const cau_reply *reply, cau_error *e
 	return CAU_OK;
 }
 
-// Answers that it was accepted before, with the session as it is now.
+// Answers that the session was accepted before, with its present description.
 static void describe(cau_moves *moves, const char *id, const cau_reply *reply)
 {
 	cau_error error = {0};
@@ -144,13 +145,14 @@ static void describe(cau_moves *moves, const char *id, const cau_reply *reply)
 	cau_hosted_release(hosted);
 }
 
-// The arrival has no owner from here on. A failure is answered; else the session answers `reply`.
+// Ends the acceptance, so that the arrival has no owner. Answers with the failure, if there is one.
+// Otherwise the session itself answers `reply`.
 static void end_accepting(accepting *what, const cau_error *failure, int32_t code)
 {
 	char id[CAU_NAME_BYTES];
 	pthread_mutex_lock(&what->moves->mutex);
 	memcpy(id, what->arrival->id, sizeof id);
-	what->arrival->accepting = NULL; // no further request waits
+	what->arrival->accepting = NULL; // from here on no repeated request waits
 	pthread_mutex_unlock(&what->moves->mutex);
 	if (failure)
 		cau_reply_fail(&what->reply, failure, code);
@@ -172,8 +174,8 @@ static void submit_plain(cau_hosted *hosted, cau_order *order)
 	}
 }
 
-// Whoever drove a tool has it here, dark, and may come back to it for as long as after a lost
-// connection.
+// Gives each tool its former driver, with energy off. The driver may return for as long as after a
+// lost connection.
 static void give_hands(cau_moves *moves, const arrival *a, cau_hosted *hosted)
 {
 	for (int32_t i = 0; i < a->hand_count; i++) {
@@ -199,8 +201,9 @@ static void give_hands(cau_moves *moves, const arrival *a, cau_hosted *hosted)
 	}
 }
 
-// The core that was built beforehand, among the hub's sessions, shared; NULL: there is none, or no
-// place. Without a place it ends, and is reaped.
+// Adds the core that was built in advance to the hub's sessions, and returns it with a reference.
+// Returns NULL if there is no such core, or no free slot. Without a slot the core is ended, and
+// freed later.
 static cau_hosted *place_built(cau_moves *moves, arrival *a)
 {
 	pthread_mutex_lock(&moves->mutex);
@@ -254,7 +257,7 @@ static void run(cau_job *job)
 	end_accepting(what, status ? &error : NULL, 0);
 }
 
-// It is in the store, and comes up with the others at the next start.
+// Drops the job. The session is in the store, and starts with the next start of the daemon.
 static void drop(cau_job *job)
 {
 	cau_error error = {0};
@@ -262,7 +265,7 @@ static void drop(cau_job *job)
 	end_accepting((accepting *)job, &error, CAU_RPC_DRAINING);
 }
 
-// On the store's thread.
+// Called on the store's thread.
 static void accepted(void *user, cau_status status, const char *reason)
 {
 	accepting *what = user;
@@ -284,7 +287,7 @@ static void accepted(void *user, cau_status status, const char *reason)
 	end_accepting(what, &error, cau_hosted_commit_code(status));
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error)
 {
 	cau_store_arrival row = cau_arrival_row(a, a->pieces, CAU_STORE_ACCEPTED);
@@ -344,12 +347,12 @@ void cau_arrival_accept(cau_move_job *job)
 
 // ---- forget -------------------------------------------------------------------------------------
 
-// On its way to the disk.
+// A removal of the arrival on its way to the disk.
 typedef struct forgetting {
 	cau_moves *moves;
 	arrival *arrival;
 	cau_reply reply;
-	bool whole; // all of it had come
+	bool whole; // all pieces had arrived
 } forgetting;
 
 static void forgotten(void *user, cau_status status, const char *reason)
@@ -372,7 +375,7 @@ static void forgotten(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau_error *error)
 {
 	forgetting *travelling = malloc(sizeof *travelling);
@@ -395,8 +398,9 @@ static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau
 	return status;
 }
 
-// A release proves that the source keeps the session. With `source_lost` an administrator says that
-// the source is gone for good, which may be wrong.
+// True if the arrival may be forgotten. A release proves that the source keeps the session.
+// `source_lost` is an administrator's statement that the source is lost for good, which may be
+// wrong.
 static bool may_forget(const cau_move_job *job, const arrival *a)
 {
 	if (!job->asked.source_lost)
@@ -407,7 +411,7 @@ static bool may_forget(const cau_move_job *job, const arrival *a)
 	return true;
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static cau_status check_forget(const cau_move_job *job, const arrival *a, int32_t *code,
                                cau_error *error)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pieces in which a session comes from another daemon: each is looked through for what is not
-// the store's alone, and written with the row that says how many there are.
+// Receives the pieces of a session from another daemon. Each piece is searched for rows that
+// concern more than the store. Then it is written together with the row that counts the pieces.
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,21 +8,21 @@
 #include "move/internal.h"
 #include "store/rows.h"
 
-enum { ARRIVALS_MOST = 64 }; // that are not served yet
+enum { ARRIVALS_MOST = 64 }; // most arrivals that are not served yet
 
 typedef cau_arrival arrival;
 typedef cau_arrival_hand hand;
 
-// What of a piece is not the store's alone.
+// The parts of a piece that concern more than the store.
 typedef struct contents {
 	uint32_t index, flags;
 	bool has_header;
 	char move[CAU_NAME_BYTES], source[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
 	cau_move_hash lock, unlock;
-	cau_move_hash seal; // as the piece carries it
+	cau_move_hash seal; // the seal at the end of the piece
 	hand hands[CAU_MAX_TOOLS];
 	int32_t hand_count;
-	double speed; // 0: it does not say
+	double speed; // 0: the piece has no speed
 } contents;
 
 static void take_header(const cau_row *row, contents *found)
@@ -45,12 +45,12 @@ static void take_hand(const cau_row *row, contents *found)
 	cau_rows_text(row, 1, made->client.resume, sizeof made->client.resume);
 	cau_rows_text(row, 2, asker->client_id, sizeof asker->client_id);
 	cau_rows_text(row, 3, asker->name, sizeof asker->name);
-	// It waits, dark, for one who says hello with a role of his own.
+	// The tool waits, with energy off, for a client that says hello with its own role.
 	asker->role = CAU_ROLE_OPERATE;
 	asker->deadline_s = (double)row->column[5].integer * 1e-6;
 }
 
-// Takes the seal off the end of the piece.
+// Removes the seal from the end of the piece.
 static cau_status take_seal(cau_move_asked *asked, contents *found, cau_error *error)
 {
 	if (asked->piece_bytes < CAU_SEAL_BYTES)
@@ -97,7 +97,7 @@ static cau_status check_id(const cau_moves *moves, const char *id, cau_error *er
 	                "the ids of this daemon's sessions begin with `%s-`", moves->def.config->label);
 }
 
-// With the lock. Whether a new move may bring a session by this id.
+// Called with the lock. Checks whether a new move may bring a session with this id.
 static cau_status check_place(cau_moves *moves, const char *id, cau_error *error)
 {
 	const arrival *old = cau_arrival_find(moves, id);
@@ -115,8 +115,9 @@ static cau_status check_place(cau_moves *moves, const char *id, cau_error *error
 	return check_id(moves, id, error);
 }
 
-// With the lock. The newest of its id: an earlier move's, whose session is gone, is behind it in
-// the list until this one's first piece is on the disk.
+// Called with the lock. Adds a new arrival before any older arrival of the same id. The older
+// arrival's session is gone; it stays in the list until the first piece of the new one is on the
+// disk.
 static arrival *enlist(cau_moves *moves, const cau_move_asked *asked, const contents *found,
                        cau_error *error)
 {
@@ -145,7 +146,7 @@ static arrival *enlist(cau_moves *moves, const cau_move_asked *asked, const cont
 	return a;
 }
 
-// Whether the piece is as the source sent it, after those that are here.
+// Checks that the piece is as the source sent it, and follows the pieces that are here.
 static cau_status check_seal(const cau_move_asked *asked, const char *before, const contents *found,
                              cau_error *error)
 {
@@ -173,14 +174,14 @@ static cau_status check_turn(const arrival *a, const cau_move_asked *asked, cons
 	return CAU_OK;
 }
 
-// A courier that missed the answer to its newest piece sends the piece again.
+// True if the courier sends its newest piece again because it missed the answer.
 static bool is_repeated(const arrival *a, const cau_move_asked *asked, const contents *found)
 {
 	return a && strcmp(a->move, asked->move) == 0 && !a->writing &&
 	       a->pieces == (int64_t)found->index + 1 && strcmp(a->seal, found->seal) == 0;
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static void answer_received(const arrival *a, const cau_reply *reply)
 {
 	cau_wire_move_received result = {.pieces = a->pieces,
@@ -191,8 +192,8 @@ static void answer_received(const arrival *a, const cau_reply *reply)
 		cau_move_answer(reply, &result);
 }
 
-// The arrival that takes this piece next, marked as writing; NULL: *error says why not, or the
-// piece was here before, and that is answered.
+// Returns the arrival that takes this piece next, marked as `writing`. Returns NULL if the piece is
+// refused (*error), or if it was already here; the latter is answered.
 static arrival *begin_piece(cau_move_job *job, const contents *found, int32_t *code,
                             cau_error *error)
 {
@@ -200,7 +201,7 @@ static arrival *begin_piece(cau_move_job *job, const contents *found, int32_t *c
 	pthread_mutex_lock(&moves->mutex);
 	arrival *a = cau_arrival_find(moves, job->asked.session);
 	if (a && cau_coming_serves(&a->coming))
-		a = NULL; // of an earlier move that was accepted
+		a = NULL; // belongs to an earlier move that was accepted
 	bool is_new = !a;
 	if (is_repeated(a, &job->asked, found)) {
 		answer_received(a, &job->reply);
@@ -234,7 +235,8 @@ static void note_contents(arrival *a, const contents *found)
 		a->hands[a->hand_count++] = found->hands[i];
 }
 
-// With the lock. The first piece of `a` is on the disk, in the place of an earlier move's row.
+// Called with the lock once the first piece of `a` is on the disk and has replaced the row of an
+// earlier move.
 static void end_older(cau_moves *moves, const arrival *a)
 {
 	arrival *old = a->next;
@@ -244,7 +246,7 @@ static void end_older(cau_moves *moves, const arrival *a)
 		cau_arrival_take_out(moves, old);
 }
 
-// On the store's thread.
+// Called on the store's thread.
 static void piece_written(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;
@@ -283,7 +285,7 @@ static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error 
 		status = cau_store_lend_rows(batch, row.id, job->asked.piece, job->asked.piece_bytes, free,
 		                             error);
 	if (!status)
-		job->asked.piece = NULL; // the batch's
+		job->asked.piece = NULL; // the batch owns the piece now
 	if (!status)
 		status = cau_store_submit(job->moves->def.store, batch, piece_written, travelling, error);
 	if (status)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of sessions that come from another daemon. How their pieces come: arrival_pieces.c. How
-// that ends: arrival_end.c.
+// The list of sessions that arrive from another daemon. arrival_pieces.c receives their pieces, and
+// arrival_end.c ends the arrivals.
 #include <stdlib.h>
 #include <string.h>
 
@@ -122,7 +122,8 @@ void cau_arrivals_list(const cau_moves *moves, cau_wire_list *list)
 	}
 }
 
-// The next core that has ended, whose place is then free; shared.
+// Removes a core that has ended from its arrival, and returns it with a reference. Returns NULL if
+// there is none.
 static cau_hosted *take_ended(cau_moves *moves, bool all)
 {
 	cau_hosted *ended = NULL;
@@ -130,7 +131,7 @@ static cau_hosted *take_ended(cau_moves *moves, bool all)
 	for (arrival *a = moves->arrivals, *next; a && !ended; a = next) {
 		next = a->next;
 		if (a->hosted && all && a->ready && !cau_hosted_ended(a->hosted))
-			cau_hosted_give_up(a->hosted); // the builder has stopped: it is done at once
+			cau_hosted_give_up(a->hosted); // ends at once, because the builder has stopped
 		if (a->hosted && cau_hosted_ended(a->hosted)) {
 			ended = a->hosted;
 			a->hosted = NULL;

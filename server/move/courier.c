@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces and receipts that a courier carries between the two daemons of a move, and its answers.
+// Makes and checks the proofs of a move, and answers its courier.
 #include "move/courier.h"
 
 #include <stdio.h>
@@ -16,7 +16,7 @@ bool cau_move_opens(const char *key, const char *lock)
 	return cau_sha256(key, strlen(key), hash) && strcmp(hash, lock) == 0;
 }
 
-// The hash of three texts, each at most as long as a hash.
+// Hashes three texts, each at most as long as a hash.
 static bool hash_texts(const char *use, const char *first, const char *second, cau_move_hash hash)
 {
 	char text[3 * CAU_SHA256_TEXT_BYTES];
@@ -59,8 +59,7 @@ void cau_move_answer(const cau_reply *reply, const void *result)
 {
 	cau_error error = {0};
 	cau_outcome outcome = {0};
-	if (!reply
-	         ->answer) // no asker: the request has no method, so its message would have a wrong one
+	if (!reply->answer) // without a receiver there is no method, whose name the answer needs
 		return;
 	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
 	outcome.text = text;

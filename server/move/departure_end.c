@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a session's leaving ends: it stands still, the rest goes out, and a row in the store says
-// that it is elsewhere; or it goes on here.
+// The end of a departure. The session is suspended, its remaining rows are sent, and a row in the
+// store names its target. Otherwise the session resumes here.
 #include <stdlib.h>
 #include <string.h>
 
 #include "move/internal.h"
 
-#define HELD_MOST_S 30.  // a session that stands still for longer goes on
-#define SENDS_MOST_S 60. // a courier that asks for nothing for so long has gone
+#define HELD_MOST_S 30.  // a session that is suspended for longer resumes
+#define SENDS_MOST_S 60. // a courier that is silent for longer counts as gone
 
 typedef cau_departure departure;
 
-// ---- going on -----------------------------------------------------------------------------------
+// ---- the session stays --------------------------------------------------------------------------
 
 static void clear(cau_moves *moves, departure *d);
 
-// Does what a machine answered to a cancel or to time. With the lock; may take the departure out.
+// Called with the lock. Carries out the act that followed a cancel or a timeout. May remove the
+// departure from the list.
 static void let_go(cau_moves *moves, departure *d, cau_leaving_state from, cau_leaving_act act)
 {
 	if (act == CAU_LEAVING_DO_CLEAR) {
@@ -37,7 +38,7 @@ typedef struct at_disk {
 	departure *departure;
 } at_disk;
 
-// The disk has said what became of the tombstone, or of what clears it. On the store's thread.
+// Called on the store's thread with the outcome of the commit that clears a refused tombstone.
 static void cleared(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;
@@ -50,7 +51,7 @@ static void cleared(void *user, cau_status status, const char *reason)
 	if (status) {
 		cau_move_fail(&d->waiting, CAU_IO, CAU_RPC_STORE_FULL, "", "the store is full");
 		d->waiting = (cau_reply){0};
-		d->held_s = cau_monotonic_s(); // asked again later
+		d->held_s = cau_monotonic_s(); // tried again later
 	} else {
 		let_go(moves, d, CAU_LEAVING_CLEARING, act);
 	}
@@ -71,7 +72,7 @@ static cau_status submit(cau_moves *moves, departure *d, cau_store_batch *batch,
 	return status;
 }
 
-// Any commit that follows makes sure that one which the disk refused does not come to light.
+// Makes any further commit, so that a tombstone that the disk refused cannot appear on it.
 static void clear(cau_moves *moves, departure *d)
 {
 	cau_error error = {0};
@@ -100,7 +101,7 @@ static bool is_late(const departure *d, double now_s)
 
 void cau_departures_let_go(cau_moves *moves, double now_s, bool all)
 {
-	if (all) { // nothing is given to the disk any more, and what was is decided
+	if (all) { // no further commits are made, and those under way have ended
 		pthread_mutex_lock(&moves->mutex);
 		moves->ends = true;
 		pthread_mutex_unlock(&moves->mutex);
@@ -118,7 +119,7 @@ void cau_departures_let_go(cau_moves *moves, double now_s, bool all)
 
 // ---- hold ---------------------------------------------------------------------------------------
 
-// Whom to answer once the session stands still, or cannot.
+// The request that is answered once the session is suspended, or cannot be.
 typedef struct holding {
 	cau_moves *moves;
 	cau_move_asked asked;
@@ -136,7 +137,7 @@ static void held(void *user, const cau_reply *reply, const cau_outcome *outcome)
 	cau_leaving_act act = cau_leaving_take(
 		&d->leaving, outcome->error ? CAU_LEAVING_NOT_STOPPED : CAU_LEAVING_STOPPED, true);
 	d->held_s = cau_monotonic_s();
-	if (outcome->error) // the session has gone on by itself
+	if (outcome->error) // the session has resumed by itself
 		cau_departure_take_out(moves, d);
 	else
 		let_go(moves, d, CAU_LEAVING_STOPS, act);
@@ -199,7 +200,7 @@ static bool is_own_fault(cau_status status)
 	       status == CAU_LIMIT;
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static void go_away(cau_moves *moves, departure *d)
 {
 	cau_tombstone_put(moves, &d->becomes);
@@ -230,7 +231,7 @@ static void decided(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static void write_tombstone(cau_moves *moves, departure *d, const cau_reply *reply)
 {
 	cau_error error = {0};
@@ -258,7 +259,8 @@ static void write_tombstone(cau_moves *moves, departure *d, const cau_reply *rep
 	let_go(moves, d, from, act);
 }
 
-// What the tombstone says, if it is of this move. With the lock.
+// Called with the lock. Answers with the tombstone if it belongs to this move. Returns whether it
+// did.
 static bool show(cau_move_job *job)
 {
 	const cau_tombstone *found = cau_tombstone_find(job->moves, job->asked.session);
@@ -268,7 +270,7 @@ static bool show(cau_move_job *job)
 	return own;
 }
 
-// Whether the target has said that all pieces are on its disk.
+// True if the receipt is the target's for all pieces.
 static bool is_received(const departure *d, const char *receipt)
 {
 	cau_move_hash wanted;
@@ -301,8 +303,8 @@ void cau_departure_commit(cau_move_job *job)
 
 // ---- cancel -------------------------------------------------------------------------------------
 
-// Who asks another daemon than the one that the session came from must not hear that it stays
-// there.
+// True if the id belongs to this daemon. A courier that asks another daemon than the source must
+// not be answered that the session stays there.
 static bool is_of_this_daemon(const cau_moves *moves, const char *id)
 {
 	size_t bytes = strlen(moves->def.config->label);
@@ -321,7 +323,8 @@ static void cancel(cau_move_job *job, departure *d)
 	let_go(job->moves, d, from, act);
 }
 
-// No such move is under way or was decided, so it never will be: its proof was in memory alone.
+// Answers that the session stays. No such move is under way or decided, so it never will be: its
+// proof was only in memory.
 static void keep(cau_move_job *job)
 {
 	cau_move_hash release;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that leave for another daemon: what is there goes out in pieces while they are served.
-// How that ends: departure_end.c.
+// Sessions that leave for another daemon. Their existing rows are sent in pieces while they are
+// served. departure_end.c ends the departures.
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
@@ -9,12 +9,14 @@
 #include "move/internal.h"
 
 enum {
-	PIECE_BYTES = 4 << 20, // and at most a row more: one commit of the other daemon's store
+	// Size of a piece, which is exceeded by at most one table row. The target commits one piece at
+	// a time.
+	PIECE_BYTES = 4 << 20,
 	TOMBSTONES_MOST = 100000,
 };
 
-// A courier that has read the first piece and asks for no more within this time is taken for dead:
-// PIECE_BYTES go through a line of 4 Mbit/s in 8.4 s.
+// A courier that has read the first piece and asks for no more within this time counts as gone. A
+// line of 4 Mbit/s takes 8.4 s for PIECE_BYTES.
 #define FIRST_PIECE_MOST_S 10.
 
 typedef cau_departure departure;
@@ -26,7 +28,7 @@ static void destroy(departure *d)
 	free(d);
 }
 
-// With the lock.
+// Called with the lock of cau_moves.
 static departure *find(cau_moves *moves, const char *id)
 {
 	departure *d = moves->departures;
@@ -85,7 +87,7 @@ static cau_status fill(const cau_moves *moves, departure *d, const cau_move_aske
 	memcpy(d->label, asked->label, sizeof d->label);
 	memcpy(d->becomes.id, asked->session, sizeof d->becomes.id);
 	d->becomes.to = asked->to;
-	d->becomes.move[0] = 'm'; // a name begins with a letter
+	d->becomes.move[0] = 'm'; // a name must begin with a letter
 	if (!make_hex(d->becomes.move + 1, 16) || !make_hex(d->becomes.proof, 32))
 		return cau_fail(error, CAU_UNSUPPORTED, "", "the system gives no random bytes");
 	if (!cau_sha256(d->becomes.proof, strlen(d->becomes.proof), d->lock) ||
@@ -95,7 +97,8 @@ static cau_status fill(const cau_moves *moves, departure *d, const cau_move_aske
 	return CAU_OK;
 }
 
-// A session that may leave, shared; NULL after a failure that is answered.
+// Returns a session that may leave, with a reference. Returns NULL after a failure that is
+// answered.
 static cau_hosted *find_hosted(cau_move_job *job)
 {
 	cau_moved_to to;
@@ -118,8 +121,8 @@ static cau_hosted *find_hosted(cau_move_job *job)
 	return NULL;
 }
 
-// Whether the courier of this move has died before the target had a piece. Then the target's list
-// does not name the move, and no later courier would find it there.
+// True if the courier of this move is gone before the target had a piece. The target's list then
+// does not name the move, so no later courier would find it there.
 static bool is_left(const departure *d, double now_s)
 {
 	if (d->reading || d->leaving.state != CAU_LEAVING_SENDS || d->pieces > 1)
@@ -127,7 +130,7 @@ static bool is_left(const departure *d, double now_s)
 	return !d->part_sent || now_s - d->touched_s > FIRST_PIECE_MOST_S;
 }
 
-// With the lock.
+// Called with the lock. Ends the session's present move if its courier is gone.
 static void give_way(cau_moves *moves, const char *id)
 {
 	departure *d = find(moves, id);
@@ -177,7 +180,7 @@ void cau_departure_begin(cau_move_job *job)
 	}
 	d->hosted = hosted;
 	cau_status status = fill(job->moves, d, &job->asked, &error);
-	cau_store_flush(job->moves->def.store); // one that was made just now is on its way there
+	cau_store_flush(job->moves->def.store); // waits for the rows of a session that was just created
 	if (!status)
 		status = cau_store_dump_open(job->moves->def.store, d->id, &d->dump, &error);
 	memcpy(result.move, d->becomes.move, sizeof result.move);
@@ -195,8 +198,8 @@ void cau_departure_begin(cau_move_job *job)
 
 // ---- read ---------------------------------------------------------------------------------------
 
-// Who holds which tool comes with the rest: it is known to memory alone, as after a lost
-// connection.
+// Writes the drivers of the tools. This comes with the remaining rows, because drivers are only in
+// memory, as after a lost connection.
 static void write_hands(cau_moves *moves, departure *d, cau_rows_writer *writer)
 {
 	cau_drive drives[CAU_MAX_TOOLS];
@@ -254,7 +257,7 @@ static cau_status write_piece(cau_moves *moves, departure *d, bool held, cau_row
 	return status;
 }
 
-// The departure, which is then this job's to read; NULL after a failure that is answered.
+// Returns the departure for this job to read, or NULL after a failure that is answered.
 static departure *begin_reading(cau_move_job *job, bool *held)
 {
 	const char *why = NULL;
@@ -309,7 +312,7 @@ void cau_departure_read(cau_move_job *job)
 	free(writer.bytes);
 }
 
-// ---- all of them --------------------------------------------------------------------------------
+// ---- all departures -----------------------------------------------------------------------------
 
 void cau_departures_list(const cau_moves *moves, cau_wire_list *list)
 {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that move between daemons (protocol/README.md, "Moving a session"): those that leave,
-// those that arrive, and where the ones are that have left. Jobs of the mover serve the
-// requests of a courier. session/handover.h decides.
+// Moves of sessions between daemons (protocol/README.md, "Moving a session"): sessions that leave,
+// sessions that arrive, and the targets of sessions that have left. The requests of a courier are
+// served by jobs of the mover. session/handover.h makes the decisions.
 //
-// This room knows the hub. The hub asks it by two functions (hub/moving.h): whether an id has moved
-// away, and whether it is on its way here.
+// This folder uses the hub. The hub calls two functions of this folder (hub/moving.h): whether an
+// id has moved away, and whether it is arriving.
 #pragma once
 
 #include "builder/builder.h"
@@ -17,7 +17,7 @@ enum { CAU_PROOF_BYTES = 65 };
 typedef struct cau_moves cau_moves;
 
 typedef struct cau_moves_def {
-	const cau_config *config; // borrowed, like all here
+	const cau_config *config; // borrowed, as are the other members
 	cau_store *store;
 	cau_builder *mover; // runs the jobs
 	cau_hub *hub;
@@ -25,21 +25,21 @@ typedef struct cau_moves_def {
 
 // ---- for the daemon
 
-// Before the hub has sessions; the hub asks this room from then on.
+// Call this before the hub has sessions. From then on the hub calls functions of this folder.
 cau_status cau_moves_create(cau_moves **moves, const cau_moves_def *def, cau_error *error);
-// Reads the store's moves. Before cau_hub_resume, which leaves sessions that are on their way here
-// in the store.
+// Reads the moves of the store. Call this before cau_hub_resume, which does not resume sessions
+// that are still arriving.
 cau_status cau_moves_resume(cau_moves *moves, cau_error *error);
-// Ends moves whose courier has gone, and frees cores of arrivals that have ended. Waits for a
-// worker's slice, as cau_hub_reap does, and comes before it.
+// Ends moves whose courier is gone, and frees cores of arrivals that have ended. Like cau_hub_reap,
+// it waits for a worker's slice. Call it before cau_hub_reap.
 void cau_moves_reap(cau_moves *moves);
-// No move begins or goes on from here; suspended sessions go on. Before cau_hub_drain. Waits for
-// the store. Takes NULL.
+// Ends all moves: no move begins or continues from here on, and suspended sessions resume. Waits
+// for the store. Call this before cau_hub_drain. `moves` may be NULL.
 void cau_moves_drain(cau_moves *moves);
-// The same, and ends the cores of arrivals. After cau_builder_stop of the mover, before
-// cau_hub_stop. Takes NULL.
+// Ends all moves as cau_moves_drain does, and frees the cores of arrivals. Call this after
+// cau_builder_stop of the mover and before cau_hub_stop. `moves` may be NULL.
 void cau_moves_stop(cau_moves *moves);
-// After cau_hub_stop, before cau_hub_destroy. Takes NULL.
+// Call this after cau_hub_stop and before cau_hub_destroy. `moves` may be NULL.
 void cau_moves_destroy(cau_moves *moves);
 
 // ---- for transports
@@ -61,14 +61,16 @@ typedef enum {
 typedef struct cau_move_asked {
 	cau_move_what what;
 	char session[CAU_NAME_BYTES], move[CAU_NAME_BYTES];
-	cau_moved_to to;            // BEGIN
-	char label[CAU_NAME_BYTES]; // BEGIN
-	char key[CAU_PROOF_BYTES];  // ACCEPT: proof, COMMIT: receipt, FORGET: release or ""
-	bool source_lost;           // FORGET
-	unsigned char *piece;       // RECEIVE: malloc'ed, taken
+	cau_moved_to to;            // for BEGIN
+	char label[CAU_NAME_BYTES]; // for BEGIN: label of the target
+	// for ACCEPT: the proof; COMMIT: the receipt; FORGET: the release or ""
+	char key[CAU_PROOF_BYTES];
+	bool source_lost;     // for FORGET: the source is lost for good
+	unsigned char *piece; // for RECEIVE: malloc'ed; ownership is taken
 	size_t piece_bytes;
 } cau_move_asked;
 
-// Does it, on the mover, and answers through `reply`. Takes the piece, on failure too. Any thread.
+// Serves the request on the mover, and answers through `reply`. Takes ownership of the piece, even
+// on failure. Any thread may call this.
 cau_status cau_moves_ask(cau_moves *moves, const cau_move_asked *asked, const cau_reply *reply,
                          cau_error *error);

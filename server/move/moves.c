@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room's life, and what couriers ask: each request is a short job of the mover, since most read
-// the store.
+// Creates and ends the moves of a daemon, and serves couriers. Each request is a short job of the
+// mover, because most requests read the store.
 #include "move/move.h"
 
 #include <stdlib.h>
@@ -8,9 +8,9 @@
 
 #include "move/internal.h"
 
-#define EXPECTED_S 0.05 // for the builder's order: a piece is read or written
+#define EXPECTED_S 0.05 // time to read or write a piece; orders the builder's jobs
 
-// ---- life
+// ---- creation and end
 static bool has_moved(void *user, const char *id, cau_moved_to *to)
 {
 	return cau_tombstones_have(user, id, to);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that another daemon has now, by their old ids. In memory, since the network
-// thread asks for them and touches no disk.
+// Sessions that have moved to another daemon, by their old ids. They are kept in memory, because
+// the network thread searches them and must not touch a disk.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "move/internal.h"
 
-// The first whose id is not before this one's.
+// Returns the index of the first tombstone whose id is not less than this one.
 static int32_t place_of(const cau_moves *moves, const char *id)
 {
 	int32_t low = 0, high = moves->tombstone_count;

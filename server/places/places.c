@@ -13,14 +13,14 @@ bool cau_place_find(const char *name, char *path, size_t bytes)
 	struct stat info;
 	if (bytes > 0)
 		*path = 0;
-	// The kernel's name of the program has no links in it, and does not end with a zero.
+	// The kernel's name of the program has no links in it. It does not end with a zero.
 	ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
 	if (length <= 0)
 		return false;
 	program[length] = 0;
-	char *slash = strrchr(program, '/'); // of bin/cauteryd
+	char *slash = strrchr(program, '/'); // end of the path of bin, before cauteryd
 	*slash = 0;
-	slash = strrchr(program, '/'); // of .../bin
+	slash = strrchr(program, '/'); // end of the path before bin
 	if (!slash)
 		return false;
 	*slash = 0;

@@ -8,8 +8,8 @@
 
 #include "config/role.h"
 
-// Addresses remembered at once. Beyond them the one that has taken least is forgotten: what that
-// gives away is bounded by the role's and the daemon's allowance.
+// Number of remembered addresses. If there are more, the address that has taken least is forgotten.
+// The allowances of the role and of the daemon limit what this gives away.
 enum { ADDRESSES = 256 };
 
 #define MINUTE_S 60.0
@@ -19,7 +19,8 @@ typedef struct address {
 	cau_allowance allowance;
 } address;
 
-// As many as a file of tokens may have; beyond them as with addresses.
+// Number of remembered tokens: as many as a file of tokens may have. If there are more, the one
+// that has taken least is forgotten.
 enum { TOKENS = 256 };
 
 typedef struct token {
@@ -30,7 +31,7 @@ typedef struct token {
 
 struct cau_quota {
 	const cau_config *config;
-	pthread_mutex_t mutex; // guards what follows
+	pthread_mutex_t mutex; // guards the members below
 	address addresses[ADDRESSES];
 	int address_count;
 	token tokens[TOKENS];
@@ -38,11 +39,11 @@ struct cau_quota {
 	cau_allowance roles[CAU_ROLE_COUNT], all;
 };
 
-// One allowance and what bounds it.
+// One allowance and its limit.
 typedef struct bound {
 	cau_allowance *allowance;
-	int64_t most;              // a minute
-	const char *where, *whose; // it is set
+	int64_t most;              // requests a minute
+	const char *where, *whose; // where: the setting of the limit; whose: to what it applies
 } bound;
 
 cau_quota *cau_quota_create(const cau_config *config)
@@ -62,7 +63,7 @@ void cau_quota_destroy(cau_quota *quota)
 	free(quota);
 }
 
-// What is left of what was taken, after the time that has gone by.
+// Gives back what has refilled since the last call.
 static void refill(cau_allowance *allowance, int64_t most, double now_s)
 {
 	double back = (now_s - allowance->seen_s) * (double)most / MINUTE_S;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// session.advance: its params become one order, with all that it asks for behind it.
+// session.advance: turns its params into one order, followed by everything that the params request.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "hosted_session/advance.h"
 #include "rpc/internal.h"
 
-// Room to read the params into.
+// Memory into which the params are read.
 typedef struct wanted {
 	cau_wire_session_advance params;
 	cau_wire_advance_command commands[CAU_ADVANCE_COMMANDS];
@@ -27,7 +27,7 @@ static cau_status fail_at(cau_error *error, int32_t index, const char *list, con
 	return CAU_BAD_VALUE;
 }
 
-// Members that are those of another method.
+// Returns the name of a member that belongs to another method; NULL if there is none.
 static const char *odd_member(const cau_wire_advance_command *from)
 {
 	bool moves = from->method == CAU_ADVANCE_TOOL_MOVE;
@@ -99,7 +99,8 @@ static cau_status read_command(const cau_wire_advance_command *from, int32_t ind
 	return CAU_OK;
 }
 
-// A tool's energy stands in one command, and no more tools are named than a session can have.
+// Checks that each tool's energy is in one command only, and that the commands name no more tools
+// than a session can have.
 static cau_status check_tools(const cau_advance *advance, int32_t index, cau_error *error)
 {
 	const cau_command *newest = &advance->commands[index];
@@ -132,7 +133,7 @@ static cau_status read_commands(const wanted *from, cau_advance *to, cau_error *
 	return status;
 }
 
-// ---- what is to be observed ---------------------------------------------------------------------
+// ---- observations -------------------------------------------------------------------------------
 
 static cau_status read_region(const cau_wire_observed_region *from, int32_t index,
                               cau_advance_region *to, cau_error *error)
@@ -181,7 +182,7 @@ static cau_status read_params(const cau_call *call, wanted *to, cau_error *error
 	return cau_rpc_params(call->message, &to->params, error);
 }
 
-// The order, and behind it the advance, its commands and its vertices.
+// Makes the order. The same memory has the advance, its commands and its vertices behind it.
 static cau_order *make_order(const cau_call *call, const wanted *from)
 {
 	const cau_wire_session_advance *params = &from->params;
@@ -220,7 +221,7 @@ void cau_call_session_advance(cau_call *call)
 	}
 	if (order && !status) {
 		cau_call_submit(call, order);
-	} else if (order || error.status) { // else it is answered
+	} else if (order || error.status) { // else the call is already answered
 		cau_call_fail(call, &error, 0);
 		free(order);
 	}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts what was answered to which method, from any thread.
+// Counts the answers to each method, from any thread.
 #include "rpc/internal.h"
 
-// Of each column but the first, which is for results.
+// The words of the columns. Column 0 is for results, the others are for errors.
 static const struct {
 	int32_t code;
 	const char *word;
@@ -36,9 +36,9 @@ void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out)
 			                   cau_answers_method_name((cau_method)m), (double)service->calls[m]);
 }
 
-// A series begins with 0 for the result of each method that clients may call, so that the first
-// call is seen as an increase; those of errors begin with their first one, since there are too many
-// to tell them all.
+// True if the count is written to /metrics. The counts of results begin with 0 for each method that
+// clients may call, so that the first call shows as an increase. The counts of errors begin with
+// the first error, because there are too many to write them all.
 static bool is_told(int method, int column, uint64_t count)
 {
 	cau_method_form form =

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What waits in the mailbox, to the connections that it is for. On the network thread.
+// Delivers the mailbox's messages to their connections, on the network thread.
 #include <stdlib.h>
 #include <string.h>
 
 #include "rpc/internal.h"
 
-// There is a place: cau_peer_has_room_for_file saw to it when the file was asked for.
+// Starts to send a file. A slot is free: cau_peer_has_room_for_file checked this when the file was
+// requested.
 static void send_file(cau_peer *peer, cau_post *post)
 {
 	int i = 0;
@@ -16,7 +17,8 @@ static void send_file(cau_peer *peer, cau_post *post)
 	post->file = NULL;
 }
 
-// A join that the connection has no room for is refused after all.
+// Refuses a join that the session accepted, because the connection has the largest number of
+// streams.
 static void refuse_join(cau_peer *peer, cau_post *post)
 {
 	cau_error error = {0};
@@ -65,7 +67,8 @@ static bool listens(const cau_peer *peer, cau_audience audience)
 	return false;
 }
 
-// What everybody is told is of a session, made or gone: not for those whose token is for others.
+// True if the peer may receive the notice. A notice to all is about a created or destroyed session.
+// A peer whose token is for some sessions gets only notices about these.
 static bool may_know(const cau_peer *peer, const cau_post *post)
 {
 	static const char member[] = "\"session\":\"";
@@ -85,7 +88,8 @@ static bool may_know(const cau_peer *peer, const cau_post *post)
 	return cau_auth_session_allowed(&peer->bounds, session);
 }
 
-// Every listener's queue needs its own node, so notices are copied; they are small.
+// Sends a copy of the notice to each listener, because each listener's queue needs a node of its
+// own. Notices are small.
 static void deliver_notice(cau_service *service, cau_post *post)
 {
 	for (cau_connection *c = cau_network_first(service->network); c; c = c->next) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// hello and heartbeat.
+// The methods hello and heartbeat.
 #include <string.h>
 
 #include "rpc/internal.h"
@@ -10,7 +10,8 @@
 
 enum { WIRE_VERSION = 1 };
 
-#define REFUSALS_TOLD_S 1. // between log lines: whoever tries tokens does not fill the log
+// time between log lines, so that a client that tries tokens does not fill the log
+#define REFUSALS_TOLD_S 1.
 
 static void answer_refusal(const cau_call *call, int32_t code, const char *reason)
 {
@@ -67,7 +68,8 @@ static void replace(cau_service *service, uint64_t connection)
 		cau_connection_close(old, CAU_CLOSE_RESUMED, NULL);
 }
 
-// Whoever guesses tokens hears a second later that one was wrong. Without a token nobody guesses.
+// Refuses a token. A wrong token (`is_guess`) is answered a second later, to slow down guessing. A
+// missing token is answered at once.
 static void refuse_token(const cau_call *call, bool is_guess)
 {
 	cau_service *service = call->peer->service;
@@ -110,12 +112,13 @@ void cau_call_hello(cau_call *call)
 	}
 	peer->grant = cau_auth_grant(service->auth, params.token, strlen(params.token));
 	if (!cau_auth_grant_bounds(service->auth, peer->grant, &peer->bounds)) {
-		refuse_token(call, true); // it was taken back at this very moment
+		refuse_token(call, true); // the token was revoked at this very moment
 		return;
 	}
 	bool resumes = params.has_resume && cau_hub_keeps(service->hub, params.resume);
 	if (!cau_connection_has_place(peer->connection, resumes)) {
-		cau_connection_close(peer->connection, CAU_CLOSE_FULL, CAU_NO_PLACE); // says it all
+		// the close frame has the reason, so there is no answer
+		cau_connection_close(peer->connection, CAU_CLOSE_FULL, CAU_NO_PLACE);
 		return;
 	}
 	cau_asker *asker = &peer->client.asker;

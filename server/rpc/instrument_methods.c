@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profiles of instruments.
+// The methods about profiles of instruments.
 #include <stdio.h>
 #include <string.h>
 
@@ -43,7 +43,7 @@ static void describe(const cau_instrument *from, cau_wire_instrument *to,
 
 void cau_call_instrument_list(cau_call *call)
 {
-	static cau_wire_instrument list[MOST_INSTRUMENTS]; // the network thread's alone
+	static cau_wire_instrument list[MOST_INSTRUMENTS]; // used by the network thread only
 	static cau_wire_instrument_mode modes[MOST_INSTRUMENTS][CAU_MAX_MODES];
 	cau_error error = {0};
 	cau_wire_instrument_list result = {.instruments = {list, 0, MOST_INSTRUMENTS}};

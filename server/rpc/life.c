@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When a peer gave its newest sign of life.
+// The time of a peer's newest sign of life.
 #include "rpc/internal.h"
 
 double cau_peer_alive_s(const cau_peer *peer)
@@ -8,8 +8,8 @@ double cau_peer_alive_s(const cau_peer *peer)
 	                          : cau_connection_sent_after_s(peer->connection, cau_monotonic_s());
 }
 
-// A clock of a heartbeat that may have waited for long cannot be the first: nothing shows how long
-// it did.
+// Notes the peer's clock. A heartbeat that may have waited for a long time is not used as the first
+// one, because nothing shows how long it waited.
 void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us)
 {
 	double now_s = cau_monotonic_s();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What workers and the store's thread have for connections waits here for the network thread
+// Messages from workers and the store thread to connections. They wait here for the network thread
 // (delivery.c).
 #include <stdlib.h>
 #include <string.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// /metrics: what the daemon counts. Every session's numbers are taken before the first is written,
-// since a family's samples stand together and sessions come and go meanwhile.
+// Writes /metrics. The numbers of all sessions are read before any is written, because the samples
+// of a family must be together, and sessions may be created or destroyed meanwhile.
 #include <stdlib.h>
 #include <string.h>
 
 #include "rpc/internal.h"
 
-// ---- sessions
+// ---- the metrics of sessions
 
-// What is told of each session: name, type, unit, help, and the value from its counts `c` and its
+// The metrics of each session: name, type, unit, help, and the value from its counts `c` and its
 // summary `s`.
 #define SESSION_METRICS(X)                                                                         \
 	X("session_steps", COUNTER, "", "Steps computed", c->steps)                                    \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What /metrics tells of the daemon as a whole: network, store, times, process, disk.
+// The part of /metrics about the whole daemon: network, store, times, process, disk.
 #include <dirent.h>
 #include <malloc.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ typedef struct exposition {
 	cau_metrics_format format;
 } exposition;
 
-// A family of one sample.
+// Writes a family that has one sample.
 static void single(const exposition *to, const char *name, cau_metric_type type, const char *unit,
                    const char *help, double value)
 {
@@ -64,10 +64,11 @@ static void write_network(cau_service *service, const exposition *to)
 	        (double)service->errors);
 }
 
-// The store's buckets are quarter octaves; whole octaves are told.
+// Writes the durations of commits. The store counts in quarter octaves; the metrics have whole
+// octaves.
 static void write_commits(const exposition *to, const cau_store_metrics *m)
 {
-	enum { OCTAVES = 20, QUARTERS = 4 }; // from 10 us to 10 s
+	enum { OCTAVES = 20, QUARTERS = 4 }; // OCTAVES: from 10 us to 10 s
 	static const cau_metric_family family = {"store_commit_seconds", CAU_METRIC_HISTOGRAM,
 	                                         "seconds", "Time of a commit, with its sync"};
 	double bounds[OCTAVES + 1];
@@ -115,7 +116,7 @@ static void write_store(cau_service *service, const exposition *to)
 	write_commits(to, &m);
 }
 
-// ---- the disk that the store is on
+// ---- the store's disk
 static void write_disk(const cau_service *service, const exposition *to)
 {
 	struct statvfs disk;
@@ -127,7 +128,7 @@ static void write_disk(const cau_service *service, const exposition *to)
 	      (double)disk.f_blocks * (double)disk.f_frsize);
 }
 
-// The second number of statm; 0 if it cannot be read.
+// Returns the second number of /proc/self/statm, the resident pages; 0 if the file cannot be read.
 static long resident_pages(void)
 {
 	char line[128] = "", *resident = line;
@@ -140,7 +141,8 @@ static long resident_pages(void)
 	return strtol(resident, NULL, 10);
 }
 
-// Bytes of live allocations, in all arenas and in maps of their own; 0 under sanitizers.
+// Returns the bytes of live allocations, in all arenas and in mappings of their own; 0 under
+// sanitizers.
 static double heap_bytes(void)
 {
 	struct mallinfo2 heap = mallinfo2();
@@ -149,7 +151,7 @@ static double heap_bytes(void)
 
 static double open_files(void)
 {
-	double count = -1; // the folder that is read is open too
+	double count = -1; // starts at -1, because the folder that is read is open too
 	DIR *folder = opendir("/proc/self/fd");
 	if (!folder)
 		return 0;
@@ -159,7 +161,8 @@ static double open_files(void)
 	return count;
 }
 
-// When the process began, Unix time: of field 22 of its line in /proc, clock ticks since the boot.
+// Returns the start of the process in Unix time, from field 22 of /proc/self/stat: clock ticks
+// since the boot.
 static double start_time_s(void)
 {
 	char line[1024] = "";
@@ -179,7 +182,7 @@ static double start_time_s(void)
 
 static void write_process(const exposition *to)
 {
-	static double started_s; // the first answer's: the clock may be set later
+	static double started_s; // computed once, because the clock may be set later
 	struct rusage usage;
 	struct rlimit files;
 	getrusage(RUSAGE_SELF, &usage);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// move.*: what a courier asks of the daemon that a session leaves, and of that which it comes to.
+// The move.* methods: what a courier asks of the source daemon and of the target daemon.
 #include <stdlib.h>
 #include <string.h>
 
 #include "rpc/internal.h"
 
-// They go past what a token is for: one that is for some sessions only moves none.
+// Submits a request of a courier. A move needs a token for all sessions; a token for some sessions
+// is refused.
 static void submit(cau_call *call, cau_move_asked *asked)
 {
 	cau_error error = {0};
@@ -125,7 +126,7 @@ void cau_call_move_forget(cau_call *call)
 		           params.has_release ? params.release : "");
 }
 
-// The upload's bytes go with the request; the connection has it no more.
+// Passes the upload's bytes on with the request. The connection loses the upload.
 void cau_call_move_receive(cau_call *call)
 {
 	cau_error error = {0};

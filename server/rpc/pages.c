@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// /healthz, /readyz, /api/sessions, /api/fleet; /metrics is in metrics.c.
+// The pages /healthz, /readyz, /api/sessions, /api/fleet; /metrics is in metrics.c.
 #include <stdio.h>
 #include <string.h>
 
@@ -76,7 +76,8 @@ void cau_service_page(void *user, cau_page *page)
 		page->content_type = cau_metrics_content_type(format);
 		status = cau_service_metrics(service, format, out);
 	} else if (strcmp(page->path, "/api/fleet") == 0) {
-		fputs("{\"labels\": []}\n", out); // a proxy in front of several answers this itself
+		// with several daemons, the proxy in front of them answers this page
+		fputs("{\"labels\": []}\n", out);
 	} else {
 		status = write_sessions(service, out);
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers that the network thread gives itself.
+// Answers that the network thread makes by itself.
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,8 +31,8 @@ void cau_peer_malformed(cau_peer *peer)
 		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
 }
 
-// A notification is never answered, so the log has the reason: one line a connection, after its
-// hello.
+// Logs the reason for a refused notification, because it is never answered. Each connection has at
+// most one such line, after its hello.
 static void log_refused(cau_peer *peer, cau_method method, const cau_rpc_fault *fault)
 {
 	if (!peer->greeted || peer->refusal_logged)
@@ -157,7 +157,7 @@ bool cau_call_may_make(const cau_call *call, const char *name)
 	return false;
 }
 
-// That which the message means, or the connection.
+// Returns the session that the message names, or else the connection's.
 static const char *named_session(const cau_call *call)
 {
 	return call->envelope.has_session ? call->envelope.session : call->peer->session;
@@ -241,7 +241,7 @@ void cau_call_submit(const cau_call *call, cau_order *order)
 	cau_status status = cau_hosted_submit(hosted, order, &error);
 	if (status == CAU_NOT_FOUND &&
 	    cau_hub_moved(call->peer->service->hub, named_session(call), &to)) {
-		free(order); // just now
+		free(order); // the session was there a moment ago, when the order was made
 		fail_moved(call, &to);
 	} else if (status) {
 		free(order);

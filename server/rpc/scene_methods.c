@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes: their answers are made once for each edition, so that many who ask cost the network's
-// thread little.
+// The methods about scenes. Their answers are made once for each edition, so that many requests
+// cost the network thread little.
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static void add_summary(void *user, const cau_scene_def *scene)
 
 void cau_call_scene_list(cau_call *call)
 {
-	static listing all; // the network thread's alone
+	static listing all; // used by the network thread only
 	all.count = 0;
 	cau_scenes_each(cau_hub_scenes(call->peer->service->hub), add_summary, &all);
 	cau_wire_scene_list result = {.scenes = {all.list, all.count, MOST_SCENES}};
@@ -38,7 +38,7 @@ struct cau_scene_answer {
 	cau_buffer *text;
 };
 
-// A scene whose text is not made, for want of memory, is not there.
+// Makes the answer of one scene. If memory runs out, the scene is missing from the answers.
 static void add_answer(void *user, const cau_scene_def *scene)
 {
 	const cau_rpc_id id = {.kind = CAU_RPC_ID_NUMBER};
@@ -73,7 +73,7 @@ void cau_scene_answers_free(cau_service *service)
 	service->scene_count = 0;
 }
 
-// NULL: there is no such scene.
+// Returns the answer of the scene with this name; NULL if there is none.
 static cau_buffer *find_answer(cau_service *service, const char *name)
 {
 	bool old = service->scene_edition != cau_scenes_edition(cau_hub_scenes(service->hub));

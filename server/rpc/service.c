@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From messages to handlers: role, state and form are checked here, once.
+// Passes messages to their handlers. Role, state and form are checked here, once for all.
 #include "rpc/service.h"
 
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static cau_call_handler *const handlers[CAU_METHOD_COUNT] = {
 #include "cautery/methods.def"
 };
 
-enum { TICKS_TO_CHECK = 10 }; // tokens: about a second
+enum { TICKS_TO_CHECK = 10 }; // ticks between two checks of tokens: about a second
 
 // ---- messages
 static void refuse(const cau_call *call, cau_status status, int32_t code, const char *reason)
@@ -27,8 +27,9 @@ static void refuse(const cau_call *call, cau_status status, int32_t code, const 
 	cau_call_fail(call, &error, code);
 }
 
-// Who trains on sessions of its own, or in lock-step, begins again and again: that is the work it
-// came for, and it waits for each answer.
+// True if the request starts the client's own session again (reset, restore, rewind, fork). A
+// client that trains in its own sessions, or in lock-step, does this again and again and waits for
+// each answer, so it is not limited.
 static bool begins_own_again(const cau_call *call)
 {
 	cau_method method = call->message->method;
@@ -45,7 +46,7 @@ static bool begins_own_again(const cau_call *call)
 	return own;
 }
 
-// Requests that cost much are for those who have some of their allowances left.
+// True if the peer's allowances pay for the call. Expensive requests reduce them.
 static bool afford(const cau_call *call)
 {
 	cau_peer *peer = call->peer;
@@ -68,7 +69,7 @@ static bool afford(const cau_call *call)
 	return false;
 }
 
-// Whether the call may go on; answers it if not.
+// True if the call is allowed now. If not, answers it.
 static bool admit(cau_call *call)
 {
 	const cau_peer *peer = call->peer;
@@ -91,7 +92,7 @@ static bool admit(cau_call *call)
 	return false;
 }
 
-// Before hello no version is agreed on, so which methods there are is not said.
+// Before hello no version is agreed on, so no answer says which methods exist.
 static const cau_rpc_fault hello_comes_first = {.code = CAU_RPC_HELLO_REQUIRED,
                                                 .status = "hello_required",
                                                 .reason = "the first message must be hello"};
@@ -179,8 +180,9 @@ static void want_frames(cau_service *service)
 			cau_connection_want_frame(c);
 }
 
-// Energy goes off at once, not when the peer has read the close frame. Its tools are kept for it as
-// after any lost connection: who gets a new token may come back to them.
+// Closes a connection whose token was revoked. Energy goes off at once, not only when the peer has
+// read the close frame. Its tools are kept as after any lost connection: a client with a new token
+// may resume them.
 static void revoke(cau_service *service, cau_peer *peer, const char *reason)
 {
 	cau_hub_detach(service->hub, peer->client.asker.client, peer->connection->id);
@@ -232,13 +234,13 @@ static void on_tick(void *user)
 	cau_service *service = user;
 	double now_s = cau_monotonic_s();
 	if (service->ticks++ % TICKS_TO_CHECK == 0)
-		check_tokens(service); // some may have expired
+		check_tokens(service); // some tokens may have expired
 	for (cau_connection *c = cau_network_first(service->network); c; c = c->next)
 		cau_peer_watch_slowness(cau_peer_of(c), now_s);
 	want_frames(service);
 }
 
-// ---- life
+// ---- creating and destroying
 cau_status cau_service_create(cau_service **made, const cau_service_def *def, cau_error *error)
 {
 	cau_service *service = calloc(1, sizeof *service);

@@ -4,10 +4,11 @@
 
 #include "rpc/internal.h"
 
-enum { TIMELINE_COUNT = 1024 }; // events of an answer that asks for no number of them
+enum { TIMELINE_COUNT = 1024 }; // events in an answer if the request gives no count
 
 // ---- session.list
-// Sessions may come while they are listed, so that no count before would do.
+// Makes space for one more item. Sessions may be created during the listing, so a count taken
+// before would not be enough.
 static bool make_room(cau_wire_list *list)
 {
 	enum { FIRST_PLACES = 16 };
@@ -41,7 +42,7 @@ static int by_id(const void *a, const void *b)
 	              ((const cau_wire_session_summary *)b)->session);
 }
 
-// What the connection's token is not for is not shown to it.
+// Removes the sessions for which the connection's token is not valid.
 static void keep_allowed(const cau_peer *peer, cau_wire_list *list)
 {
 	cau_wire_session_summary *summary = list->items;
@@ -124,7 +125,8 @@ void cau_call_session_create(cau_call *call)
 	bool full = health.state != CAU_STORE_READY && !(creation && creation->ephemeral);
 	if (!status && full)
 		status = cau_fail(&error, CAU_IO, "", "%s", health.reason);
-	bool allowed = status || cau_call_may_make(call, creation->name); // else it is answered
+	// if not allowed, the call is already answered
+	bool allowed = status || cau_call_may_make(call, creation->name);
 	if (!status && allowed) {
 		cau_hub_submit_creation(call->peer->service->hub, creation);
 		return;
@@ -138,14 +140,15 @@ void cau_call_session_create(cau_call *call)
 	free(creation);
 }
 
-// ---- everything that is one order of the session
+// ---- methods that are one order of the session
 static void submit(const cau_call *call, cau_order *order)
 {
 	if (order)
 		cau_call_submit(call, order);
 }
 
-// A method whose params are `session` and perhaps `client_sequence`, which the envelope has.
+// Submits an order whose params are `session` and perhaps `client_sequence`; both are in the
+// envelope.
 static void submit_plain(const cau_call *call, cau_order_kind kind)
 {
 	union {

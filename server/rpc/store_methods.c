@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// store.backup: what an administrator asks of the daemon's store.
+// store.backup, a method for administrators.
 #include "rpc/internal.h"
 
 void cau_call_store_backup(cau_call *call)
@@ -7,7 +7,8 @@ void cau_call_store_backup(cau_call *call)
 	cau_error error = {0};
 	cau_wire_store_backup params = {0};
 	cau_reply reply = cau_call_reply(call);
-	if (*call->peer->bounds.sessions) { // the store holds all of them
+	// the store contains all sessions, so the token must be for all
+	if (*call->peer->bounds.sessions) {
 		cau_call_may_use(call, "");
 		return;
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Streams of a connection: joining, what to send next, and what becomes of a slow reader.
+// Streams of a connection: joining, choosing the next frame, and handling a slow reader.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,12 +48,12 @@ void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream)
 	if (slot)
 		close_subscription(slot);
 	else
-		slot = find(peer, NULL); // there is room
+		slot = find(peer, NULL); // a slot is free
 	*slot = (cau_subscription){hosted, {.stream = stream, .key_asked_s = -INFINITY}};
 	cau_connection_want_frame(peer->connection);
 }
 
-// The subscription that a call means, or NULL after answering why not.
+// Returns the subscription to the call's session. On failure answers the call and returns NULL.
 static cau_subscription *subscription_of(cau_call *call)
 {
 	cau_error error = {0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue commands, and who drives a tool.
+// The methods for tissue commands and for the driver of a tool.
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,7 +40,7 @@ void cau_call_tool_request_takeover(cau_call *call)
 	submit_about_tool(call, CAU_ORDER_REQUEST_TAKEOVER);
 }
 
-// The client that is to have the tool; without one in the params nobody is.
+// Sets the client that gets the tool. Without a client in the params, the tool becomes free.
 static cau_status choose_next(const cau_call *call, const cau_wire_tool_hand_over *params,
                               cau_order *order, cau_error *error)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files in chunks: uploads in, exports out.
+// Files in chunks: uploads from clients and exports to clients.
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,8 +27,8 @@ void cau_call_upload_begin(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-// There is no request that this would answer, so the id is null; like other messages that are none,
-// too many of them close the connection.
+// Refuses a chunk before hello. The answer's id is null, because a chunk has no request id. Like
+// other malformed messages, too many of them close the connection.
 static void refuse_before_hello(cau_peer *peer)
 {
 	cau_rpc_fault fault;
@@ -51,18 +51,18 @@ void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count)
 		return;
 	}
 	cau_upload *upload = cau_uploads_find_transfer(&peer->uploads, chunk.transfer);
-	if (upload) // else of one that was discarded or replaced on the way
+	if (upload) // if not found, the upload was discarded or replaced meanwhile
 		cau_upload_take(upload, chunk.offset, chunk.data, chunk.byte_count);
 }
 
-// What a mesh of source bytes says in `file`: the upload's name with the file's ending.
+// Makes the name for `file` of a mesh of source bytes: the upload's name with the file's extension.
 static void name_upload(const cau_upload *upload, char *name, size_t bytes)
 {
 	const char *ending = strrchr(upload->file_name, '.');
 	snprintf(name, bytes, "%s%.16s", upload->name, ending ? ending : "");
 }
 
-// What fails its check is gone; the client begins anew.
+// Ends an upload. If it fails its check, it is dropped, and the client must begin again.
 static cau_status end(cau_peer *peer, const cau_wire_upload_end *params, cau_upload **ended,
                       cau_error *error)
 {
@@ -96,7 +96,8 @@ void cau_call_upload_end(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-// Readings of a connection that are under way or wait: each may take a builder's thread for long.
+// Counts the connection's readings that run or wait, because each may take a builder thread for a
+// long time.
 static int readings_of(const cau_uploads *uploads, const cau_upload *but)
 {
 	int count = 0;
@@ -156,7 +157,8 @@ static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params,
 		cau_filling_release(asked.filling);
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a mesh");
 	}
-	memcpy(asked.bytes, upload->bytes, upload->byte_count); // the upload may be discarded meanwhile
+	// a copy, because the upload may be discarded meanwhile
+	memcpy(asked.bytes, upload->bytes, upload->byte_count);
 	asked.byte_count = upload->byte_count;
 	cau_upload_refill(upload, cau_filling_share(asked.filling));
 	return cau_mesh_ask(peer->service->builder, &asked, &reply, error);
@@ -209,13 +211,13 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 			                "no upload of this connection is named `%.48s`", name);
 		mesh->bytes = upload->bytes;
 		mesh->byte_count = upload->byte_count;
-		if (upload->filling) // the solid inside, once it is there
+		if (upload->filling) // the solid inside, once it is ready
 			cau_filling_solid(upload->filling, &mesh->bytes, &mesh->byte_count);
 	}
 	return CAU_OK;
 }
 
-// ---- out
+// ---- exports to clients
 bool cau_peer_has_room_for_file(const cau_peer *peer)
 {
 	int under_way = peer->files_asked;

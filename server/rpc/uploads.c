@@ -27,8 +27,9 @@ cau_upload *cau_uploads_find_transfer(cau_uploads *uploads, uint32_t transfer)
 	return upload;
 }
 
-// ---- room
-// Whether `wanted` bytes more have room; `freed` is what the one that is replaced gives back.
+// ---- limits
+// Checks that `byte_count` more bytes are within the limits. `freed` is what a replaced upload
+// gives back.
 static cau_status check_room(const cau_uploads *uploads, const cau_upload_total *total,
                              const cau_config *config, int64_t byte_count, int64_t freed,
                              cau_error *error)
@@ -132,7 +133,7 @@ void cau_upload_take(cau_upload *upload, uint64_t offset, const void *data, size
 	if (!upload->bytes)
 		return;
 	if (upload->complete)
-		return; // upload.end has been answered: what it stands for does not change any more
+		return; // upload.end has been answered, so the upload does not change any more
 	if (offset != upload->received)
 		spoil(upload, "a chunk came out of order");
 	else if (bytes > upload->byte_count - upload->received)

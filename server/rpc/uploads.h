@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files that a connection has sent, and those that are coming in. They are kept until they are
-// discarded, replaced by another of the same name, or the connection ends. What bounds them is
-// bytes: of one file, of a connection, and of all connections together.
+// The files that a connection has uploaded or is uploading. A file stays until it is discarded,
+// replaced by another of the same name, or the connection ends. The limits are bytes: of one file,
+// of a connection, and of all connections together.
 #pragma once
 
 #include <stdbool.h>
@@ -12,7 +12,7 @@
 #include "config/config.h"
 #include "fill/fill.h"
 
-// What an upload counts for at least, so that countless small ones are bounded too.
+// Least bytes that an upload counts for, so that the number of small ones is limited too.
 enum { CAU_UPLOAD_LEAST_BYTES = 65536 };
 
 typedef struct cau_upload {
@@ -20,39 +20,39 @@ typedef struct cau_upload {
 	uint32_t transfer;
 	char name[CAU_NAME_BYTES];
 	char file_name[129];
-	unsigned char *bytes; // NULL once it is spoilt
+	unsigned char *bytes; // NULL once an error has spoilt the upload
 	size_t byte_count, received;
 	bool complete;
-	cau_filling *filling; // of the last mesh.read that may fill it; NULL: none
-	char trouble[160];    // what spoilt it; told by upload.end
+	cau_filling *filling; // from the last mesh.read that may fill the mesh; NULL: none
+	char trouble[160];    // why the upload is spoilt; upload.end reports it
 } cau_upload;
 
-// Of all connections together; the network thread's alone.
+// Sums over all connections; used by the network thread only.
 typedef struct cau_upload_total {
-	int64_t bytes; // announced, each at least CAU_UPLOAD_LEAST_BYTES
+	int64_t bytes; // announced bytes; each upload counts at least CAU_UPLOAD_LEAST_BYTES
 } cau_upload_total;
 
 typedef struct cau_uploads {
 	cau_upload *first;
-	int64_t bytes; // as in the total
+	int64_t bytes; // sum for this connection, counted as in cau_upload_total
 	uint32_t last_transfer;
 } cau_uploads;
 
-// Makes room for a file. One of the same name, whole or not, is dropped if this one is taken.
+// Begins an upload. If it is accepted, an upload of the same name, complete or not, is dropped.
 // CAU_LIMIT names the limit and its setting.
 cau_status cau_uploads_begin(cau_uploads *uploads, cau_upload_total *total,
                              const cau_config *config, const cau_wire_upload_begin *wanted,
                              cau_upload **made, cau_error *error);
-// NULL if there is none.
+// Return the upload with this name or transfer; NULL if there is none.
 cau_upload *cau_uploads_find(cau_uploads *uploads, const char *name);
 cau_upload *cau_uploads_find_transfer(cau_uploads *uploads, uint32_t transfer);
 
-// Puts a chunk's bytes in their place; what does not fit spoils the upload.
+// Stores a chunk's bytes. A chunk that does not follow the received bytes spoils the upload.
 void cau_upload_take(cau_upload *upload, uint64_t offset, const void *data, size_t bytes);
-// Whether all has come and has this hash; tells why not.
+// Checks that all bytes have come and have this hash. *error says what is wrong.
 cau_status cau_upload_check(const cau_upload *upload, const char *sha256, cau_error *error);
 
-// Another filling (taken; NULL: none) in the place of the one before, which is cancelled.
+// Sets the upload's filling, taking `filling` (NULL: none). The one before is cancelled.
 void cau_upload_refill(cau_upload *upload, cau_filling *filling);
 void cau_uploads_drop(cau_uploads *uploads, cau_upload_total *total, cau_upload *upload);
 void cau_uploads_drop_all(cau_uploads *uploads, cau_upload_total *total);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Uploaded meshes travel with a session through the store as one block: for each mesh of source
-// bytes, in the scene's order, a u64 length and the bytes.
+// Packs uploaded meshes into one block, which the store keeps with the session. For each mesh of
+// source bytes, in the scene's order, the block has a u64 length and the bytes.
 #include <stdlib.h>
 #include <string.h>
 

@@ -12,7 +12,7 @@
 
 enum { MOST_SCENES = 256, PATH_BYTES = 1024 };
 
-// What was read at once.
+// The scenes of one reading of the folder.
 typedef struct edition {
 	int32_t count;
 	cau_scene_def *scenes[MOST_SCENES];
@@ -20,11 +20,11 @@ typedef struct edition {
 
 struct cau_scenes {
 	char folder[PATH_BYTES];
-	uint64_t stamp; // of the folder when it was read last; one thread's alone
+	uint64_t stamp; // stamp of the folder at the last reading; used by one thread only
 
-	pthread_mutex_t mutex; // guards what follows
+	pthread_mutex_t mutex; // guards the members below
 	edition *now;
-	uint64_t number; // of the edition
+	uint64_t number; // number of the present edition
 };
 
 static int is_scene(const struct dirent *entry)
@@ -92,7 +92,7 @@ static cau_status read_all(const char *folder, struct dirent **entries, int coun
 	return status;
 }
 
-// A hash (FNV-1a) of what changes when a file is replaced.
+// Adds bytes to a hash (FNV-1a) of what changes when a file is replaced.
 static uint64_t hash(uint64_t sum, const void *bytes, size_t count)
 {
 	for (const unsigned char *b = bytes; count; b++, count--)
@@ -124,8 +124,8 @@ static void free_entries(struct dirent **entries, int count)
 	free(entries);
 }
 
-// Reads the folder if its stamp differs from *stamp, and sets *stamp. If it is equal, *made stays
-// NULL.
+// Reads the folder if its stamp differs from *stamp, and updates *stamp. If the stamp is the same,
+// *made is NULL.
 static cau_status read_folder(const char *folder, uint64_t *stamp, edition **made, cau_error *error)
 {
 	struct dirent **entries = NULL;

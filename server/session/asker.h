@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who asks a session for something: a connection's client, or a DDS writer.
+// The client that sends a request to a session: a client of a connection, or a DDS writer.
 #pragma once
 
 #include <stdint.h>
@@ -7,9 +7,9 @@
 #include "cautery/message_choices.h"
 
 typedef struct cau_asker {
-	uint32_t client; // the number in frames; 0: nobody
+	uint32_t client; // number of the client, as in frames; 0: no client
 	char name[65];
 	char client_id[65];
 	cau_role role;
-	double deadline_s; // silence after which its energy is cut
+	double deadline_s; // energy is cut off after this silence
 } cau_asker;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who drives which tool, and when it is dark.
+// Decides which client drives which tool, and when a tool's energy is on.
 //
-// A tool is lit by one thing, an enable of its driver that counts, and dark by everything else.
-// Every cut notes its moment in the tool. An enable counts if it came in after that; so one that
-// waited in the queue while its driver fell silent, looked away or was taken over never lights
-// anything. What the core was told (`lit`) follows what is decided (`enabled`): while they differ
-// the worker's next act is the cut.
+// Only an enable of the driver that counts turns a tool's energy on. Every other change turns it
+// off. Each energy cut-off notes its moment in the tool, and an enable counts only if it came
+// later. So an enable that waited in the queue has no effect if its driver meanwhile fell silent,
+// hid the page, or lost the tool. `enabled` is the decision and `lit` is what the core does. If a
+// tool is lit but not enabled, the worker's next act is the cut-off.
 #include <math.h>
 #include <stdio.h>
 
@@ -31,7 +31,7 @@ const cau_drive *cau_logic_drive(const cau_logic *logic, const char *tool)
 	return NULL;
 }
 
-// ---- cuts ---------------------------------------------------------------------------------------
+// ---- energy cut-off -----------------------------------------------------------------------------
 
 static uint64_t newest(uint64_t a, uint64_t b)
 {
@@ -46,7 +46,8 @@ static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_eff
 	snprintf(drive->cut_cause, sizeof drive->cut_cause, "%s", cause);
 	if (drive->lit)
 		cau_effect_wake(effects);
-	// Whoever turns energy off still holds the tool; whoever loses it does not.
+	// A client that turns energy off still drives the tool, so the tool need not stop. In all other
+	// cases the tool stops where it is.
 	if (drive->lit && energy_off != CAU_ENERGY_OFF_COMMANDED)
 		drive->freeze = true;
 	if (!drive->enabled)
@@ -72,7 +73,7 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 void cau_drive_end_lockstep(cau_logic *logic)
 {
 	if (logic->lockstep)
-		logic->steps_left = 0; // what asked for them is answered next
+		logic->steps_left = 0; // the order that asked for ticks is answered next
 	logic->lockstep = 0;
 }
 
@@ -85,12 +86,14 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
 		cau_drive_cut(&logic->drives[i], moment, energy_off, cause, effects);
 }
 
-// A tool whose driver is lost stays where it is, lit or not. What its driver asked for and waits is
-// cut in the queue; what another asked for who drives it next still counts.
+// Turns off the energy of a tool whose driver is lost, and stops the tool where it is. Waiting
+// orders of the lost driver are made void in the queue. Orders of other clients for the next driver
+// still count.
 static void cut_lost(cau_drive *drive, const char *cause, cau_effects *effects)
 {
 	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
-	drive->freeze = drive->frozen = true; // said at once, as the darkness is; the core is told next
+	// reported at once, as is energy off; the core follows in the next act
+	drive->freeze = drive->frozen = true;
 	cau_effect_wake(effects);
 }
 
@@ -115,8 +118,8 @@ static bool is_in_lockstep(const cau_logic *logic, const cau_drive *drive)
 	return logic->lockstep && drive->driver.client == logic->lockstep;
 }
 
-// The client of lock-step is silent once a tick is to begin that is as many after its advance as
-// its deadline has. While it asks for no tick none begins, however long it thinks.
+// True if the next tick would exceed the deadline of the client in lock-step, counted in ticks
+// since its advance. While the client asks for no tick, none begins, however long it waits.
 static bool has_overrun(const cau_logic *logic, const cau_drive *drive)
 {
 	double most = fmax(floor(drive->driver.deadline_s / logic->step_s * (1 + 1e-9)), 1);
@@ -136,11 +139,12 @@ void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 		cau_drive *drive = &logic->drives[i];
 		if (cau_drive_is_silent(logic, drive, now_s))
 			cut_lost(drive, "the driver sent no heartbeat in time",
-			         effects); // the silence cut of the watchdog
+			         effects); // the watchdog's cut-off for silence
 	}
 }
 
-// An enable that came in since and waits still counts: the limit was of the one before.
+// Turns energy off where the limit of an enable is reached. A newer enable that still waits counts,
+// because the limit belongs to the earlier enable.
 void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {
@@ -184,7 +188,7 @@ void cau_drive_alive(cau_logic *logic, uint32_t client, const char *tool, double
 	}
 }
 
-// ---- what the core is told ----------------------------------------------------------------------
+// ---- acts for the core --------------------------------------------------------------------------
 
 static bool is_to_cut(const cau_drive *drive, bool forced)
 {
@@ -208,7 +212,7 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 		*action = (cau_action){
 			.act = CAU_ACT_CUT, .was_lit = drive->lit && !drive->enabled, .drive = *drive};
 		memcpy(logic->cutting, drive->tool, sizeof logic->cutting);
-		drive->freeze = false; // one asked for meanwhile is another
+		drive->freeze = false; // a request that comes during the act is a new one
 		CAU_RULE(action->act == CAU_ACT_CUT, "tool %s is cut by act %d", drive->tool,
 		         (int)action->act);
 		return true;
@@ -227,11 +231,11 @@ void cau_drive_cut_done(cau_logic *logic, cau_effects *effects)
 	drive->lit = false;
 	if (drive->energy_off == drive->cut_off)
 		return;
-	drive->energy_off = drive->cut_off; // it was cut before its enable had arrived in the core
+	drive->energy_off = drive->cut_off; // energy was cut off before the core had the enable
 	cau_effect_tell(effects, drive);
 }
 
-// The order that was to tell the core will not: the worker does.
+// Lets the worker turn the core's energy off, because the order that should do so will not.
 void cau_drive_cut_itself(cau_logic *logic, const char *tool)
 {
 	cau_drive *drive = cau_drive_find(logic, tool);
@@ -239,7 +243,7 @@ void cau_drive_cut_itself(cau_logic *logic, const char *tool)
 		drive->by_order = false;
 }
 
-// ---- who may ------------------------------------------------------------------------------------
+// ---- permissions --------------------------------------------------------------------------------
 
 static bool refuse(cau_action *action, cau_status status, int32_t code, const char *reason)
 {
@@ -259,7 +263,7 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
 }
 
-// Whether nothing that came in after the order darkens what it lights.
+// True if no cut-off after the order makes its enable void.
 static bool counts(const cau_drive *drive, const cau_waiting *order)
 {
 	return !order->cut_moment && order->moment > drive->cut_moment;
@@ -274,8 +278,8 @@ static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const 
 		snprintf(reason, sizeof reason, "the store is full: %.120s", logic->store_reason);
 		return refuse(action, CAU_IO, CAU_RPC_STORE_FULL, reason);
 	}
-	// One that is followed by its own off is taken, so that both are answered and logged in order;
-	// it enables nothing, and the off follows it into the core before a tick begins.
+	// An enable that is followed by the driver's own off is accepted, so that both are answered and
+	// logged in order. It enables nothing, and the off reaches the core before a tick begins.
 	bool advances = order->asked.ask == CAU_ASK_ADVANCE;
 	bool off_follows = drive->by_order && !order->cut_moment && !advances;
 	if (!counts(drive, order) && !off_follows) {
@@ -283,7 +287,7 @@ static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const 
 		         *drive->cut_cause ? drive->cut_cause : "the driver had left");
 		return refuse(action, CAU_BAD_STATE, 0, reason);
 	}
-	// In lock-step no time counts but that of ticks, and an advance is the beginning of that.
+	// In lock-step only ticks count as time, and an advance starts their count.
 	bool by_ticks = advances || is_in_lockstep(logic, drive);
 	if (!by_ticks && alive_s + drive->driver.deadline_s <= logic->now_s)
 		return refuse(action, CAU_BAD_STATE, 0,
@@ -302,7 +306,8 @@ static bool allows_take_over(const cau_drive *drive, const cau_asked *asked, cau
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, reason);
 }
 
-// A tool of this name is there, or there are as many as can be: the core would not take it.
+// Refuses a tool if its name exists, or if the session has the most tools already. The core would
+// not take it.
 bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action)
 {
 	char reason[160];
@@ -344,7 +349,7 @@ bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *ac
 	case CAU_ASK_HAND_OVER:
 		return drives || refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER,
 		                        "only the driver of a tool can hand it over");
-	default: // off, and questions: anybody who may operate
+	default: // energy off and requests to the driver: any client with the role operate
 		return true;
 	}
 }
@@ -391,7 +396,7 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	CAU_RULE(!drive->lit && !drive->enabled, "tool %s changes its driver while its energy is on",
 	         drive->tool);
 	drive->driver = *to;
-	// Who is handed a tool has given no sign of life for it yet.
+	// A client that is handed a tool has given no sign of life for this tool yet.
 	drive->alive_s = to->client == order->asked.asker.client ? order->alive_s : 0;
 	cau_effect_tell(effects, drive);
 	return true;
@@ -406,7 +411,7 @@ void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *or
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
 	bool drives = drive->driver.client == order->asked.asker.client;
 	if (!drives || !counts(drive, order))
-		return; // cut while the core took it: the cut is the worker's next act
+		return; // energy was cut off while the core took the enable; the cut-off is the next act
 	drive->limit_tick = limit ? logic->tick + limit : 0;
 	if (drive->enabled)
 		return;
@@ -416,13 +421,13 @@ void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *or
 	cau_effect_armed(effects);
 }
 
-// A tool that is added is a new one, whatever its name. What was asked for before it was, or before
-// all went dark or it was itself turned off, does not light it.
+// Adds the drive of a new tool, whatever its name. Enables are void if they came before the tool
+// was added, before all energy was cut off, or before the tool was turned off.
 void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 {
 	CAU_RULE(order->asked.tool[0] != 0, "a tool without a name, by order %llu",
 	         (unsigned long long)order->asked.ticket);
-	CAU_RULE_INDEX(logic->drive_count, CAU_MAX_TOOLS); // cau_drive_may_be_added
+	CAU_RULE_INDEX(logic->drive_count, CAU_MAX_TOOLS); // checked in cau_drive_may_be_added
 	cau_drive *made = &logic->drives[logic->drive_count++];
 	*made = (cau_drive){.alive_s = order->alive_s,
 	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
@@ -445,8 +450,8 @@ void cau_drive_remove(cau_logic *logic, const char *tool)
 	CAU_RULE(logic->drive_count >= 0, "%d tools", logic->drive_count);
 }
 
-// One entry for each tool that is there; drivers stay with tools of the same name. All are dark,
-// and what the state that was gone to has lit is cut before its first tick.
+// Makes one drive for each tool of the new state. Drivers keep tools of the same name. All energy
+// is off. A tool that is energized in the new state is cut off before its first tick.
 void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
 {
 	cau_drive old[CAU_MAX_TOOLS];

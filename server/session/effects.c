@@ -4,7 +4,8 @@
 
 cau_effect *cau_effect_add(cau_effects *effects, cau_effect_kind kind, uint64_t ticket)
 {
-	CAU_RULE_INDEX(effects->count, CAU_EFFECTS_MOST); // see there for why it has room
+	// see CAU_EFFECTS_MOST for why this capacity suffices
+	CAU_RULE_INDEX(effects->count, CAU_EFFECTS_MOST);
 	cau_effect *made = &effects->list[effects->count++];
 	made->kind = kind;
 	made->ticket = ticket;
@@ -12,7 +13,8 @@ cau_effect *cau_effect_add(cau_effects *effects, cau_effect_kind kind, uint64_t 
 	return made;
 }
 
-// Once for each event is enough: a later telling of the same tool takes the place of the earlier.
+// Reports a tool at most once for each event. A later report of the same tool replaces the earlier
+// one.
 void cau_effect_tell(cau_effects *effects, const cau_drive *drive)
 {
 	CAU_RULE(drive->tool[0] != 0, "a tool without a name, among %d effects", effects->count);

@@ -3,7 +3,7 @@
 
 #include "cautery/assert.h"
 
-// ---- leaving ------------------------------------------------------------------------------------
+// ---- the source ---------------------------------------------------------------------------------
 
 static cau_leaving_act go(cau_leaving *leaving, cau_leaving_state state, cau_leaving_act act)
 {
@@ -17,8 +17,9 @@ static cau_leaving_act go_on(cau_leaving *leaving)
 	return go(leaving, CAU_LEAVING_NOT, CAU_LEAVING_DO_GO_ON);
 }
 
-// What the disk refused may be there after a crash, until another commit has taken its place; a
-// cancel of it, or one that comes while the disk has it, is heeded then.
+// Cancels the move. A tombstone that the disk refused may appear after a crash, until another
+// commit succeeds. So a cancel then, or while the disk writes the tombstone, takes effect after
+// such a commit.
 static cau_leaving_act cancel(cau_leaving *leaving)
 {
 	switch (leaving->state) {
@@ -64,7 +65,8 @@ static cau_leaving_act refused(cau_leaving *leaving)
 	return cancelled ? cancel(leaving) : CAU_LEAVING_NOTHING;
 }
 
-// Where there is doubt it stays, and is asked again later; else there is nothing to clear.
+// The store did not accept the batch. A doubt from an earlier write remains, and the courier asks
+// again later. Without a doubt there is nothing to clear.
 static cau_leaving_act unsent(cau_leaving *leaving)
 {
 	bool cancelled = leaving->cancelled && !leaving->doubtful;
@@ -80,8 +82,8 @@ static cau_leaving_act commit(cau_leaving *leaving)
 	return leaving->state == CAU_LEAVING_GONE ? CAU_LEAVING_SHOW : CAU_LEAVING_REFUSE;
 }
 
-// A courier asks about a move that is not the one that is known here. It never will be: its proof
-// was in memory alone and is forgotten.
+// Answers a courier about a move that is not known here. Such a move will never happen: its proof
+// was only in memory and is lost.
 static cau_leaving_act of_another(const cau_leaving *leaving, cau_leaving_event event)
 {
 	(void)leaving;
@@ -135,7 +137,7 @@ cau_leaving cau_leaving_after_restart(bool tombstone)
 	return (cau_leaving){.state = tombstone ? CAU_LEAVING_GONE : CAU_LEAVING_NOT};
 }
 
-// ---- coming -------------------------------------------------------------------------------------
+// ---- the target ---------------------------------------------------------------------------------
 
 static cau_coming_act become(cau_coming *coming, cau_coming_state state, cau_coming_act act)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session's decisions, one event after the other, and the worker's acts, one at a time.
+// Takes the session's events one after the other, and gives the worker one act at a time.
 #include "session/logic.h"
 
 #include <math.h>
@@ -18,7 +18,8 @@ size_t cau_logic_bytes(int32_t capacity)
 void cau_logic_init(cau_logic *logic, int32_t capacity)
 {
 	CAU_ASSERT(capacity > 0, "a queue of %d", capacity);
-	memset(logic, 0, sizeof *logic); // padding too: two that are equal compare equal
+	// clears padding too, so that equal machines are equal byte by byte
+	memset(logic, 0, sizeof *logic);
 	logic->capacity = capacity;
 	logic->state = CAU_SESSION_STARTING;
 	logic->speed = 1;
@@ -39,7 +40,7 @@ static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effec
 	logic->store_takes = event->store_takes;
 	snprintf(logic->store_reason, sizeof logic->store_reason, "%s",
 	         event->cause ? event->cause : "");
-	if (!event->store_takes) // nobody could steer what burns
+	if (!event->store_takes) // without the store, no client could control the energy
 		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the store is full",
 		                  effects);
 }
@@ -49,7 +50,7 @@ static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_eff
 	CAU_RULE(event->step_s > 0, "arrived with ticks of %g s", event->step_s);
 	cau_drive_match(logic, event);
 	logic->state = event->state;
-	logic->broken[0] = 0; // whoever goes elsewhere has a sound session again
+	logic->broken[0] = 0; // the new state is sound again
 	logic->tick = event->tick;
 	logic->step_s = event->step_s;
 	logic->next_step_s = event->time_s;
@@ -60,7 +61,8 @@ static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_eff
 	cau_effect_wake(effects);
 }
 
-// It goes on where it is, dark. The time that it stood still is given up, not caught up.
+// Continues the session at its present tick, with energy off. The time of the suspension is not
+// caught up.
 static void take_stay(cau_logic *logic, double time_s, cau_effects *effects)
 {
 	logic->going = false;
@@ -68,9 +70,9 @@ static void take_stay(cau_logic *logic, double time_s, cau_effects *effects)
 	cau_effect_wake(effects);
 }
 
-// Also before every sign of life: one that is read after the deadline does not undo the silence,
-// however late the watchdog is. After a stop of the whole process the signs that waited in sockets
-// may be read before the watchdog runs.
+// Cuts off the energy of silent drivers. This also comes before every sign of life: a sign that is
+// read after the deadline does not undo the silence, however late the watchdog is. After a stop of
+// the whole process, signs that waited in sockets may be read before the watchdog runs.
 static void cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 {
 	cau_queue_cut_silent(logic, now_s);
@@ -89,7 +91,8 @@ static void take(cau_logic *logic, const cau_logic_event *event, cau_effects *ef
 	switch (event->kind) {
 	case CAU_LOGIC_ORDER:
 		cut_silent(logic, event->time_s, effects);
-		// Any message about a tool is a sign of life, and an advance is one for all tools.
+		// Any message about a tool is a sign of life for this tool, and an advance is one for all
+		// tools.
 		if (*event->asked->tool || event->asked->ask == CAU_ASK_ADVANCE)
 			take_life(logic, event->asked->asker.client, event->asked->tool,
 			          cau_order_alive_s(event->asked, event->time_s));
@@ -102,7 +105,7 @@ static void take(cau_logic *logic, const cau_logic_event *event, cau_effects *ef
 	case CAU_LOGIC_AWAY:
 		cau_drive_cut_client(logic, event->client, cause, effects);
 		cau_queue_cut(logic, event->client);
-		cau_effect_wake(effects); // what is void now is to be refused
+		cau_effect_wake(effects); // the worker refuses the orders that are void now
 		break;
 	case CAU_LOGIC_FORGET:
 		cau_drive_forget(logic, event->client, effects);
@@ -160,7 +163,7 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 	cau_rule_leave(&guard);
 }
 
-// ---- what the worker does now -------------------------------------------------------------------
+// ---- the worker's next act ----------------------------------------------------------------------
 
 static bool refuse(cau_action *action, cau_status status, int32_t code, const char *path,
                    const char *reason)
@@ -183,7 +186,8 @@ static bool is_about_tool(cau_ask ask)
 	return ask >= CAU_ASK_TOOL_KEEP && ask <= CAU_ASK_REQUEST_TAKEOVER;
 }
 
-// Energy goes first, by its own act; the order stays where it is until the tools are dark.
+// Pauses the session. Energy is cut off first, by a separate act. The order stays in the queue
+// until all energy is off.
 static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action,
                   cau_effects *effects)
 {
@@ -197,8 +201,8 @@ static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action
 	return true;
 }
 
-// One that was asked for at this tick has not darkened the tool yet, whatever lit it since; any
-// other did when it came.
+// Turns the tool's energy off. An off for this tick has not done so yet, whatever enabled the tool
+// since. Any other off did so on arrival.
 static void turn_off(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
@@ -221,15 +225,17 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 		return refuse(action, CAU_BAD_STATE, 0, "", "the client that sent this request is gone");
 	action->changed = drive->driver.client != to.client;
 	const cau_drive before = *drive;
+	// The cut-off comes first: the tool's `lit` is set, so cau_drive_next_cut finds one.
 	if (action->changed && !cau_drive_change(drive, order, &to, effects))
-		return !cau_drive_next_cut(logic, true, action); // false: there is a cut, see its `lit`
+		return !cau_drive_next_cut(logic, true, action);
 	if (action->changed)
 		cau_queue_change_hands(logic, &before, order->moment);
 	action->drive = *drive;
 	return true;
 }
 
-// A tool whose energy is on is cut before it is removed: the core removes it in its next tick.
+// Removes a tool. If its energy is on, a cut-off comes first, because the core removes the tool
+// only in its next tick.
 static bool remove_tool(cau_logic *logic, const cau_waiting *order, cau_action *action,
                         cau_effects *effects)
 {
@@ -242,7 +248,7 @@ static bool remove_tool(cau_logic *logic, const cau_waiting *order, cau_action *
 	return !cau_drive_next_cut(logic, true, action);
 }
 
-// What waited and was overtaken. An enable's refusal says what cut it (drive.c).
+// Refuses an order that has become void. For an enable, drive.c gives the reason.
 static bool refuse_void(const cau_waiting *order, cau_action *action)
 {
 	static const char *const causes[] = {
@@ -255,8 +261,8 @@ static bool refuse_void(const cau_waiting *order, cau_action *action)
 	return refuse(action, CAU_BAD_STATE, 0, "", causes[order->void_cause]);
 }
 
-// Fills the action with what is to be done about the order. True: the order itself, which is served
-// now. False: something that comes before it, or its refusal.
+// Fills the action for an order. Returns true if the order itself is served now. Returns false if
+// another act comes first, or if the order is refused.
 static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *action,
                    cau_effects *effects)
 {
@@ -272,7 +278,7 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 		action->act = CAU_ACT_LOOK;
 		return false;
 	}
-	// Whoever is silent by now does not begin to count ticks instead.
+	// A client that is silent by now must not start to count ticks instead.
 	if (asked->ask == CAU_ASK_ADVANCE && !logic->lockstep)
 		cut_silent(logic, logic->now_s, effects);
 	if (order->cut_moment &&
@@ -321,7 +327,7 @@ static void serve(cau_logic *logic, cau_waiting *order)
 	cau_queue_remove(logic, order);
 }
 
-// One order of this border. False: there is none.
+// Fills the action for one order of this border. Returns false if there is none.
 static bool next_order(cau_logic *logic, cau_action *action, cau_effects *effects)
 {
 	cau_waiting *order = cau_queue_head(logic);
@@ -332,7 +338,7 @@ static bool next_order(cau_logic *logic, cau_action *action, cau_effects *effect
 	if (decide(logic, order, action, effects) || action->act == CAU_ACT_REFUSE)
 		serve(logic, order);
 	else if (action->act == CAU_ACT_LOOK)
-		logic->serving = *order; // it stays in the queue meanwhile
+		logic->serving = *order; // the order stays in the queue meanwhile
 	return true;
 }
 
@@ -345,7 +351,7 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 	if (cau_drive_next_cut(logic, true, action))
 		return true;
 	const cau_waiting *waits = cau_queue_find_ask(logic, CAU_ASK_PAUSE);
-	if (waits) { // it came while this border was served: no tick begins after it
+	if (waits) { // the pause came during this border: no tick begins after it
 		logic->border_moment = waits->moment;
 		return next_order(logic, action, effects);
 	}
@@ -357,13 +363,13 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 	return true;
 }
 
-// An order to pause that found no room and was answered when it came.
+// Fills the action for an order to pause that came while the queue was full and was answered then.
 static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects *effects)
 {
 	const cau_waiting wanted = {.moment = logic->pause_moment};
 	if (!logic->pause_moment)
 		return false;
-	// What came before it comes first: an older order to resume must not undo it.
+	// Earlier orders come first, because an older order to resume must not undo the pause.
 	if (logic->border_moment < logic->pause_moment)
 		logic->border_moment = logic->pause_moment;
 	const cau_waiting *head = cau_queue_head(logic);
@@ -375,7 +381,7 @@ static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects 
 	return true;
 }
 
-// The order of these lines is the rule: cuts before orders, orders before the tick.
+// The order of these lines is a rule: cut-offs before orders, orders before the tick.
 static bool next_act(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
 {
 	if (logic->ended)
@@ -418,7 +424,7 @@ void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effe
 	cau_rule_leave(&guard);
 }
 
-// ---- what came of it ----------------------------------------------------------------------------
+// ---- the outcome of an act ----------------------------------------------------------------------
 
 static void looked(cau_logic *logic, cau_outcome_kind outcome)
 {
@@ -433,7 +439,7 @@ static void looked(cau_logic *logic, cau_outcome_kind outcome)
 		cau_queue_remove(logic, order);
 }
 
-// Energy that the order turns off was cut when the order arrived.
+// Notes an advance that the core has accepted. Energy that it turns off was cut off on its arrival.
 static void advance(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	for (int32_t i = 0; i < order->asked.part_count; i++) {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Orders that wait for a tick border, in the order in which they came.
 //
-// What comes in is refused here for want of room alone (queue, store, the session's end). Energy
-// off and pause never are: there is a place for off in each tool and for pause in the session.
-// Signs of life, looking away and departures concern what waits as well as what is.
+// An order is refused on arrival only if there is no capacity for it (queue, store, the session's
+// end). Energy off and pause are never refused: each tool can note an off, and the session can note
+// a pause. Signs of life, a hidden page and departures affect waiting orders as well as the present
+// state.
 //
-// Every command for a later tick waits here, none in the core: it must not act if its asker or its
-// tool is lost before. These have room of their own, and a client no more than its share of it, so
-// that nobody keeps out what is to act now, or another's commands for later.
+// Every command for a later tick waits here, and none in the core: the command must not act if its
+// asker or its tool is lost before. These commands have a capacity of their own, and each client a
+// share of it. So no client can block orders for now, or another client's commands for later.
 #include <math.h>
 #include <stdio.h>
 
@@ -23,7 +24,7 @@ static bool is_for_later(const cau_logic *logic, const cau_asked *asked)
 	return asked->tick > logic->tick && !logic->ended;
 }
 
-// What is void waits no more, but for its refusal.
+// True if the order waits for a later tick. A void order waits only for its refusal.
 static bool waits_for_later(const cau_logic *logic, const cau_waiting *order)
 {
 	return is_for_later(logic, &order->asked) && !order->cut_moment;
@@ -103,7 +104,7 @@ int32_t cau_logic_waiting(const cau_logic *logic)
 	return logic->count;
 }
 
-// Motion of a running session waits for the border that comes anyway.
+// True if an order is due now. Motion in a running session waits for the border that comes anyway.
 bool cau_queue_is_due(const cau_logic *logic)
 {
 	bool running = logic->state == CAU_SESSION_RUNNING;
@@ -115,7 +116,7 @@ bool cau_queue_is_due(const cau_logic *logic)
 	return false;
 }
 
-// ---- what concerns those that wait --------------------------------------------------------------
+// ---- events that affect waiting orders ----------------------------------------------------------
 
 static void bring_to_life(cau_waiting *order, uint32_t client, const char *tool, double time_s)
 {
@@ -136,7 +137,7 @@ void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double
 	bring_to_life(&logic->serving, client, tool, time_s);
 }
 
-// The first cause is told; the moment is the newest.
+// Makes an order void. The first cause is the one that is reported; the moment is the newest.
 static void make_void(cau_logic *logic, cau_waiting *order, cau_void_cause cause)
 {
 	CAU_RULE(cause != CAU_VOIDED_NOT, "order %llu is void for no cause",
@@ -146,8 +147,9 @@ static void make_void(cau_logic *logic, cau_waiting *order, cau_void_cause cause
 		order->void_cause = cause;
 }
 
-// Whether it goes with its asker's hold on its tool: what uses the tool, and all that is for later.
-// Anybody's off stays; one of the driver itself was the end of its own use.
+// True if the order becomes void when its asker loses its tool. Such orders use the tool, or are
+// for a later tick. An off of any client stays valid, except an off for a later tick by the driver
+// itself: it was the end of the driver's own use.
 static bool is_of_hold(cau_logic *logic, const cau_waiting *order)
 {
 	const cau_asked *asked = &order->asked;
@@ -183,7 +185,8 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 	cut_order(logic, &logic->serving, client);
 }
 
-// An advance goes with the hold on any tool, and another order with that on its own.
+// Makes the order void if its asker is silent. An advance depends on all tools that its asker
+// drives, another order only on its own tool.
 static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {
@@ -235,7 +238,7 @@ void cau_queue_cancel(cau_logic *logic, uint32_t client, uint64_t number, cau_ef
 	}
 }
 
-// A sign of life that comes after the silence does not bring back what was asked for before it.
+// Makes orders of silent drivers void. A sign of life after the silence does not restore them.
 void cau_queue_cut_silent(cau_logic *logic, double now_s)
 {
 	for (int32_t i = 0; i < logic->count; i++)
@@ -243,7 +246,7 @@ void cau_queue_cut_silent(cau_logic *logic, double now_s)
 	cut_silent(logic, &logic->serving, now_s);
 }
 
-// A pause is not undone by what was asked for before it, and was held up.
+// Marks older resume orders that were held up, so that they do not undo the pause.
 void cau_queue_overtake(cau_logic *logic, uint64_t moment)
 {
 	for (int32_t i = 0; i < logic->count; i++)
@@ -266,7 +269,7 @@ void cau_queue_forget(cau_logic *logic, uint32_t client)
 	forget_order(logic, &logic->serving, client);
 }
 
-// Whether it is an advance that enables the tool.
+// True if the order is an advance that enables the tool.
 static bool turns_on(const cau_asked *asked, const char *tool)
 {
 	for (int32_t i = 0; i < asked->part_count; i++)
@@ -289,7 +292,8 @@ void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
 	}
 }
 
-// A tool that is still to be added is dark for whoever asked to light it before.
+// Notes an off for a tool that is still to be added. Enables from before this moment then have no
+// effect.
 static void cut_coming(cau_logic *logic, cau_waiting *order, const char *tool)
 {
 	if (order->asked.ask == CAU_ASK_TOOL_ADD && strcmp(order->asked.tool, tool) == 0)
@@ -305,9 +309,9 @@ void cau_queue_committed(cau_logic *logic, cau_effects *effects)
 		}
 }
 
-// ---- coming in ----------------------------------------------------------------------------------
+// ---- arrival ------------------------------------------------------------------------------------
 
-// Orders that wait for a later tick, of one client or (0) of all.
+// Counts the orders that wait for a later tick, of one client or (0) of all.
 static int32_t count_later(const cau_logic *logic, uint32_t client)
 {
 	int32_t count = 0;
@@ -333,7 +337,7 @@ static cau_status no_room_for_later(const cau_logic *logic, uint32_t client, cau
 	return CAU_OK;
 }
 
-// Why there is no room for it; CAU_OK: there is.
+// Returns why there is no capacity for the order; CAU_OK if there is.
 static cau_status no_room(const cau_logic *logic, const cau_asked *asked, int32_t *code,
                           cau_error *error)
 {
@@ -361,7 +365,7 @@ static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error
 	effect->code = code;
 }
 
-// Energy is off from this moment on, whatever becomes of the order itself.
+// Turns the energy off from this moment on, whatever happens to the order.
 static void turn_off(cau_logic *logic, const cau_asked *asked, const char *tool, bool queued,
                      cau_effects *effects)
 {
@@ -381,7 +385,8 @@ static void turn_off(cau_logic *logic, const cau_asked *asked, const char *tool,
 	cut_coming(logic, &logic->serving, tool);
 }
 
-// The worker itself cuts what an advance turns off, before it serves the advance.
+// Turns off the energy of the tools that an advance turns off. The worker carries out these
+// cut-offs before it serves the advance.
 static void turn_parts_off(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
 	for (int32_t i = 0; i < asked->part_count; i++)
@@ -389,7 +394,7 @@ static void turn_parts_off(cau_logic *logic, const cau_asked *asked, cau_effects
 			turn_off(logic, asked, asked->parts[i].tool, false, effects);
 }
 
-// True if it needs no place in the queue: it was done, or its place is elsewhere.
+// Takes an order that needs no entry in the queue. Returns false if the order needs one.
 static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
 	CAU_RULE(logic->moment > 0, "an order before the first event, of ticket %llu",
@@ -403,8 +408,9 @@ static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effe
 	return true;
 }
 
-// The newest order that bears upon the tool, if that is motion of the same driver: then nothing
-// stands between the two, and the newer pose counts.
+// Returns the order that the new motion replaces, or NULL. It is the newest order that affects the
+// tool, if this is a motion of the same driver. Nothing then lies between the two motions, and the
+// newer pose counts.
 static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 {
 	CAU_RULE(asked->ask == CAU_ASK_MOTION, "order %d takes the place of motion", (int)asked->ask);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds between two calls, and what becomes of a session where it does not.
+// Checks the conditions that hold between two calls, and handles a broken one.
 //
-// A broken rule is a mistake of this program, and nobody knows how far it went. So the session is
-// faulted, alone. Its tools are cut by the ordinary acts, as after numerical trouble. Orders that
-// wait are refused one by one. What is broken once more while the worker asks for its next act is
-// given up with all that waits, or the worker would ask for ever.
+// A broken rule is a mistake of this program, and its extent is unknown. So this session alone is
+// faulted. The energy of its tools is cut off by ordinary acts, as after numerical trouble. Waiting
+// orders are refused one by one. If a rule breaks again while the worker asks for its next act, all
+// waiting orders are dropped. Otherwise the worker would ask forever.
 #include <stdio.h>
 
 #include "cautery/assert.h"
@@ -19,8 +19,7 @@ void cau_logic_fault(cau_logic *logic, const char *reason, cau_effects *effects)
 	                  effects);
 }
 
-// A tool that is enabled is lit; one that is being looked at, cut or stepped is so by the worker
-// alone.
+// Checks one tool. An enabled tool is also lit, and has a driver.
 static void expect_sound_drive(const cau_logic *logic, const cau_drive *drive)
 {
 	CAU_RULE(drive->tool[0] != 0, "a tool of %d has no name", logic->drive_count);
@@ -57,10 +56,10 @@ void cau_logic_expect_sound(const cau_logic *logic)
 		         "order %d came in before the one ahead of it", i);
 }
 
-// ---- after a broken rule
-// --------------------------------------------------------------------------
+// ---- after a broken rule ------------------------------------------------------------------------
 
-// Off, and to be cut whatever the machine believed: the core is the one that heats.
+// Turns the tool's energy off and requests a cut-off, whatever the state says: the core is the part
+// that heats.
 static void take_energy_off(cau_logic *logic, cau_drive *drive)
 {
 	drive->tool[sizeof drive->tool - 1] = 0;
@@ -121,7 +120,8 @@ static bool waits(const cau_logic *logic, uint64_t ticket)
 	return false;
 }
 
-// An order that came in, or was taken out to be served, as the rule broke. Its asker waits.
+// Refuses an order that arrived, or was taken out of the queue, when the rule broke. Its client
+// waits for an answer.
 static void refuse_lost(cau_logic *logic, uint64_t ticket, cau_effects *effects)
 {
 	if (!ticket || waits(logic, ticket))

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When a tick begins: by the clock while the session runs, by session.step or session.advance while
-// it is paused.
+// Decides when a tick begins: by the clock while the session runs, by session.step or
+// session.advance while it is paused.
 //
-// session.advance makes a paused session one in lock-step, of the client that asks. While that
-// lasts only its advances make ticks. So its silence is counted in ticks (drive.c), and nothing can
-// burn while it computes. Whatever turns off all energy ends lock-step, and so do the loss of its
-// client and, energy off first, session.step and session.resume. The ticks that were asked for and
-// not made are given up then: no tick begins with the energy of a client that waits no longer.
+// session.advance puts a paused session in lock-step with the client that asks. During lock-step
+// only this client's advances make ticks. So its silence is counted in ticks (drive.c), and no
+// energy is delivered while the client computes. Lock-step ends when all energy is turned off, or
+// when its client is lost. session.step and session.resume also end it, after turning energy off.
+// Ticks that were asked for but not computed are then dropped: no tick begins with the energy of a
+// client that no longer waits.
 #include <math.h>
 
 #include "cautery/assert.h"
 #include "session/internal.h"
 
-#define BEHIND_MOST_S 0.25 // more than this behind the wall is given up, not caught up
+#define BEHIND_MOST_S 0.25 // a larger delay behind the wall clock is dropped, not caught up
 
 bool cau_time_is_due(const cau_logic *logic, double now_s)
 {
@@ -60,8 +61,8 @@ bool cau_time_end_of_steps(cau_logic *logic, cau_action *action)
 	return true;
 }
 
-// Energy goes first, by its own act, then the answer to the advance that is under way. The order
-// stays where it is meanwhile.
+// Ends lock-step before the order is served. Energy is cut off first, by a separate act. Then the
+// present advance is answered. The order stays in the queue meanwhile.
 static bool leave_lockstep(cau_logic *logic, const cau_waiting *order, cau_action *action,
                            cau_effects *effects)
 {
@@ -126,7 +127,8 @@ bool cau_time_advance(cau_logic *logic, const cau_waiting *order, cau_action *ac
 	return cau_drive_allows_parts(logic, order, action);
 }
 
-// Its client may have been lost while the core took it: then no tick is made for it.
+// Begins the ticks of an advance. If its client was lost while the core took the commands, no tick
+// is computed.
 void cau_time_advanced(cau_logic *logic, const cau_waiting *order)
 {
 	CAU_RULE(!logic->stepping && !logic->steps_left && order->asked.ticks >= 0,
@@ -154,7 +156,7 @@ void cau_time_speed(cau_logic *logic, double speed, double now_s)
 
 double cau_time_due_s(const cau_logic *logic)
 {
-	if (logic->stepping) // being stepped, or to be answered for it
+	if (logic->stepping) // its ticks are being computed, or its answer is due
 		return 0;
 	return logic->state == CAU_SESSION_RUNNING ? logic->next_step_s : INFINITY;
 }

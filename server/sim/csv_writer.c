@@ -5,11 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-// All but the last columns, the stages' times, depend on scene and commands alone: two runs have
-// the same bytes there.
+// All columns but the last, the stages' times, depend only on the scene and the commands: two runs
+// write the same bytes there.
 
-// column, format, value of `row`, of its `frame`, `balance` and `ledger`, and of `s`, the
-// statistics
+// Columns: name, format, value. `frame`, `balance` and `ledger` are members of `row`; `s` is the
+// statistics.
 #define COLUMNS(X)                                                                                 \
 	X("tick", PRIu64, frame->tick)                                                                 \
 	X("time_s", ".9g", frame->time_s)                                                              \
@@ -51,7 +51,7 @@
 	X("vaporised_m3", ".9g", row->vaporised_m3)                                                    \
 	X("vapour_kg_s", ".9g", row->vapour_kg_s)
 
-// suffix of a tool's column, value of `tool`
+// Columns of a tool: suffix, value of `tool`.
 #define TOOL_COLUMNS(X)                                                                            \
 	X("force_x_n", tool->raw_force_n[0])                                                           \
 	X("force_y_n", tool->raw_force_n[1])                                                           \
@@ -70,7 +70,7 @@
 	X("filtered_torque_y_nm", tool->torque_nm[1])                                                  \
 	X("filtered_torque_z_nm", tool->torque_nm[2])
 
-// suffix of a vessel's column, value of `vessel`
+// Columns of a vessel: suffix, value of `vessel`.
 #define VESSEL_COLUMNS(X)                                                                          \
 	X("parted", (double)((vessel->flags & CAU_VESSEL_CUT) != 0))                                   \
 	X("sealed", (double)((vessel->flags & CAU_VESSEL_SEALED) != 0))                                \
@@ -128,7 +128,7 @@ void sim_csv_begin(FILE *file, const cau_scene_def *scene)
 	fputc('\n', file);
 }
 
-// NULL if it was removed.
+// Returns the tool's state; NULL if the tool was removed.
 static const cau_tool_state *find_tool(const cau_frame *frame, const char *name)
 {
 	for (int32_t i = 0; i < frame->tool_count; i++)

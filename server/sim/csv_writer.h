@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every tick as comma-separated values: statistics, energies, the ledger of instruments' energy,
-// what each tool that the scene has bears and gives, and last the time that each stage took.
+// Writes every tick as comma-separated values: statistics, energies, the energy ledger of the
+// instruments, forces and heat of each tool in the scene, and last the time of each stage.
 // README.md has the columns.
 #pragma once
 
@@ -8,19 +8,19 @@
 
 #include "cautery/session.h"
 
-// The columns' names; those of a tool begin with its name. `scene` is the one that the ticks are
-// of.
+// Writes the columns' names. A tool's columns begin with its name. `scene` is the scene of the
+// ticks.
 void sim_csv_begin(FILE *file, const cau_scene_def *scene);
-// One line: the values of one tick.
+// The values of one tick, for one line.
 typedef struct sim_csv_row {
 	const cau_frame *frame;
 	cau_balance balance;
 	cau_energy_ledger ledger;
-	double coagulated_m3; // cau_session_coagulated
-	double vaporised_m3;  // cau_session_vaporised
-	double vapour_kg_s;   // cau_session_vapour
+	double coagulated_m3; // from cau_session_coagulated
+	double vaporised_m3;  // from cau_session_vaporised
+	double vapour_kg_s;   // from cau_session_vapour
 } sim_csv_row;
 
-// Stage times are the machine's, and 0 unless the session has a clock. Cells of a tool that is gone
-// are empty.
+// Writes the line of one tick. Times of stages depend on the machine, and are 0 if the session has
+// no clock. Cells of a removed tool are empty.
 void sim_csv_tick(FILE *file, const cau_scene_def *scene, const sim_csv_row *row);

@@ -9,9 +9,9 @@
 #include "cautery/command_json.h"
 #include "cautery/defaults.h"
 
-static const double approach_s = 1.0; // from the first pose to above the tissue
-static const double descent_s = 0.5;  // and from there to it, and back up at the end
-static const double hover_m = 0.02;   // above the tissue, along the shaft
+static const double approach_s = 1.0; // time from the first pose to the point above the tissue
+static const double descent_s = 0.5;  // time from there down to the tissue, and back up at the end
+static const double hover_m = 0.02;   // height of that point above the tissue, along the shaft
 
 enum { TICKS_BETWEEN_MOVES = 3, LINE_BYTES = 1024 };
 
@@ -62,13 +62,14 @@ static void put_energy(pen *p, bool on)
 	put_command(p, &command);
 }
 
-// Five decimals (a hundredth of a millimetre) keep the lines short.
+// Rounds to five decimals (a hundredth of a millimetre), to keep the lines short.
 static double rounded(double value)
 {
 	return nearbyint(value * 1e5) / 1e5;
 }
 
-// The pose at `share` of the way, rotations by normalised interpolation along the shorter arc.
+// Writes a move to the pose at `share` of the way. Rotations are interpolated along the shorter arc
+// and normalised.
 static void put_pose(pen *p, const cau_pose *from, const cau_pose *to, double share)
 {
 	cau_command command;
@@ -90,7 +91,7 @@ static void put_pose(pen *p, const cau_pose *from, const cau_pose *to, double sh
 	put_command(p, &command);
 }
 
-// A smooth start and end, or constant speed.
+// Moves from `from` to `to`, with a smooth start and end or at constant speed.
 static void move(pen *p, const cau_pose *from, const cau_pose *to, double duration_s, bool smooth)
 {
 	uint64_t ticks = (uint64_t)ceil(duration_s / p->step_s);
@@ -106,10 +107,10 @@ static void move(pen *p, const cau_pose *from, const cau_pose *to, double durati
 	}
 }
 
-// `pose` drawn back along its shaft (the tool's z axis).
+// Returns `pose` drawn back along its shaft (the tool's z axis).
 static cau_pose above(const cau_pose *pose)
 {
-	const double *q = pose->rotation; // w, x, y, z
+	const double *q = pose->rotation; // a quaternion: w, x, y, z
 	cau_pose raised = *pose;
 	raised.position_m[0] += hover_m * 2.0 * (q[1] * q[3] + q[0] * q[2]);
 	raised.position_m[1] += hover_m * 2.0 * (q[2] * q[3] - q[0] * q[1]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cut that a scene describes, as a script.
+// Makes a script of the cut that a scene describes.
 #pragma once
 
 #include <stddef.h>
@@ -7,8 +7,8 @@
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
-// The tool comes from its first pose to above the tissue, is energized, goes down to where the cut
-// begins, dwells, is drawn to the cut's end, energy off, and is lifted. Commands as JSON, one a
-// line; the caller frees *text. Errors: CAU_BAD_VALUE (no cut, or of a tool that the scene lacks),
-// CAU_NO_MEMORY.
+// Makes the script. The tool comes from its first pose to a point above the tissue. Its energy goes
+// on, and it goes down to the start of the cut and dwells. It is drawn to the cut's end, energy
+// goes off, and it is lifted. The script has one JSON command on each line; the caller frees *text.
+// Errors: CAU_BAD_VALUE (the scene has no cut, or not the cut's tool), CAU_NO_MEMORY.
 cau_status sim_cut_script(const cau_scene_def *scene, char **text, size_t *bytes, cau_error *error);

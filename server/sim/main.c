@@ -11,7 +11,7 @@
 
 enum { SCRIPT_MAX_BYTES = 1 << 28 };
 
-// The script's text: a file's, the scene's own cut, or none. The caller frees *text.
+// Gets the script's text: from a file, from the scene's own cut, or none. The caller frees *text.
 static cau_status get_script(const sim_options *options, const cau_scene_def *scene, char **text,
                              size_t *bytes, cau_error *error)
 {

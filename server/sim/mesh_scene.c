@@ -8,20 +8,20 @@
 #include "cautery/mesh_scene.h"
 #include "cautery/session.h"
 
-// What a scene around a mesh must know of it.
+// The measures of a tissue that the scene's motions need.
 typedef struct extent {
-	double least[3], most[3]; // m
-	double from_z, to_z;      // m, height of the surface at the ends of the cut
+	double least[3], most[3]; // bounding box, m
+	double from_z, to_z;      // height of the surface at both ends of the cut, m
 } extent;
 
-static const double cut_share = 0.3; // of the longer extent, to each side of the middle
+static const double cut_share = 0.3; // half length of the cut, as a share of the longer extent
 
 static int longer_axis(const extent *e)
 {
 	return e->most[1] - e->least[1] > e->most[0] - e->least[0] ? 1 : 0;
 }
 
-// The end of the cut on the given side, in the plane; z is left alone.
+// Sets x and y of the cut's end on the given side; z stays.
 static void cut_end(const extent *e, double side, double point[3])
 {
 	int axis = longer_axis(e);
@@ -42,8 +42,8 @@ static void measure_box(const cau_session_info *info, extent *e)
 	}
 }
 
-// Height of the highest vertex within 5 % of the extent of the point; of the box where there is
-// none.
+// Returns the height of the highest vertex whose distance from the point is within 5 % of the
+// extent. If there is none, returns the height of the box.
 static double surface_height(const cau_session_info *info, const extent *e, const double point[3])
 {
 	double reach = 0.05 * hypot(e->most[0] - e->least[0], e->most[1] - e->least[1]);
@@ -66,7 +66,8 @@ static void add_motions(const extent *e, cau_scene_def *scene)
 	cut->from_m[2] = e->from_z;
 	cut->to_m[2] = e->to_z;
 
-	// Three seconds inside the ball suffice for the default ignition temperatures.
+	// At this speed the ball is over each point for three seconds, which is enough for the default
+	// ignition temperatures.
 	cau_tool_def *ball = &scene->tools[0];
 	memcpy(ball->pose.position_m, cut->from_m, sizeof cut->from_m);
 	ball->pose.position_m[2] = e->most[2] + 0.05;
@@ -101,7 +102,7 @@ static cau_status probe(const cau_scene_def *scene, extent *e, cau_error *error)
 	return CAU_OK;
 }
 
-// The words of the wire in `text` as those of the options.
+// Replaces names of the wire protocol in `text` by names of the options.
 static void use_own_words(char *text, size_t bytes)
 {
 	static const char *const words[][2] = {{"unit_m", "--unit-m"},
@@ -116,7 +117,8 @@ static void use_own_words(char *text, size_t bytes)
 	}
 }
 
-// The user wrote no scene that a path could point into, and knows options.
+// Rewrites an error in the words of the options. The user wrote no scene, so paths into a scene
+// mean nothing.
 static cau_status in_own_words(const char *file, cau_status status, cau_error *error)
 {
 	if (!error)

@@ -72,7 +72,8 @@ static void write_error(cau_json_writer *writer, const cau_error *error)
 	cau_json_close(writer);
 }
 
-// A line that could not be written (a file name that is not UTF-8) becomes one that says so.
+// Ends the line. If it cannot be written (a file name is not UTF-8), writes a line with that error
+// instead.
 static void end_line(cau_json_writer *writer, FILE *out)
 {
 	cau_error trouble;

@@ -17,7 +17,7 @@ typedef struct run {
 	const cau_scene_def *scene;
 	cau_session *session;
 	cau_script script;
-	cau_command next; // of the script, not submitted yet
+	cau_command next; // next command of the script, not submitted yet
 	bool script_done;
 	FILE *csv;
 	sim_vtu vtu;
@@ -47,7 +47,7 @@ static cau_status read_next(run *r)
 	return status;
 }
 
-// Reads the script once to its end: a mistake in it is better known before the run.
+// Reads the whole script once, so that a mistake in it is found before the run.
 static cau_status check_script(run *r, uint64_t *end_tick)
 {
 	cau_script whole = r->script;
@@ -63,7 +63,7 @@ static cau_status check_script(run *r, uint64_t *end_tick)
 	return CAU_OK;
 }
 
-// Submits what is due at the border before the next step.
+// Submits the commands that are due before the next step.
 static cau_status submit_due(run *r)
 {
 	while (!r->script_done && r->next.tick <= r->tick) {
@@ -139,14 +139,14 @@ static cau_status create_session(run *r, cau_session **session)
 	def.scene = r->scene;
 	def.thread_count = r->options->threads;
 	cau_status status = cau_session_create(&def, session, r->error);
-	if (status) // not of the script, which was read before
+	if (status) // the error is not in the script, which was checked before
 		snprintf(r->error->file, sizeof r->error->file, "%s", r->options->scene);
 	else if (r->options->csv)
 		cau_session_set_clock(*session, now_s);
 	return status;
 }
 
-// Goes on in a fresh session from a snapshot of this one.
+// Takes a snapshot and continues in a new session that is restored from it.
 static cau_status change_sessions(run *r)
 {
 	cau_session *fresh = NULL;
@@ -204,7 +204,7 @@ static cau_status open_outputs(run *r)
 	return status ? status : sim_vtu_write(&r->vtu, r->session, r->error);
 }
 
-// Closes what is open; keeps an earlier failure.
+// Closes the open outputs. An earlier failure is kept as the status.
 static cau_status close_outputs(run *r, cau_status status)
 {
 	cau_error late = {0};

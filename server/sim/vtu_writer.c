@@ -11,14 +11,14 @@ enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_TETRA = 10, PATH_BYTES = 1024 };
 
 typedef enum cell_kind { CELL_TETRAHEDRON, CELL_LINK, CELL_TRIANGLE } cell_kind;
 
-// The cells of one file, as the format wants them.
+// The cells of one file, in the arrays that the format needs.
 typedef struct cells {
 	int64_t count, corner_count;
-	int64_t *corner; // vertices of all cells, one after the other
-	int64_t *end;    // (count): where each cell's corners end
-	uint8_t *type;   // (count)
-	uint8_t *kind;   // (count): cell_kind
-	int32_t *layer;  // (count)
+	int64_t *corner; // vertices of all cells, one cell after the other
+	int64_t *end;    // (count): end of each cell's vertices in `corner`
+	uint8_t *type;   // (count): VTK's type of each cell
+	uint8_t *kind;   // (count): cell_kind of each cell
+	int32_t *layer;  // (count): layer of each triangle, else -1
 } cells;
 
 static cau_status fail_file(const char *path, cau_error *error)
@@ -99,7 +99,7 @@ static bool fill_cells(const cau_session *session, const cau_session_info *info,
 // ---- a file -----------------------------------------------------------------------------------
 
 typedef struct array {
-	const char *group; // opens this element before the array; NULL: the one that is open
+	const char *group; // this element is opened before the array; NULL: the open one continues
 	const char *name, *type;
 	int components;
 	const void *data;
@@ -177,13 +177,13 @@ static cau_status write_grid(const char *path, const cau_session_info *info, con
 
 // ---- tools --------------------------------------------------------------------------------------
 
-// What a file tells of tools: two points each, tip and end of the shaft.
+// The tools' part of a file. Each tool has two points: its tip and the end of its shaft.
 typedef struct tool_arrays {
-	double *position;            // m, (2 count x 3)
-	int64_t *corner, *end;       // (2 count), (count)
-	uint8_t *type, *energized;   // (count)
-	int32_t *number;             // (count)
-	double *force_n, *torque_nm; // (count x 3)
+	double *position;            // (2 count x 3): tips and ends, m
+	int64_t *corner, *end;       // corner: (2 count), end: (count), as in `cells`
+	uint8_t *type, *energized;   // (count) each
+	int32_t *number;             // (count): the tool's number in the tick
+	double *force_n, *torque_nm; // (count x 3) each
 	double *temperature_c, *energy_j;
 } tool_arrays;
 
@@ -203,7 +203,7 @@ static void finish_tools(tool_arrays *a)
 
 static bool reserve_tools(tool_arrays *a, size_t count)
 {
-	count += 1; // malloc(0) may be NULL
+	count += 1; // because malloc(0) may return NULL
 	a->position = malloc(6 * count * sizeof *a->position);
 	a->corner = malloc(2 * count * sizeof *a->corner);
 	a->end = malloc(count * sizeof *a->end);
@@ -218,7 +218,7 @@ static bool reserve_tools(tool_arrays *a, size_t count)
 	       a->force_n && a->torque_nm && a->temperature_c && a->energy_j;
 }
 
-// Tip and end of the shaft, which lies along the tool's own +z.
+// Computes the tip and the end of the shaft. The shaft is along the tool's own +z axis.
 static void place_tool(const cau_tool_state *tool, double tip[3], double end[3])
 {
 	const double *q = tool->pose.rotation, length = tool->definition.shaft_length_m;

@@ -20,8 +20,8 @@ static cau_status fail_file(cau_error *error, const char *doing)
 	return cau_fail(error, CAU_IO, NULL, "%s: %s", doing, strerror(errno));
 }
 
-// All pages in one step, in one reading transaction: those who write are not held up, since their
-// pages go to the log (WAL). Busy is only who folds the log at this moment.
+// Copies all pages in one step and one read transaction. Writers are not held up: in WAL mode their
+// pages go to the log. SQLITE_BUSY occurs only while the folder thread folds the log.
 static cau_status copy_pages(sqlite3 *from, sqlite3 *to, cau_error *error)
 {
 	sqlite3_backup *backup = sqlite3_backup_init(to, "main", from, "main");
@@ -37,7 +37,7 @@ static cau_status copy_pages(sqlite3 *from, sqlite3 *to, cau_error *error)
 	return code == SQLITE_DONE ? CAU_OK : cau_store_fault(to, code, "copying the store", error);
 }
 
-// For no other user to read.
+// Makes an empty file that only this user can read.
 static cau_status make_file(const char *made, cau_error *error)
 {
 	int descriptor = open(made, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -47,7 +47,8 @@ static cau_status make_file(const char *made, cau_error *error)
 	return CAU_OK;
 }
 
-// A copy is never the newest of its label: what was stored after it is not in it.
+// Deletes the copy's generation. A copy is never the newest store of its label, because later
+// commits of the original are not in the copy.
 static cau_status forget_generation(sqlite3 *to, cau_error *error)
 {
 	int code = sqlite3_exec(to, "DELETE FROM meta WHERE name = 'generation'", NULL, NULL, NULL);
@@ -81,7 +82,8 @@ static cau_status sync_file(const char *made, cau_error *error)
 	return status;
 }
 
-// Under its name it is whole or not at all. A link replaces nothing.
+// Links the finished copy to its name, so that the name never shows a partial copy. link() replaces
+// no existing file.
 static cau_status put_in_place(const char *made, const char *file, cau_error *error)
 {
 	if (link(made, file) == 0)

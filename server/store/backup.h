@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A copy of a store as it is at one moment, while whoever has it goes on.
+// Copies a store as of one moment, while its daemon continues to use it.
 #pragma once
 
 #include "cautery/status.h"
 
-// Copies the store at `path`, which a daemon may be writing, into `file`, where nothing is: all
-// that was committed when it began, and nothing of what came after. The copy is checked as a store
-// that is to be opened is, page by page, synced, and only then there under its name. Errors:
-// CAU_ALREADY_EXISTS, something is there; CAU_NOT_FOUND, no store; CAU_CORRUPT, the copy is not
-// whole; CAU_IO.
+// Copies the store at `path` to `file`, which must not exist. A daemon may be writing the store.
+// The copy has everything that was committed when the copy began, and nothing later. It is checked
+// page by page like a store before opening, synced, and only then linked to `file`. Errors:
+// CAU_ALREADY_EXISTS: `file` exists; CAU_NOT_FOUND: no store at `path`; CAU_CORRUPT: the copy is
+// damaged; CAU_IO.
 cau_status cau_store_backup(const char *path, const char *file, cau_error *error);

@@ -67,7 +67,7 @@ static cau_status check_blob(const char *path, cau_store_bytes blob, cau_error *
 	return CAU_OK;
 }
 
-// SQLite's integers are signed.
+// Refuses counts above 2^63 - 1, because SQLite's integers are signed.
 static cau_status check_count(const char *path, uint64_t value, cau_error *error)
 {
 	if (value > INT64_MAX)
@@ -122,7 +122,7 @@ static const char *empty_as_null(const char *text)
 	return text && text[0] ? text : NULL;
 }
 
-// Appends a record with room for `bytes` of copies; NULL if memory ran out.
+// Appends a record with `bytes` bytes for copies. Returns NULL if memory ran out.
 static struct record *append(cau_store_batch *batch, enum record_kind kind, size_t bytes,
                              cau_error *error)
 {
@@ -244,7 +244,7 @@ cau_status cau_store_put_answer(cau_store_batch *batch, const cau_store_answer *
 	return CAU_OK;
 }
 
-// Without `give_back` the snapshot is copied.
+// Appends a checkpoint. If `give_back` is NULL, the snapshot is copied.
 static cau_status append_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
                                     void (*give_back)(void *snapshot), cau_error *error)
 {

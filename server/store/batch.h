@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a batch holds: records, each one allocation with copies of all that its public struct points
-// to, but for a checkpoint's snapshot.
+// The records in a batch. Each record is one allocation with copies of everything that its public
+// struct points to, except a checkpoint's snapshot.
 #pragma once
 
 #include "store/store.h"
 
 enum record_kind {
 	RECORD_SESSION,
-	RECORD_SESSION_STATE,  // as.session: id, state
-	RECORD_SESSION_DELETE, // as.session: id
+	RECORD_SESSION_STATE,  // as.session: only id and state are set
+	RECORD_SESSION_DELETE, // as.session: only id is set
 	RECORD_COMMAND,
 	RECORD_ANSWER,
 	RECORD_CHECKPOINT,
 	RECORD_EVENT,
-	RECORD_EVENTS_FORGET, // as.event: session, branch, tick
+	RECORD_EVENTS_FORGET, // as.event: only session, branch and tick are set
 	RECORD_BRANCH,
-	RECORD_MARK, // as.gap: session, branch, from_tick
+	RECORD_MARK, // as.gap: only session, branch and from_tick are set
 	RECORD_GAP,
 	RECORD_MOVED,
 	RECORD_ARRIVAL,
-	RECORD_ARRIVAL_FORGET, // as.arrival: id
-	RECORD_ROWS,           // as.rows; what is lent
+	RECORD_ARRIVAL_FORGET, // as.arrival: only id is set
+	RECORD_ROWS,           // as.rows; the bytes are lent
 	RECORD_GENERATION,     // as.generation
 };
 
@@ -42,9 +42,9 @@ struct record {
 			cau_store_bytes piece;
 		} rows;
 		const char *generation;
-	} as; // its pointers lead into storage, or to what is lent
+	} as; // pointers lead into `storage` or to `lent`
 	void *lent;
-	void (*give_back)(void *lent); // NULL: nothing is lent
+	void (*give_back)(void *lent); // NULL if nothing is lent
 	unsigned char storage[];
 };
 
@@ -53,13 +53,14 @@ struct cau_store_batch {
 	size_t bytes;
 	uint64_t record_count;
 
-	// Set by submit and by the commit.
+	// The members from here on are set by submit and by the commit.
 	struct cau_store_batch *next;
 	cau_store_callback callback;
 	void *user;
-	double submitted_s; // monotonic
-	cau_error error;    // how its commit ended
+	double submitted_s; // monotonic time of the submission, s
+	cau_error error;    // result of the batch's commit
 };
 
-// The client's request that the record answers. False if it answers none.
+// Returns the client and sequence of the request that the record answers. Returns false if the
+// record answers no request.
 bool cau_store_record_request(const struct record *record, const char **client, uint64_t *sequence);

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <time.h>
 
-// Seconds on the monotonic clock.
+// Returns the seconds of the monotonic clock.
 static inline double cau_store_monotonic_s(void)
 {
 	struct timespec now;

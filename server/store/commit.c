@@ -12,17 +12,21 @@
 #include "retention.h"
 
 enum {
-	SPARE_BYTES = 1000000, // asked for on top of what failed, before a full store is tried again
+	// bytes to reserve beyond the failed ones before a full store tries again
+	SPARE_BYTES = 1000000,
 	FOLD_PATIENCE = 4,
-	CHORE_PAUSE_MS = 5, // between small steps of retention
-	OVERDRAWN_MS = 10,  // commits wait for so long while the budget is exceeded
-	BEYOND_SHARE = 10,  // of the budget: beyond it by so much, commits wait until it is not
+	CHORE_PAUSE_MS = 5, // pause between two small steps of retention
+	OVERDRAWN_MS = 10,  // longest wait of a commit for retention, while the budget is exceeded
+	// if usage exceeds the budget by a tenth, commits wait until it is within the budget
+	BEYOND_SHARE = 10,
 	MAX_FAILED_BYTES = 1 << 30,
-	UNSEEN_SHARE = 100, // of the budget: what may be committed between two looks at it
+	// share of the budget that may be committed between two checks of the budget
+	UNSEEN_SHARE = 100,
 };
 
 // ---- one group ------------------------------------------------------------------------
-// The batch's own fault: it alone fails. Everything else is the disk's and fails the group.
+// True if the error is the batch's own, so that this batch alone fails. Any other error is the
+// disk's and fails the whole group.
 static bool is_own_fault(cau_status status)
 {
 	return status == CAU_ALREADY_EXISTS || status == CAU_NOT_FOUND || status == CAU_LIMIT ||
@@ -38,7 +42,8 @@ static cau_status write_batch(struct cau_store_committer *committer, struct cau_
 		status = cau_store_writer_apply(&committer->writer, record, now_ms, error);
 	if (is_own_fault(status)) {
 		batch->error = *error;
-		batch->error.status = status; // whatever the record's function has filled in
+		// set again, because the record's function may have changed the error
+		batch->error.status = status;
 		committer->writer.uncounted = before;
 		status = cau_store_execute(committer->database, "ROLLBACK TO batch", "writing", error);
 	}
@@ -51,13 +56,13 @@ static void roll_back(struct cau_store_committer *committer,
                       const struct cau_store_uncounted *before)
 {
 	committer->writer.uncounted = *before;
-	// SQLite has done so itself after some failures.
+	// After some failures SQLite has already rolled back by itself.
 	if (!sqlite3_get_autocommit(committer->database))
 		sqlite3_exec(committer->database, "ROLLBACK", NULL, NULL, NULL);
 }
 
-// Writes and commits the group that was taken. Batches with a fault of their own have it in
-// batch->error.
+// Writes and commits the group in queue.committing. A batch with an error of its own has the error
+// in batch->error.
 static cau_status write_group(struct cau_store *store, cau_error *error)
 {
 	struct cau_store_committer *committer = &store->committer;
@@ -84,7 +89,8 @@ static cau_status write_group(struct cau_store *store, cau_error *error)
 	return status;
 }
 
-// Nothing can be written: fails the group and all that waits, and takes no more.
+// Blocks the store because it cannot write. Fails the group and all waiting batches, and accepts no
+// more.
 static void block(struct cau_store *store, const cau_error *error)
 {
 	struct cau_store_committer *committer = &store->committer;
@@ -114,9 +120,9 @@ static void commit_group(struct cau_store *store)
 }
 
 // ---- chores ---------------------------------------------------------------------------
-// Has the write-ahead log folded into the file once it is long, so that it starts over. Under
-// commits without a pause the folder's thread never gets to the log's end: from FOLD_PATIENCE times
-// the bound on, commits wait for a fold.
+// Asks for a fold of the write-ahead log into the file once the log is long, so that the log starts
+// over. If commits come without a pause, the folder thread never reaches the log's end. So if the
+// log is longer than FOLD_PATIENCE times the bound, commits wait for a fold.
 static void fold_log(struct cau_store *store)
 {
 	struct cau_store_committer *committer = &store->committer;
@@ -127,12 +133,12 @@ static void fold_log(struct cau_store *store)
 	cau_store_folder_ask(&store->folder);
 	if (log_bytes / FOLD_PATIENCE < store->config.wal_bytes || now_s < committer->fold_due_s)
 		return;
-	if (!cau_store_folder_wait(&store->folder)) // not repeated at once
+	if (!cau_store_folder_wait(&store->folder)) // after a failure, wait before the next attempt
 		committer->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 }
 
-// Whether commits wait for more removal. The bound of time alone would let a slow machine write
-// faster than it removes.
+// True if commits must wait for more removal. A bound on the time alone would let a slow machine
+// write faster than it removes.
 static bool must_shrink(const cau_store_config *config, const struct cau_store_budget *budget,
                         double until_s)
 {
@@ -141,8 +147,8 @@ static bool must_shrink(const cau_store_config *config, const struct cau_store_b
 	       (bytes > most && cau_store_monotonic_s() < until_s);
 }
 
-// One step; while the budget is exceeded more of them, so that removal keeps pace with what is
-// written.
+// Takes one retention step. While the budget is exceeded, takes more, so that removal keeps pace
+// with writing.
 static cau_status take_steps(struct cau_store_committer *committer, const cau_store_config *config,
                              int64_t *rows, cau_error *error)
 {
@@ -191,8 +197,8 @@ static void retire(struct cau_store *store)
 	committer->chore_due_s = cau_store_monotonic_s() + 1e-3 * pause_ms;
 }
 
-// Whether it is time to look for what may go. Much that was written is looked at sooner, so that
-// the budget is not overdrawn between two looks.
+// True if a retention step is due. After many written bytes the step is due earlier, so that the
+// budget is not exceeded between two checks.
 static bool chore_is_due(const struct cau_store_committer *committer, int64_t most, double now_s)
 {
 	return now_s >= committer->chore_due_s ||
@@ -202,13 +208,14 @@ static bool chore_is_due(const struct cau_store_committer *committer, int64_t mo
 static bool has_room(const struct cau_store *store)
 {
 	struct statvfs disk;
-	if (store->config.memory) // removal may have made room
+	if (store->config.memory) // in memory: retention may have freed memory, so try
 		return true;
 	return statvfs(store->path, &disk) == 0 &&
 	       (uint64_t)disk.f_bavail * disk.f_frsize >= store->committer.wanted_bytes;
 }
 
-// One attempt while full. A commit that failed may have left the log long: folding gives that back.
+// Tries once to write while the store is full. A failed commit may have left the log long; a fold
+// frees those bytes.
 static void try_again(struct cau_store *store)
 {
 	struct cau_store_queue *queue = &store->queue;
@@ -246,7 +253,7 @@ void *cau_store_commit_run(void *context)
 		case TURN_END:
 			return NULL;
 		}
-		// The state changes on this thread only.
+		// Only this thread changes the state, so it is read without the mutex.
 		double now_s = cau_store_monotonic_s();
 		if (store->queue.state == CAU_STORE_FULL && now_s >= store->committer.retry_due_s)
 			try_again(store);

@@ -7,12 +7,15 @@
 #include "fault.h"
 
 enum {
-	AGE_SHARE = 4,   // neighbours stand apart by at most this part of their age
-	NEWEST_KEPT = 2, // checkpoints that never go: if one cannot be restored, the one before can
+	// the gap between a checkpoint's neighbours is at most this part of the later one's age
+	AGE_SHARE = 4,
+	// newest checkpoints that are always kept: if the last cannot be restored, the one before can
+	NEWEST_KEPT = 2,
 };
 
 // ---- reading --------------------------------------------------------------------------
-// Makes room for one more element of `size` bytes in an array that is full at powers of two.
+// Returns the array with space for one more element of `size` bytes. The array is full at powers of
+// two.
 static void *grow(void *array, int count, size_t size)
 {
 	CAU_ASSERT(count >= 0 && size > 0, "%d elements of %zu bytes", count, size);
@@ -70,7 +73,8 @@ static cau_status collect(sqlite3 *database, const char *sql, int64_t session, i
 	return status;
 }
 
-// Holes after checkpoints: one that is made meanwhile is seen, and at worst hides a checkpoint.
+// Reads checkpoints first, then holes. A hole that opens in between is seen; at worst it hides a
+// checkpoint.
 cau_status cau_store_course_read(sqlite3 *database, int64_t session, int64_t branch,
                                  struct cau_store_course *course, cau_error *error)
 {
@@ -100,8 +104,9 @@ void cau_store_course_finish(struct cau_store_course *course)
 	*course = (struct cau_store_course){0};
 }
 
-// ---- what can be reached --------------------------------------------------------------
-// Where the way that begins at a checkpoint's tick ends: at the first hole that is not behind it.
+// ---- reachable ticks ------------------------------------------------------------------
+// Returns the last tick that a replay from a checkpoint at `tick` reaches: the start of the first
+// hole that does not end by that tick.
 static int64_t end_of_way(const struct cau_store_course *course, int64_t tick)
 {
 	CAU_ASSERT(tick >= 0, "the way from tick %lld", (long long)tick);
@@ -123,8 +128,9 @@ bool cau_store_course_range(const struct cau_store_course *course, int64_t after
 	return false;
 }
 
-// ---- what may go ----------------------------------------------------------------------
-// Without the checkpoint at its end, what follows a hole could not be reached.
+// ---- removable checkpoints ------------------------------------------------------------
+// True if a hole ends at `tick`. Without the checkpoint there, ticks after the hole could not be
+// reached.
 static bool ends_a_hole(const struct cau_store_course *course, int64_t tick)
 {
 	for (int i = 0; i < course->hole_count; i++)
@@ -141,7 +147,8 @@ static bool may_go(const struct cau_store_course *course, int index)
 	       !ends_a_hole(course, point->tick);
 }
 
-// How far its neighbours stand apart, and how old the later one is.
+// Returns the number of ticks between the checkpoint's two neighbours. *age: the age of the later
+// neighbour, in ticks before the newest checkpoint.
 static int64_t span_around(const struct cau_store_course *course, int index, int64_t *age)
 {
 	CAU_ASSERT(index > 0 && index < course->point_count - 1,

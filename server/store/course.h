@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of one line, from its root to the end of a branch: the ticks of its checkpoints and
-// the stretches whose log is missing. Reads tell from it what can be reached, retention what may
-// go.
+// The stored history of one line, from its root to the end of a branch: the ticks of its
+// checkpoints, and the ranges whose log is missing. Reads use it to find which ticks can be
+// reached. Retention uses it to find what it may remove.
 #pragma once
 
 #include <sqlite3.h>
@@ -10,9 +10,9 @@
 
 #include "cautery/status.h"
 
-// A line as a table of SQL, for session ?1 and branch ?2: each branch from there to the root, with
-// the tick it starts at and the one where the next starts. Of a file with branches in a circle it
-// takes the first 100,000.
+// A line as an SQL table, for session ?1 and branch ?2: each branch from ?2 to the root, with its
+// first tick and the tick where the next one starts. If a damaged file has a cycle of branches, the
+// table ends after 100,000 entries.
 #define CAU_STORE_LINE                                                                             \
 	"WITH RECURSIVE line(branch, parent, from_tick, before_tick, depth) AS ("                      \
 	" SELECT branch, parent, fork_tick, 9223372036854775807, 0 FROM branches"                      \
@@ -21,47 +21,50 @@
 	" FROM line JOIN branches AS up ON up.session = ?1 AND up.branch = line.parent"                \
 	" LIMIT 100000) "
 
-// A checkpoint of the line.
+// A checkpoint in the line.
 struct cau_store_point {
 	int64_t branch, tick, bytes;
-	bool marked; // a state that retention must keep
+	bool marked; // a marked state: retention must keep it
 };
 
-// The commands with from_tick <= tick < before_tick are missing, some or all: from within, no state
-// can be reached.
+// A range of ticks, from_tick <= tick < before_tick, in which some or all commands are missing. No
+// state within it can be reached.
 struct cau_store_hole {
 	int64_t from_tick, before_tick;
 };
 
 struct cau_store_course {
-	struct cau_store_point *point; // by tick, an ancestor's before its child's
-	struct cau_store_hole *hole;   // by from_tick
+	struct cau_store_point *point; // ordered by tick; an ancestor's before its descendant's
+	struct cau_store_hole *hole;   // ordered by from_tick
 	int point_count, hole_count;
 };
 
-// Fills a zeroed course; free it by cau_store_course_finish whatever the status.
+// Fills a zeroed course. Free it with cau_store_course_finish, whatever the status is.
 cau_status cau_store_course_read(sqlite3 *database, int64_t session, int64_t branch,
                                  struct cau_store_course *course, cau_error *error);
 void cau_store_course_finish(struct cau_store_course *course);
 
-// A stretch of ticks that can be reached, both ends among them. INT64_MAX: on to the present.
+// A range of ticks that can be reached, including both ends. to_tick is INT64_MAX if the range
+// extends to the present.
 struct cau_store_range {
 	int64_t from_tick, to_tick;
 };
 
-// The first range that ends after tick `after` (-1: the first of all). False if there is none.
+// Finds the first range that ends after tick `after` (-1: the first range of all). Returns false if
+// there is none.
 bool cau_store_course_range(const struct cau_store_course *course, int64_t after,
                             struct cau_store_range *range);
 
-// The checkpoint that thinning drops next; -1: none. One goes if its neighbours then stand no
-// further apart than `spacing` ticks, or a quarter of the way from the later one to the newest. So
-// the number of checkpoints grows with the logarithm of time, and to see what was `a` ticks ago
-// takes a replay of at most a / 4. Never goes the first, the newest two, a marked one, or the end
-// of a hole.
+// Returns the index of the checkpoint that thinning removes next; -1 if none. A checkpoint can be
+// removed if its two neighbours are at most `spacing` ticks apart, or at most a quarter of the
+// later one's age. So the number of checkpoints grows with the logarithm of time. A view of `a`
+// ticks ago needs a replay of at most a / 4 ticks. The first, the newest two, marked ones and one
+// at the end of a hole always stay.
 int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing);
 
-// The oldest that may go at all; -1: none.
+// Returns the index of the oldest checkpoint that may be removed; -1 if none may.
 int cau_store_course_oldest(const struct cau_store_course *course);
 
-// The checkpoint whose loss would lengthen replays least for its age; -1: all must stay.
+// Returns the index of the checkpoint whose removal lengthens replays least for its age; -1 if all
+// must stay.
 int cau_store_course_coarsen(const struct cau_store_course *course, int64_t spacing);

@@ -9,8 +9,9 @@
 #include "file.h"
 #include "store_state.h"
 
-// What has been written of the things that grow: the log of each branch up to a place, checkpoints
-// by their hash. In the connection's own memory; the database is only read.
+// Notes of what has been written: the last log entry of each branch, the hash of each checkpoint,
+// and the last event and answer. They are kept in memory of the connection; the database itself is
+// only read.
 static const char notes[] =
 	"PRAGMA temp_store = MEMORY;"
 	"CREATE TEMP TABLE seen_line(branch INTEGER PRIMARY KEY, tick INTEGER, position INTEGER);"
@@ -18,7 +19,7 @@ static const char notes[] =
 	" PRIMARY KEY(branch, tick)) WITHOUT ROWID;"
 	"CREATE TEMP TABLE seen(event INTEGER, answer_ms INTEGER); INSERT INTO seen VALUES(0, 0);";
 
-// ?1: the session's key, ?2: its id. At the start of either reading, and at its end.
+// Statements at the start and at the end of each reading. ?1: the session's key, ?2: its id.
 static const char *const at_start[] = {
 	"INSERT OR IGNORE INTO temp.seen_line SELECT branch, -1, -1 FROM branches WHERE session = ?1"};
 
@@ -33,8 +34,9 @@ static const char *const at_end[] = {
 	"event),"
 	" answer_ms = max(0, coalesce((SELECT max(time_ms) FROM answers), answer_ms) - 5000)"};
 
-// table, in the rest too, SQL. Answers of the five seconds before come twice, since the wall clock
-// may be set back a little meanwhile: the other store ignores what it has.
+// Columns: table, whether the second reading includes it, SQL. Answers of the last five seconds
+// before the first reading ended are sent twice, because the wall clock may be set back a little.
+// The other store ignores answers that it has.
 #define DUMP_TABLE(X)                                                                              \
 	X(SESSION, false, "SELECT state, created_ms, definition FROM sessions WHERE key = ?1")         \
 	X(MESH, false, "SELECT mesh FROM sessions WHERE key = ?1")                                     \
@@ -77,7 +79,7 @@ enum { SOURCE_COUNT = sizeof sources / sizeof *sources };
 
 struct cau_store_dump {
 	sqlite3 *database;
-	sqlite3_stmt *statement; // of sources[at]; NULL: not begun
+	sqlite3_stmt *statement; // statement of sources[at]; NULL: not begun
 	int at;
 	bool rest;
 	int64_t key;
@@ -187,7 +189,7 @@ static void put_row(sqlite3_stmt *statement, cau_rows_table table, cau_rows_writ
 	cau_rows_put(writer, &row);
 }
 
-// The source that is read now; rows of its statement until the writer is full.
+// Writes records from the present source until the writer is full or the source ends.
 static cau_status write_some(cau_store_dump *dump, cau_rows_writer *writer, size_t bytes,
                              cau_error *error)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads all that the store has of a session, for another store: first what is there while the
-// session goes on, then, once it stands still and all of it is on the disk, what has come about
-// since. A connection of its own, so that nobody else's reading waits; each of the two is one
-// reading transaction.
+// Reads all records of a session for another store, in two readings. The first reads what exists
+// while the session runs. The second reads what is new, when the session is suspended and
+// everything is on the disk. The dump has a connection of its own, so that other reads do not wait.
+// Each of the two readings is one read transaction.
 #pragma once
 
 #include "store/rows.h"
@@ -10,13 +10,13 @@
 
 typedef struct cau_store_dump cau_store_dump;
 
-// CAU_NOT_FOUND, CAU_IO, CAU_NO_MEMORY. One thread at a time may have it.
+// Opens a dump of `session`. Errors: CAU_NOT_FOUND, CAU_IO, CAU_NO_MEMORY. Only one thread at a
+// time may use a dump.
 cau_status cau_store_dump_open(cau_store *store, const char *session, cau_store_dump **dump,
                                cau_error *error);
-// Adds rows to the writer until it holds `bytes` or more. *over: all that was there has been
-// written.
+// Adds records to the writer until it holds `bytes` or more. *over: this reading is complete.
 cau_status cau_store_dump_write(cau_store_dump *dump, cau_rows_writer *writer, size_t bytes,
                                 bool *over, cau_error *error);
-// Goes on with what has come about since; after one that was over.
+// Begins the second reading, of what is new. Call it after the first reading is over.
 cau_status cau_store_dump_rest(cau_store_dump *dump, cau_error *error);
-void cau_store_dump_close(cau_store_dump *dump); // takes NULL
+void cau_store_dump_close(cau_store_dump *dump); // closes the dump; `dump` may be NULL

@@ -10,7 +10,7 @@ static cau_status status_of(int code)
 	switch (code & 0xff) {
 	case SQLITE_CORRUPT:
 	case SQLITE_NOTADB:
-	case SQLITE_ERROR: // a table or column that should be there is not
+	case SQLITE_ERROR: // an expected table or column is missing
 	case SQLITE_SCHEMA:
 		return CAU_CORRUPT;
 	case SQLITE_NOMEM:
@@ -26,7 +26,7 @@ static cau_status status_of(int code)
 
 cau_status cau_store_fault(sqlite3 *database, int code, const char *what, cau_error *error)
 {
-	// The connection may be NULL when even opening it failed.
+	// `database` may be NULL if opening it failed.
 	const char *message = database ? sqlite3_errmsg(database) : sqlite3_errstr(code);
 	cau_status status = status_of(code);
 	CAU_ASSERT(status != CAU_OK && what, "code %d is no failure", code);

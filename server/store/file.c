@@ -10,7 +10,7 @@
 #include "fault.h"
 #include "migrate.h"
 
-enum { BUSY_MS = 2000 }; // patience with an operator's sqlite3 that holds the write lock
+enum { BUSY_MS = 2000 }; // wait, ms, while an operator's sqlite3 holds the write lock
 
 static cau_status open_connection(const char *path, int flags, sqlite3 **database, cau_error *error)
 {
@@ -61,7 +61,7 @@ static cau_status sync_folder(const char *path, cau_error *error)
 	return CAU_OK;
 }
 
-// Builds a whole store at `draft`, an empty file.
+// Builds a complete store at `draft`, which is an empty file.
 static cau_status build(const char *draft, cau_error *error)
 {
 	sqlite3 *database;
@@ -71,7 +71,7 @@ static cau_status build(const char *draft, cau_error *error)
 		return status;
 	status = cau_store_migrate(database, error);
 	if (!status)
-		status = set_wal(database, error); // written into the header; folded by the close
+		status = set_wal(database, error); // noted in the header; the close folds the log
 	sqlite3_close(database);
 	return status;
 }
@@ -101,7 +101,8 @@ cau_status cau_store_file_open(const char *path, size_t wal_bytes, sqlite3 **dat
 	if (status)
 		return status;
 	status = set_wal(*database, error);
-	// Debian's SQLite overwrites what it deletes; here that would double the cost of retention.
+	// secure_delete is off: Debian's SQLite overwrites deleted content by default, which would
+	// double the cost of retention.
 	snprintf(sql, sizeof sql,
 	         "PRAGMA synchronous = FULL; PRAGMA wal_autocheckpoint = 0; PRAGMA secure_delete = OFF;"
 	         "PRAGMA temp_store = MEMORY; PRAGMA cache_size = -16000; PRAGMA trusted_schema = OFF;"

@@ -2,8 +2,8 @@
 #include "fold.h"
 #include "cautery/assert.h"
 
-// PASSIVE never holds up a commit. If it fails, the commits are safe in the log all the same, and
-// it is asked for again.
+// Folds the log. PASSIVE never holds up a commit. If the fold fails, the commits are still safe in
+// the log, and the fold is requested again later.
 static bool fold(sqlite3 *database)
 {
 	int pages = 0, folded = 0;

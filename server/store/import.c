@@ -6,8 +6,9 @@
 #include "fault.h"
 #include "rows.h"
 
-// Rows of a piece, by their table; ?9 is the key of the session. What has come before is replaced
-// or kept, so that a row that comes twice is there once; of the log and of events none does.
+// Statements that insert the records of a piece, by table. ?9 is the session's key. Records that
+// arrive twice are replaced or kept, so that they are stored once. Records of the log and of events
+// never arrive twice.
 static const char *const inserts[CAU_ROWS_COUNT] = {
 	[CAU_ROWS_MESH] = "UPDATE sessions SET mesh = ?1 WHERE key = ?9",
 	[CAU_ROWS_PRESENT] = "UPDATE sessions SET state = ?1, branch = ?2 WHERE key = ?9",
@@ -21,7 +22,7 @@ static const char *const inserts[CAU_ROWS_COUNT] = {
 	[CAU_ROWS_CLIENTS] = "INSERT OR REPLACE INTO clients VALUES(?9, ?1, ?2)",
 	[CAU_ROWS_MARKS] = "INSERT OR IGNORE INTO marks VALUES(?9, ?1, ?2)",
 	[CAU_ROWS_GAPS] = "INSERT OR REPLACE INTO gaps VALUES(?9, ?1, ?2, ?3, ?4)",
-	// A client that had this sequence answered here keeps that answer.
+	// If this client's sequence was already answered here, that answer stays.
 	[CAU_ROWS_ANSWERS] = "INSERT OR IGNORE INTO answers SELECT ?1, ?2, ?3, id, ?4 FROM sessions"
 						 " WHERE key = ?9",
 	[CAU_ROWS_FORGOTTEN] = "INSERT INTO forgotten SELECT ?1, ?2, ?3 WHERE ?9 ON CONFLICT(client)"
@@ -51,7 +52,8 @@ static cau_status run(sqlite3 *database, sqlite3_stmt *statement, cau_error *err
 	return status;
 }
 
-// Runs one statement with texts ?1, ?2, ... up to a NULL, then `now_ms` as ?9 and a number as ?8.
+// Runs one statement. Binds the texts to ?1, ?2, ... up to a NULL, then `now_ms` to ?9 and `number`
+// to ?8.
 static cau_status run_texts(sqlite3 *database, const char *sql, const char *const *texts,
                             int64_t number, int64_t now_ms, cau_error *error)
 {
@@ -70,7 +72,7 @@ static cau_status run_texts(sqlite3 *database, const char *sql, const char *cons
 	return status;
 }
 
-// ---- rows of a piece ------------------------------------------------------------------
+// ---- records of a piece ---------------------------------------------------------------
 static void bind_row(sqlite3_stmt *statement, const cau_row *row)
 {
 	for (int i = 0; i < row->column_count; i++) {
@@ -90,8 +92,9 @@ struct importing {
 	sqlite3 *database;
 	const char *id;
 	char name[CAU_STORE_ID_BYTES];
-	int64_t key;      // 0: not known yet
-	bool first, made; // the piece has the head of a move; it made the session
+	int64_t key; // 0: not known yet
+	// first: the piece has the head of a move; made: the piece created the session
+	bool first, made;
 	sqlite3_stmt *statement[CAU_ROWS_COUNT];
 };
 
@@ -144,7 +147,7 @@ static cau_status put_row(struct importing *to, const cau_row *row, cau_error *e
 	}
 	if (row->table == CAU_ROWS_SESSION)
 		return make_session(to, row, error);
-	if (!inserts[row->table]) // the head of the move, and what is not the store's
+	if (!inserts[row->table]) // the head of the move, and tables that this store does not keep
 		return CAU_OK;
 	if (!to->key)
 		status = find_key(to, error);
@@ -176,7 +179,8 @@ static cau_status put_rows(sqlite3 *database, const struct record *record, cau_e
 	}
 	for (int i = 0; i < CAU_ROWS_COUNT; i++)
 		sqlite3_finalize(to.statement[i]);
-	if (status == CAU_CORRUPT || status == CAU_UNSUPPORTED) // of the piece: the store is sound
+	// the error is the piece's; the store is sound
+	if (status == CAU_CORRUPT || status == CAU_UNSUPPORTED)
 		status = cau_fail(error, CAU_BAD_VALUE, "rows", "the piece of the session is damaged");
 	if (!all_read)
 		return status;
@@ -185,7 +189,7 @@ static cau_status put_rows(sqlite3 *database, const struct record *record, cau_e
 	return to.key ? CAU_OK : find_key(&to, error);
 }
 
-// ---- what the moves are ---------------------------------------------------------------
+// ---- records of the moves themselves --------------------------------------------------
 static cau_status take_out(sqlite3 *database, const cau_store_moved *moved, int64_t now_ms,
                            cau_error *error)
 {
@@ -227,7 +231,7 @@ static cau_status put_arrival(sqlite3 *database, const cau_store_arrival *arriva
 	sqlite3_bind_text(statement, 10, arrival->seal ? arrival->seal : "", -1, SQLITE_STATIC);
 	status = run(database, statement, error);
 	sqlite3_finalize(statement);
-	if (!status) // it brings its answers back: those that are still here stay
+	if (!status) // A session that returns brings its answers; those that are still here stay
 		status =
 			run_texts(database, "UPDATE sessions SET deleted = 1 WHERE id = ?1 AND deleted = 2", id,
 		              0, 0, error);

@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// The holder removes the file when it lets go, so a lock may have been taken on a file that is
-// gone.
+// True if the locked file is still the one at `path`. A holder removes the file when it releases
+// the lock, so the lock may be on a removed file.
 static bool is_at_path(int descriptor, const char *path)
 {
 	struct stat held, named;
@@ -31,7 +31,8 @@ static cau_status held_by_another(int descriptor, const char *path, cau_error *e
 
 static void write_holder(int descriptor)
 {
-	// Only an explanation for others: that it could not be written is no reason to stop.
+	// The process id only helps other processes to report the holder, so a write failure is
+	// ignored.
 	char holder[32];
 	int length = snprintf(holder, sizeof holder, "%ld\n", (long)getpid());
 	if (ftruncate(descriptor, 0) == 0 && pwrite(descriptor, holder, (size_t)length, 0) < 0)
@@ -67,15 +68,16 @@ cau_status cau_store_lock_take(struct cau_store_lock *lock, const char *path, ca
 }
 
 // ---- the database itself --------------------------------------------------------------
-// Far from the bytes that SQLite locks (at 1 GB) and from any that a database will have.
+// Offset of the locked byte: far above the bytes that SQLite locks (at 1 GB) and above any
+// database's size.
 static const off_t lock_at = (off_t)1 << 62;
 
-// The databases that this process holds. A descriptor of one of them must not even be opened to
-// try: closing it again would drop SQLite's locks on it.
+// The databases that this process holds. It must never open one of them again, not even to try:
+// closing that descriptor would drop SQLite's locks on the database.
 static pthread_mutex_t held_mutex = PTHREAD_MUTEX_INITIALIZER;
 static struct cau_store_lock *held;
 
-// Called with the mutex held.
+// True if this process holds that file. The caller holds the mutex.
 static bool is_held_here(const struct stat *file)
 {
 	for (const struct cau_store_lock *lock = held; lock; lock = lock->next)
@@ -84,8 +86,8 @@ static bool is_held_here(const struct stat *file)
 	return false;
 }
 
-// A lock of the open file description (not of the process, as SQLite's are): those of two openings
-// exclude each other, and the kernel drops it with its holder, however that ends.
+// Takes a lock of the open file description, not of the process as SQLite's locks are. So two
+// openings exclude each other, and the kernel drops the lock when the holder ends, however it ends.
 static cau_status lock_file(int descriptor, cau_error *error)
 {
 	struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = lock_at, .l_len = 1};
@@ -98,18 +100,18 @@ static cau_status lock_file(int descriptor, cau_error *error)
 	return cau_fail(error, CAU_IO, NULL, "cannot lock the store: %s", strerrordesc_np(errno));
 }
 
-// Called with the mutex held.
+// Locks the database at `path` if it exists. The caller holds the mutex.
 static cau_status hold(struct cau_store_lock *lock, const char *path, cau_error *error)
 {
 	struct stat file;
 	if (stat(path, &file) || !S_ISREG(file.st_mode))
-		return CAU_OK; // none yet, or nothing that the probe would take
+		return CAU_OK; // no database yet, or a file that the probe refuses
 	if (is_held_here(&file))
 		return cau_fail(error, CAU_BAD_STATE, NULL,
 		                "this process has the store open under another name");
 	int descriptor = open(path, O_RDWR | O_CLOEXEC);
 	if (descriptor < 0)
-		return CAU_OK; // not to be written by us: what opens it for writing says why
+		return CAU_OK; // not writable by this process: the later open for writing reports why
 	cau_status status = lock_file(descriptor, error);
 	if (status) {
 		close(descriptor);

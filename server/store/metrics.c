@@ -33,7 +33,8 @@ void cau_store_count_commit(struct cau_store_queue *queue, int batches, double s
 	pthread_mutex_unlock(&queue->mutex);
 }
 
-// Upper end of the bucket that holds the given share of all; 0 if there are none.
+// Returns the upper end of the bucket that contains the given share of all counts; 0 if there are
+// none.
 static double quantile(const uint64_t count[CAU_STORE_TIME_BUCKETS], double share)
 {
 	uint64_t total = 0, seen = 0;

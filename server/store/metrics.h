@@ -4,7 +4,8 @@
 
 #include "store_state.h"
 
-// The bucket of a duration, 0 to CAU_STORE_TIME_BUCKETS - 1; the last takes all that is longer.
+// Returns the bucket of a duration, 0 to CAU_STORE_TIME_BUCKETS - 1. The last bucket has all longer
+// durations.
 int cau_store_time_bucket(double seconds);
 
 // Counts one commit of a group of `batches`.

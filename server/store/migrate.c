@@ -21,7 +21,7 @@ static cau_status run_steps(sqlite3 *database, int64_t version, cau_error *error
 	cau_status status = cau_store_execute(database, sql, "stating the schema version", error);
 	if (status)
 		return status;
-	// Before the commit, so that a surprising file is left as it was.
+	// Compile the statements before the commit, so that an unexpected file stays unchanged.
 	struct cau_store_writer writer;
 	status = cau_store_writer_init(&writer, database, error);
 	if (!status)

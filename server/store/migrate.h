@@ -6,6 +6,6 @@
 
 #include "cautery/status.h"
 
-// Runs the schema steps that the database lacks, all in one transaction. On failure nothing has
-// changed.
+// Runs the schema steps that the database lacks, in one transaction. A failure leaves the database
+// unchanged.
 cau_status cau_store_migrate(sqlite3 *database, cau_error *error);

@@ -15,11 +15,12 @@
 
 enum {
 	HEADER_BYTES = 100,
-	USER_VERSION_AT = 60, // big-endian 32-bit words, https://www.sqlite.org/fileformat.html
+	// offset of a big-endian 32-bit word, https://www.sqlite.org/fileformat.html
+	USER_VERSION_AT = 60,
 	APPLICATION_ID_AT = 68,
 };
 
-// Bytes of the file that stands beside the database, -1 if there is none.
+// Returns the bytes of the file `path` with `suffix`; -1 if there is none.
 static int64_t beside_bytes(const char *path, const char *suffix)
 {
 	char name[4096];
@@ -51,7 +52,7 @@ static cau_status check_header(const char *path, cau_error *error)
 {
 	unsigned char header[HEADER_BYTES];
 	struct stat info;
-	if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) // opening a FIFO waits for a writer
+	if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) // opening a FIFO would wait for a writer
 		return cau_fail(error, CAU_IO, NULL, "the store is not a regular file");
 	int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 	if (descriptor < 0)
@@ -73,7 +74,7 @@ static cau_status check_header(const char *path, cau_error *error)
 	return check_version((int32_t)word_at(header, USER_VERSION_AT), error);
 }
 
-// The whole file, page by page.
+// Checks every page of the file.
 static cau_status check_pages(sqlite3 *database, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
@@ -122,9 +123,9 @@ static bool is_same_file(const char *path, const char *suffix, const char *other
 	       file.st_dev == other_file.st_dev && file.st_ino == other_file.st_ino;
 }
 
-// After a crash, what was committed last is in a write-ahead log beside the name that the file was
-// opened by. Under another name (a hard link) it would be missing, and the log would spoil the file
-// the next time that it is opened by the first.
+// Checks that the file is opened by the name stored in it. After a crash, the last commits are in a
+// write-ahead log beside that name. Under another name (a hard link) they would be missing. That
+// log would then damage the file when it is next opened by its first name.
 static cau_status check_path(sqlite3 *database, const char *path, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
@@ -168,9 +169,10 @@ static cau_status check_content(sqlite3 *database, const char *path, const char 
 	return status;
 }
 
-// Opens for reading. Without a write-ahead log the file is the whole truth and is opened as
-// immutable. With one (after a crash), it may be mid-fold and only makes sense through the log:
-// then SQLite builds its index of the log in "-shm", which is removed again if it was not there.
+// Opens the database for reading and checks it. Without a write-ahead log, the file alone is
+// complete and is opened as immutable. With a log (after a crash), the file may be mid-fold and is
+// valid only together with the log. Then SQLite builds its index of the log in "-shm", which is
+// removed again if it did not exist before.
 static cau_status check_database(const char *path, const char *label, cau_error *error)
 {
 	char name[3 * 4096 + 64], *at = name;

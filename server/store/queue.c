@@ -7,8 +7,8 @@
 #include "clock.h"
 #include "metrics.h"
 
-// ---- submitters' side -----------------------------------------------------------------
-// Called with the mutex held.
+// ---- called by submitters -------------------------------------------------------------
+// Returns an error if a batch of `bytes` cannot be accepted now. The caller holds the mutex.
 static cau_status refuse(const struct cau_store_queue *queue, const cau_store_config *config,
                          size_t bytes, cau_error *error)
 {
@@ -83,7 +83,7 @@ bool cau_store_moves(cau_store *store)
 	return moved;
 }
 
-// ---- the thread's side ----------------------------------------------------------------
+// ---- called by the store thread -------------------------------------------------------
 static bool group_is_ripe(const struct cau_store_queue *queue, int delay_ms, double now_s,
                           double *due_s)
 {
@@ -101,7 +101,7 @@ static double chore_due_s(const struct cau_store *store, double now_s)
 		return store->committer.chore_due_s;
 	case CAU_STORE_FULL:
 		return store->committer.retry_due_s;
-	default: // damaged: only a close is left
+	default: // damaged: the thread waits only for a close
 		return now_s + 3600.0;
 	}
 }
@@ -177,7 +177,7 @@ void cau_store_queue_set_state(struct cau_store *store, cau_store_state state, c
 		store->config.on_state(store->config.user, state, reason);
 }
 
-// Takes the first batch out of the queue's account.
+// Removes the first batch of the group and subtracts it from the queue's metrics.
 static struct cau_store_batch *pop_answered(struct cau_store_queue *queue)
 {
 	pthread_mutex_lock(&queue->mutex);

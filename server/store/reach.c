@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of its past a branch can go back to.
+// Which past ticks of a branch can be reached.
 #include <string.h>
 
 #include "course.h"
 #include "read.h"
 
-// Reads the course of the branch on the readers' connection.
+// Reads the branch's course on the connection `reading`.
 static cau_status read_course(cau_store *store, const char *session, int64_t branch,
                               struct cau_store_course *course, cau_error *error)
 {
@@ -19,7 +19,7 @@ static cau_status read_course(cau_store *store, const char *session, int64_t bra
 	return status;
 }
 
-// Appends "0 to 300, 450, 900 on": all ranges, or as many as there is room for.
+// Writes the ranges as text, such as "0 to 300, 450, 900 on": all, or as many as fit.
 static void list_ranges(const struct cau_store_course *course, char *text, size_t capacity)
 {
 	struct cau_store_range range;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Synchronous reads on connections of their own: in WAL they neither wait for commits nor hold
-// them up. Stored answers have one for themselves: a worker that looks for one does not wait for
-// the builder's log.
+// Synchronous reads, on connections of their own. In WAL mode they neither wait for commits nor
+// delay them. Stored answers have a connection for themselves, so that a worker that looks for an
+// answer never waits for the builder's reading of a log.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,9 +9,10 @@
 #include "read.h"
 
 enum {
-	PIECE_ROWS = 256,      // commands read at once
-	PIECE_BYTES = 1 << 20, // and their bytes, about
-	MAX_DEPTH = 100000,    // branches from one to its root; more is damage
+	PIECE_ROWS = 256,      // commands read in one piece
+	PIECE_BYTES = 1 << 20, // about the largest bytes of the commands in one piece
+	// largest number of branches from a branch to its root; more means damage
+	MAX_DEPTH = 100000,
 };
 
 // ---- small pieces ---------------------------------------------------------------------
@@ -205,8 +206,9 @@ cau_status cau_store_read_clients(cau_store *store, const char *session,
 	return found ? found : visited ? visited : cau_store_end_is_fine(status);
 }
 
-// ---- what a branch sees ---------------------------------------------------------------
-// The branch's parent (-1: none) and fork tick. CAU_NOT_FOUND.
+// ---- the line of a branch -------------------------------------------------------------
+// Finds the branch's parent (-1: none) and fork tick. Returns CAU_NOT_FOUND if there is no such
+// branch.
 static cau_status find_branch(struct cau_store_reader *reader, int64_t key, int64_t branch,
                               int64_t *parent, int64_t *fork_tick, cau_error *error)
 {
@@ -282,7 +284,7 @@ cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int6
 	status = CAU_NOT_FOUND;
 	for (int i = 0; i < count && status == CAU_NOT_FOUND; i++) {
 		if (line[i].before_tick < newest)
-			newest = line[i].before_tick; // a checkpoint at the fork itself is shared
+			newest = line[i].before_tick; // a parent's checkpoint at the fork tick itself is shared
 		checkpoint.branch = line[i].branch;
 		sqlite3_reset(statement);
 		sqlite3_bind_int64(statement, 1, key);
@@ -307,13 +309,13 @@ out:
 }
 
 // ---- the log --------------------------------------------------------------------------
-// Where the next piece of a stretch starts.
+// The start of the next piece of a stretch.
 struct cursor {
 	int64_t tick, position;
 };
 
 // Copies one piece of a stretch into `piece` and moves the cursor behind it. *more: there may be
-// another.
+// another piece.
 static cau_status read_piece(struct cau_store_reader *reader, int64_t key, const char *session,
                              const struct cau_store_stretch *stretch, struct cursor *cursor,
                              cau_store_batch *piece, bool *more, cau_error *error)
@@ -402,7 +404,8 @@ cau_status cau_store_read_log(cau_store *store, const char *session, int64_t bra
 }
 
 // ---- answers --------------------------------------------------------------------------
-// Called with the queue's mutex held.
+// True if the batch or one after it answers the client's request `sequence`. The caller holds the
+// queue's mutex.
 static bool list_answers(const struct cau_store_batch *batch, const char *client, uint64_t sequence)
 {
 	for (; batch; batch = batch->next) {
@@ -426,7 +429,8 @@ static bool is_pending(struct cau_store_queue *queue, const char *client, uint64
 	return pending;
 }
 
-// Why there is no answer: CAU_NOT_FOUND or CAU_ALREADY_EXISTS.
+// Returns why there is no answer: CAU_ALREADY_EXISTS if the answer is forgotten, else
+// CAU_NOT_FOUND.
 static cau_status look_for_forgotten(struct cau_store_reader *reader, const char *client,
                                      uint64_t sequence, cau_error *error)
 {
@@ -454,7 +458,7 @@ cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t 
 {
 	struct cau_store_reader *reader = &store->answers;
 	sqlite3_stmt *statement = NULL;
-	// The queue first: what leaves it meanwhile is in the database.
+	// The queue is checked first: a batch that leaves the queue after the check is in the database.
 	if (is_pending(&store->queue, client, sequence))
 		return cau_fail(error, CAU_BAD_STATE, "sequence", "request %llu is being stored",
 		                (unsigned long long)sequence);

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading events: a session's, and those that a branch sees.
+// Reads the events of a session, and those that a branch sees.
 #include <stdlib.h>
 
 #include "fault.h"
 #include "read.h"
 
-// ?1 session, ?2 kind or NULL, ?3 branch or -1, ?4 and ?5 ticks, ?6 count
+// ?1: session, ?2: kind or NULL, ?3: branch or -1, ?4 and ?5: ticks, ?6: count
 static const char newest_events[] =
 	"SELECT branch, tick, level, kind, text, time_ms FROM events WHERE session = ?1"
 	" AND (?2 IS NULL OR kind = ?2) AND (?3 < 0 OR branch = ?3) AND tick BETWEEN ?4 AND ?5"
 	" ORDER BY key DESC LIMIT ?6";
 
 typedef struct wanted {
-	int64_t key; // of the session
+	int64_t key; // key of the session
 	const char *session, *kind;
 	int64_t branch, from_tick, to_tick;
-	int32_t count; // left
+	int32_t count; // events still wanted
 	cau_store_visit_event visit;
 	void *user;
 } wanted;
@@ -48,7 +48,8 @@ static cau_status read_some(struct cau_store_reader *reader, wanted *w, cau_erro
 	cau_status status = cau_store_prepare(reader, newest_events, &statement, error);
 	if (!status) {
 		sqlite3_bind_int64(statement, 1, w->key);
-		sqlite3_bind_text(statement, 2, w->kind, -1, SQLITE_STATIC); // NULL: NULL
+		// a NULL pointer binds SQL NULL
+		sqlite3_bind_text(statement, 2, w->kind, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 3, w->branch);
 		sqlite3_bind_int64(statement, 4, w->from_tick);
 		sqlite3_bind_int64(statement, 5, w->to_tick);

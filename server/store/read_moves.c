@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading what has moved away, and what has come or is coming.
+// Reads which sessions have moved away, have arrived, or are arriving.
 #include <stdio.h>
 
 #include "fault.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What may go: sessions that were deleted; of a branch that was left, what no other branch was
-// forked from; of the present line, checkpoints that stand close for their age (course.h), and the
-// oldest log of a session that is too big; old answers and events. Marked states stay.
-//
-// A branch that was left loses its newest ticks first, so that what is left of it is always a whole
-// beginning. The present line loses its log from the oldest on, as gaps that are told.
+// Chooses what to remove. Deleted sessions; parts of left branches from which no other branch was
+// forked; old answers and events. On the present line: checkpoints that are close for their age
+// (course.h), and the oldest log of a session that is too big. Marked states stay.
+// A left branch loses its newest ticks first, so that the rest is always a complete beginning. The
+// present line loses its log from the oldest on; the missing ranges are reported as gaps.
 #include "retention.h"
 
 #include <stdbool.h>
@@ -13,9 +12,10 @@
 #include "trim.h"
 
 enum {
-	FREED_SHARE = 20,          // of the budget, once it was overdrawn
-	ANSWER_SHARE = 4,          // of the budget: what answers may keep when it is overdrawn
-	LEAST_SPACING_TICKS = 600, // thinning does not look closer: 10 s at 60 Hz, replayed in 3
+	// part of the budget that is free after retention, once the budget was exceeded
+	FREED_SHARE = 20,
+	ANSWER_SHARE = 4,          // answers may keep this part of the budget when it is exceeded
+	LEAST_SPACING_TICKS = 600, // smallest spacing of thinning: 10 s at 60 Hz, replayed in 3 s
 };
 
 // ---- deleted sessions -----------------------------------------------------------------
@@ -59,8 +59,8 @@ static int64_t point_bytes(const struct cau_store_course *course)
 	return bytes;
 }
 
-// Too big: first what was left, then checkpoints while they have more than half of the limit, then
-// the oldest log.
+// Shrinks a session that is too big: first left branches, then checkpoints while they exceed half
+// of the limit, then the oldest log.
 static cau_status shrink(sqlite3 *database, const struct cau_store_present *present, int64_t limit,
                          int64_t *rows, cau_error *error)
 {
@@ -93,7 +93,7 @@ static cau_status thin_session(sqlite3 *database, struct cau_store_present *pres
 	return status;
 }
 
-// Sessions are tried in order until one can be made smaller.
+// Tries the sessions in order until one can be made smaller.
 static cau_status thin_sessions(sqlite3 *database, int64_t limit, int64_t *rows, cau_error *error)
 {
 	struct cau_store_outcome found;
@@ -126,7 +126,8 @@ static cau_status remove_old(sqlite3 *database, const char *sql, int64_t before_
 
 #define OLD_ANSWERS "FROM answers WHERE time_ms < ?1 ORDER BY time_ms " CAU_STORE_ROWS
 
-// What is forgotten is remembered as such, so that a late resend does not act again.
+// Removes old answers. It notes the newest sequence removed for each client, so that a late resend
+// does not act again.
 static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *rows,
                                  cau_error *error)
 {
@@ -150,7 +151,7 @@ static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *
 	"DELETE FROM forgotten WHERE client IN (SELECT client FROM forgotten"                          \
 	" WHERE time_ms < ?1 ORDER BY time_ms " CAU_STORE_ROWS ")"
 
-// Events are written in the order of time, near enough: only the oldest keys need a look.
+// Events are written nearly in the order of time, so only the oldest keys are checked.
 #define OLD_EVENTS                                                                                 \
 	"DELETE FROM events WHERE key IN (SELECT key FROM (SELECT key, time_ms"                        \
 	" FROM events AS e WHERE NOT EXISTS(SELECT 1 FROM marks AS m WHERE m.session = e.session"      \
@@ -158,12 +159,13 @@ static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *
 	") WHERE time_ms < ?1)"
 
 // ---- the budget of the whole store -----------------------------------------------------
-// All pages of the file that are in use: every table and index counts.
+// The bytes of all pages of the file that are in use, and so of every table and index.
 #define SPENT                                                                                      \
 	"SELECT (p.page_count - f.freelist_count) * s.page_size, (SELECT bytes FROM sizes)"            \
 	" FROM pragma_page_count AS p, pragma_freelist_count AS f, pragma_page_size AS s"
 
-// A present line's checkpoint, and how early it was written among all.
+// A checkpoint of a present line, with its session and its table row. A lower row was written
+// earlier.
 struct oldest {
 	int64_t session, row;
 	struct cau_store_point point;
@@ -185,8 +187,8 @@ static cau_status look_at_oldest(sqlite3 *database, const struct cau_store_prese
 	return status;
 }
 
-// Looks at each session's present line, the biggest session's first: for the oldest checkpoint, or,
-// with `trim`, until one has given some of its log.
+// Visits each session's present line, the biggest session first. Finds the oldest checkpoint of all
+// or, with `trim`, removes some of the log of the first session that can lose some.
 static cau_status walk(sqlite3 *database, bool trim, struct oldest *oldest, int64_t *rows,
                        cau_error *error)
 {
@@ -213,8 +215,8 @@ static cau_status walk(sqlite3 *database, bool trim, struct oldest *oldest, int6
 	return CAU_OK;
 }
 
-// Of all sessions the checkpoint that was written first and may go, then the oldest log of the
-// biggest session that has some to give.
+// Removes the oldest removable checkpoint of all sessions. If there is none, removes the oldest log
+// of the biggest session that can lose some.
 static cau_status shrink_sessions(sqlite3 *database, struct cau_store_budget *budget, int64_t *rows,
                                   cau_error *error)
 {
@@ -229,9 +231,9 @@ static cau_status shrink_sessions(sqlite3 *database, struct cau_store_budget *bu
 	return status;
 }
 
-// What was left goes first, then answers beyond their share, then what sessions can give, then the
-// other answers and events. That a request was answered is not forgotten for the budget, so that a
-// late resend does not act again.
+// Removes, in this order: left branches, answers beyond their share, checkpoints and log of
+// sessions, the other answers, events. A removed answer is still noted as forgotten, so that a late
+// resend does not act again.
 static cau_status shrink_store(sqlite3 *database, struct cau_store_budget *budget,
                                int64_t answer_bytes, int64_t most, int64_t *rows, cau_error *error)
 {
@@ -250,7 +252,8 @@ static cau_status shrink_store(sqlite3 *database, struct cau_store_budget *budge
 static cau_status keep_budget(sqlite3 *database, int64_t most, int64_t answer_bytes,
                               struct cau_store_budget *budget, int64_t *rows, cau_error *error)
 {
-	// Once beyond it, some room is made, so that not every checkpoint begins this anew.
+	// Once the budget was exceeded, a twentieth of it is freed, so that not every new checkpoint
+	// starts a removal.
 	int64_t bound = budget->state == CAU_STORE_BUDGET_KEPT ? most : most - most / FREED_SHARE;
 	if (!most || budget->bytes <= bound) {
 		budget->state = CAU_STORE_BUDGET_KEPT;

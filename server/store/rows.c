@@ -190,7 +190,8 @@ size_t cau_rows_bytes(const cau_row *row)
 	return bytes;
 }
 
-// Room for so many bytes more at the writer's end, which they then are. NULL: there is no memory.
+// Extends the writer's buffer by `bytes` and returns the start of the new part. Returns NULL if
+// memory ran out.
 static unsigned char *grow(cau_rows_writer *writer, size_t bytes)
 {
 	size_t wanted = writer->byte_count + bytes, capacity = writer->capacity;

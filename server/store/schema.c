@@ -2,20 +2,20 @@
 #include "schema.h"
 
 // Ticks, sequences and hashes are stored as signed 64-bit integers with the same bits. Times are
-// Unix milliseconds. `session` is sessions.key, so that an id is free again once its session is
-// deleted.
+// Unix milliseconds. `session` is sessions.key, not the id, so that an id is free again when its
+// session is deleted.
 static const char first_step[] =
 	"CREATE TABLE meta(name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
 
-	// deleted: the rows of this session are being removed in small steps; 2: its answers too, since
-    // another daemon has them.
+	// deleted: 1: the rows of this session are being removed in small steps; 2: so are its answers,
+    // since another daemon has them.
 	"CREATE TABLE sessions(key INTEGER PRIMARY KEY, id TEXT NOT NULL, name TEXT NOT NULL,"
 	" state TEXT NOT NULL, branch INTEGER NOT NULL, created_ms INTEGER NOT NULL,"
 	" deleted INTEGER NOT NULL DEFAULT 0, definition BLOB NOT NULL, mesh BLOB NOT NULL);"
 	"CREATE UNIQUE INDEX session_by_id ON sessions(id) WHERE deleted = 0;"
 
-	// bytes: of the commands and checkpoints on this branch. end_tick: retention has removed the
-    // commands from there on.
+	// bytes: size of the commands and checkpoints on this branch. end_tick: retention has removed
+    // the commands from that tick on.
 	"CREATE TABLE branches(session INTEGER NOT NULL, branch INTEGER NOT NULL,"
 	" parent INTEGER NOT NULL, fork_tick INTEGER NOT NULL, opened_ms INTEGER NOT NULL,"
 	" left_ms INTEGER NOT NULL DEFAULT 0, bytes INTEGER NOT NULL DEFAULT 0,"
@@ -31,35 +31,36 @@ static const char first_step[] =
 	" tick INTEGER NOT NULL, hash INTEGER NOT NULL, bytes INTEGER NOT NULL,"
 	" snapshot BLOB NOT NULL, PRIMARY KEY(session, branch, tick));"
 
-	// session 0: the daemon's own.
+	// Events with session 0 are the daemon's own.
 	"CREATE TABLE events(key INTEGER PRIMARY KEY, session INTEGER NOT NULL, tick INTEGER NOT NULL,"
 	" level INTEGER NOT NULL, time_ms INTEGER NOT NULL, kind TEXT NOT NULL, text TEXT NOT NULL);"
 	"CREATE INDEX event_by_session ON events(session, key);"
 
-	// Outlives its session: a resent request to destroy it still gets its answer.
+	// An answer outlives its session: a resent request to destroy the session still gets its
+    // answer.
 	"CREATE TABLE answers(client TEXT NOT NULL, sequence INTEGER NOT NULL, time_ms INTEGER NOT "
 	"NULL,"
 	" session TEXT, result BLOB NOT NULL, PRIMARY KEY(client, sequence)) WITHOUT ROWID;"
 	"CREATE INDEX answer_by_time ON answers(time_ms);";
 
-// Who has driven a session, without a walk through its log.
+// The clients that have driven a session, so that nobody must search its log for them.
 static const char second_step[] =
 	"CREATE TABLE clients(session INTEGER NOT NULL, client TEXT NOT NULL,"
 	" sequence INTEGER NOT NULL, PRIMARY KEY(session, client)) WITHOUT ROWID;"
 	"INSERT INTO clients SELECT session, client, max(sequence) FROM commands"
 	" WHERE client IS NOT NULL GROUP BY session, client;";
 
-// Events belong to branches. forgotten: the newest sequence of a client whose answer has been
-// removed by age; what is not newer and has no answer has been acted upon.
+// Events belong to branches. forgotten: for each client, the newest sequence whose answer has been
+// removed by age. A request that is not newer and has no answer has already acted.
 static const char third_step[] =
 	"ALTER TABLE events ADD COLUMN branch INTEGER NOT NULL DEFAULT 0;"
 	"CREATE TABLE forgotten(client TEXT PRIMARY KEY, sequence INTEGER NOT NULL,"
 	" time_ms INTEGER NOT NULL) WITHOUT ROWID;"
 	"CREATE INDEX forgotten_by_time ON forgotten(time_ms);";
 
-// marks: states that retention keeps. The first state and the named ones of older stores are known
-// from their events. gaps: the commands of a branch with from_tick <= tick < before_tick are
-// missing, because retention took them (trimmed) or because they could not be stored.
+// marks: states that retention keeps. In older stores, the first state and the named ones are known
+// from their events. gaps: commands of a branch with from_tick <= tick < before_tick are missing,
+// because retention removed them (trimmed) or because they could not be stored.
 static const char fourth_step[] =
 	"CREATE TABLE marks(session INTEGER NOT NULL, branch INTEGER NOT NULL,"
 	" tick INTEGER NOT NULL, PRIMARY KEY(session, branch, tick)) WITHOUT ROWID;"
@@ -69,10 +70,10 @@ static const char fourth_step[] =
 	" from_tick INTEGER NOT NULL, before_tick INTEGER NOT NULL, trimmed INTEGER NOT NULL,"
 	" PRIMARY KEY(session, branch, from_tick)) WITHOUT ROWID;";
 
-// moved: sessions that another daemon has now. The row is the decision: it is written in the
-// transaction that takes the session out, and `proof` is what lets the other daemon serve it.
-// arrivals: sessions on their way here, whose rows are there under the same id; one is served once
-// it is accepted, by a proof whose SHA-256 is `lock`.
+// moved: sessions that another daemon has now. Such a row decides the move: the transaction that
+// removes the session writes it, and its `proof` allows the other daemon to serve the session.
+// arrivals: sessions on their way here, whose rows are stored under the same id. An arrival is
+// served once it is accepted, by a proof whose SHA-256 is `lock`.
 static const char fifth_step[] =
 	"CREATE TABLE moved(id TEXT PRIMARY KEY, move TEXT NOT NULL, target TEXT NOT NULL,"
 	" label TEXT NOT NULL, url TEXT NOT NULL, proof TEXT NOT NULL, time_ms INTEGER NOT NULL)"
@@ -81,8 +82,9 @@ static const char fifth_step[] =
 	" source TEXT NOT NULL, label TEXT NOT NULL, pieces INTEGER NOT NULL, state INTEGER NOT NULL,"
 	" time_ms INTEGER NOT NULL) WITHOUT ROWID;";
 
-// What the stored answers take, counted as rows come and go, since they have a share of the budget.
-// An answer is in the table and in two indices; a long one has pages of its own.
+// Estimated bytes of one stored answer. Answers have a share of the budget, so triggers keep the
+// sum of these bytes. An answer is in the table and in two indices; a long one has pages of its
+// own.
 #define ANSWER_BYTES(row)                                                                          \
 	"length(" row "result) + 4096 * (length(" row "result) > 900) + 3 * length(" row               \
 	"client) + 2 * coalesce(length(" row "session), 0)"                                            \
@@ -99,8 +101,8 @@ static const char sixth_step[] =
 						" UPDATE sizes SET bytes = bytes - (" ANSWER_BYTES(
 							"old.") ") WHERE name = 'answers'; END;";
 
-// secrets: random texts of this store. arrivals.unlock is the hash of the release that lets the
-// move be forgotten; arrivals.seal is the seal of the pieces so far (server/move/courier.h).
+// secrets: random texts of this store. arrivals.unlock: hash of the release that allows to forget
+// the move. arrivals.seal: seal of the pieces received so far (server/move/courier.h).
 static const char seventh_step[] =
 	"CREATE TABLE secrets(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
 	"INSERT INTO secrets VALUES('move', lower(hex(randomblob(32))));"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables, as the steps that make them: step i takes schema version i to i + 1. A new store runs
-// them all; an older one runs what it lacks. A step that has been released is never changed.
+// The SQL that makes the tables, in steps: step i takes schema version i to i + 1. A new store runs
+// all steps, an older one those that it lacks. A released step is never changed.
 #pragma once
 
 #define CAU_STORE_APPLICATION_ID 0x43617574 // "Caut", SQLite's application_id

@@ -91,8 +91,7 @@ static cau_status check_config(const cau_store_config *config, cau_error *error)
 	return CAU_OK;
 }
 
-// One name for one file, however it was given: links followed, absolute. The file need not be
-// there.
+// Finds the one absolute name of a file, with links followed. The file need not exist.
 static cau_status find_path(const char *given, char path[4096], cau_error *error)
 {
 	char folder[PATH_MAX], resolved[PATH_MAX], name[PATH_MAX];
@@ -119,7 +118,7 @@ static int count_wal_pages(void *context, sqlite3 *database, const char *name, i
 	return SQLITE_OK;
 }
 
-// Stores the label if none is stored, and keeps the one that is.
+// Stores the label if none is stored. A stored label stays.
 static cau_status settle_label(struct cau_store *store, cau_error *error)
 {
 	sqlite3 *database = store->committer.database;
@@ -145,7 +144,8 @@ static cau_status settle_label(struct cau_store *store, cau_error *error)
 	return code ? cau_store_fault(database, code, "the label", error) : CAU_OK;
 }
 
-// The name under which the write-ahead log stands, for one who comes after a crash by another name.
+// Stores the path beside which the write-ahead log is. After a crash, the probe refuses another
+// name of the file.
 static cau_status note_path(struct cau_store *store, cau_error *error)
 {
 	sqlite3 *database = store->committer.database;
@@ -162,8 +162,9 @@ static cau_status note_path(struct cau_store *store, cau_error *error)
 	return code ? cau_store_fault(database, code, "the path", error) : CAU_OK;
 }
 
-// Ids of sessions are LABEL-NAME: where the label ends must be plain, and ROS 2's names, which know
-// no `-`, must not make one of two. A store that has such a label already keeps it.
+// Refuses a new label with `-`. Ids of sessions are LABEL-NAME, so the end of the label must be
+// clear. ROS 2 names allow no `-`, and two labels must not become the same name. A store that
+// already has such a label keeps it.
 static cau_status check_new_label(const char *label, cau_error *error)
 {
 	if (label && strchr(label, '-'))
@@ -172,7 +173,7 @@ static cau_status check_new_label(const char *label, cau_error *error)
 	return CAU_OK;
 }
 
-// What both kinds of store want once it is open for writing.
+// Prepares a store that is open for writing, in a file or in memory.
 static cau_status prepare(struct cau_store *store, cau_error *error)
 {
 	sqlite3 *database = store->committer.database;
@@ -188,12 +189,13 @@ static cau_status prepare(struct cau_store *store, cau_error *error)
 	return status;
 }
 
-// Its connections share a database of the library's, which has no log to fold.
+// Opens a store in memory. Its connections share one SQLite database, which has no write-ahead log
+// to fold.
 static cau_status open_memory(struct cau_store *store, cau_error *error)
 {
 	struct cau_store_committer *committer = &store->committer;
 	sqlite3 **const further[] = {&store->reading.database, &store->answers.database};
-	// The budget keeps it below twice its bytes.
+	// Retention keeps the database below twice the budget.
 	int64_t most = 2 * store->config.store_bytes;
 	snprintf(store->path, sizeof store->path, "file:/cautery-%p?vfs=memdb", (void *)store);
 	cau_status status = cau_store_memory_open(store->path, most, &committer->database, error);
@@ -206,7 +208,7 @@ static cau_status open_memory(struct cau_store *store, cau_error *error)
 	return status;
 }
 
-// The lock is held: makes or checks the file, opens the connections, migrates.
+// Makes or checks the file, opens the connections, and migrates. The caller holds the lock.
 static cau_status open_database(struct cau_store *store, cau_error *error)
 {
 	struct cau_store_committer *committer = &store->committer;
@@ -228,8 +230,8 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 		return status;
 	sqlite3_wal_hook(committer->database, count_wal_pages, committer);
 	status = prepare(store, error);
-	// Best effort, so that the file alone tells its schema and a full disk does not prevent a
-	// start.
+	// Folds the log into the file, so that the file alone shows its schema. A failure is ignored,
+	// so that a full disk does not prevent a start.
 	if (!status)
 		sqlite3_wal_checkpoint_v2(committer->database, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL,
 		                          NULL);
@@ -258,7 +260,8 @@ static void close_database(struct cau_store *store)
 	sqlite3_close(store->reading.database);
 	sqlite3_close(store->answers.database);
 	sqlite3_close(store->folding);
-	sqlite3_close(store->committer.database); // the last connection folds the log and removes it
+	// the last connection to close folds the log and removes it
+	sqlite3_close(store->committer.database);
 	cau_store_lock_release(&store->lock);
 }
 

@@ -3,7 +3,7 @@
 
 #include "fault.h"
 
-enum { ROW_BYTES = 64 }; // as write.c counts a command
+enum { ROW_BYTES = 64 }; // bytes that write.c counts for a command besides its payload
 
 cau_status cau_store_run(sqlite3 *database, const char *sql, const int64_t *parameter,
                          struct cau_store_outcome *outcome, cau_error *error)
@@ -11,7 +11,7 @@ cau_status cau_store_run(sqlite3 *database, const char *sql, const int64_t *para
 	sqlite3_stmt *statement = NULL;
 	*outcome = (struct cau_store_outcome){.least = INT64_MAX};
 	int code = sqlite3_prepare_v2(database, sql, -1, &statement, NULL);
-	// The analyzer cannot know how many parameters a statement has.
+	// The analyzer does not know the number of a statement's parameters.
 	for (int i = 0; !code && parameter && i < sqlite3_bind_parameter_count(statement); i++)
 		code = sqlite3_bind_int64(statement, i + 1, parameter[i]); // NOLINT(clang-analyzer-core.*)
 	while (!code && (code = sqlite3_step(statement)) == SQLITE_ROW) {
@@ -44,20 +44,21 @@ static cau_status shrink_branch(sqlite3 *database, int64_t session, int64_t bran
 	return cau_store_run(database, sql, (const int64_t[]){session, branch, bytes}, &done, error);
 }
 
-// One step on a branch of which everything from tick `keep` on may go; keep = -1: all, itself too.
+// Takes one step on a branch from which everything after tick `keep` may be removed. keep = -1:
+// everything may be removed, the branch itself too.
 static cau_status trim_branch(sqlite3 *database, int64_t session, int64_t branch, int64_t keep,
                               int64_t *rows, cau_error *error)
 {
 	const int64_t parameter[] = {session, branch, keep};
 	struct cau_store_outcome removed;
-	// A checkpoint at the fork itself is shared.
+	// A checkpoint at the fork tick itself is shared, so it stays.
 	cau_status status = cau_store_run(
 		database,
 		"DELETE FROM checkpoints WHERE rowid IN (SELECT rowid FROM checkpoints"
 		" WHERE session = ?1 AND branch = ?2 AND tick > ?3 ORDER BY tick DESC LIMIT 1)"
 		" RETURNING bytes, tick",
 		parameter, &removed, error);
-	removed.least = INT64_MAX; // its absence cuts no log
+	removed.least = INT64_MAX; // a removed checkpoint does not shorten the log
 	if (!status && !removed.rows) {
 		status = cau_store_run(
 			database,
@@ -81,8 +82,8 @@ static cau_status trim_branch(sqlite3 *database, int64_t session, int64_t branch
 	return status;
 }
 
-// The branch that was left first and has something that may go, among those left before ?1, of
-// session ?2 or, if that is 0, of any.
+// Selects the branch that was left first and has something to remove, among those left by time ?1,
+// of session ?2 or, if ?2 is 0, of any session.
 #define LEFT_BRANCH                                                                                \
 	"SELECT session, branch, keep FROM (SELECT session, branch, end_tick, left_ms,"                \
 	" max(coalesce((SELECT max(fork_tick) FROM branches AS child"                                  \
@@ -100,7 +101,8 @@ cau_status cau_store_trim_left(sqlite3 *database, int64_t left_before_ms, int64_
 	                                  (const int64_t[]){left_before_ms, session}, &found, error);
 	while (!status && found.rows && !*rows) {
 		status = trim_branch(database, found.value[0], found.value[1], found.value[2], rows, error);
-		if (!status && !*rows) // it had nothing, which is now known: the next one
+		// the branch had nothing to remove, which is now recorded: search again
+		if (!status && !*rows)
 			status = cau_store_run(database, LEFT_BRANCH,
 			                       (const int64_t[]){left_before_ms, session}, &found, error);
 	}
@@ -124,14 +126,15 @@ cau_status cau_store_drop_point(sqlite3 *database, int64_t session,
 	return shrink_branch(database, session, point->branch, removed.sum, INT64_MAX, error);
 }
 
-// A segment of the line leads from the checkpoint at ?3 to the next, at ?4.
+// Selects whether a segment of the line has log. A segment goes from the checkpoint at ?3 to the
+// next one, at ?4.
 #define SEGMENT_HAS_LOG                                                                            \
 	CAU_STORE_LINE "SELECT 1 FROM line CROSS JOIN commands AS k ON k.session = ?1"                 \
 				   " AND k.branch = line.branch AND k.tick >= max(?3, line.from_tick)"             \
 				   " AND k.tick < min(?4, line.before_tick) LIMIT 1"
 
-// A state that must stay and has no checkpoint of its own, or where another line that is kept
-// leaves this one.
+// Selects whether a segment must stay, because a marked state without a checkpoint is in it, or
+// because another kept line forks from it.
 #define SEGMENT_IS_NEEDED                                                                          \
 	CAU_STORE_LINE "SELECT 1 FROM line CROSS JOIN marks AS m ON m.session = ?1"                    \
 				   " AND m.branch = line.branch AND m.tick > ?3 AND m.tick < ?4"                   \
@@ -152,8 +155,9 @@ static cau_status may_lose_log(sqlite3 *database, const int64_t segment[4], bool
 	return status;
 }
 
-// Notes the segment as a gap, so that from this transaction on nobody goes there; its commands go
-// in the next steps. It lengthens the gap before it, and the checkpoint between the two goes.
+// Records the segment as a gap, so that no rewind enters it after this transaction. Later steps
+// remove its commands. If a gap ends where this one begins, that gap grows, and the checkpoint
+// between the two is removed.
 static cau_status open_gap(sqlite3 *database, const struct cau_store_present *present, int index,
                            int64_t *rows, cau_error *error)
 {
@@ -164,7 +168,7 @@ static cau_status open_gap(sqlite3 *database, const struct cau_store_present *pr
 	bool follows = false;
 	for (int i = 0; i < course->hole_count; i++)
 		follows |= course->hole[i].before_tick == from->tick;
-	// A gap that ends where this one begins grows instead.
+	// A gap that ends where this one begins is extended instead.
 	cau_status status = cau_store_run(
 		database,
 		CAU_STORE_LINE "INSERT INTO gaps SELECT ?1, branch,"

@@ -5,7 +5,7 @@
 #include "fault.h"
 #include "import.h"
 
-// name, SQL
+// Columns: name, SQL.
 #define STATEMENT_TABLE(X)                                                                         \
 	X(FIND_SESSION, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0")                      \
 	X(ADD_SESSION, "INSERT INTO sessions(id, name, state, branch, created_ms, definition, mesh)"   \
@@ -55,8 +55,8 @@ static const char *const statement_sql[] = {
 };
 
 enum {
-	ROW_BYTES = 64,         // a row's cost beside its payload, roughly
-	UNCOUNTED_BYTES = 4096, // of a branch, at most: a page of the log
+	ROW_BYTES = 64,         // approximate bytes of a table row besides its payload
+	UNCOUNTED_BYTES = 4096, // most bytes of a branch that are not counted yet: a page of the log
 };
 
 cau_status cau_store_writer_init(struct cau_store_writer *writer, sqlite3 *database,
@@ -83,8 +83,8 @@ void cau_store_writer_finish(struct cau_store_writer *writer)
 }
 
 // ---- binding --------------------------------------------------------------------------
-// A statement that binds wrongly fails in sqlite3_step with SQLITE_MISUSE or as a NULL in a NOT
-// NULL column, so the results of binding are not looked at.
+// Results of binding are ignored. A statement with a wrong binding fails in sqlite3_step, with
+// SQLITE_MISUSE or with a NULL in a NOT NULL column.
 
 static void bind_text(sqlite3_stmt *statement, int index, const char *text)
 {
@@ -93,7 +93,7 @@ static void bind_text(sqlite3_stmt *statement, int index, const char *text)
 
 static void bind_blob(sqlite3_stmt *statement, int index, cau_store_bytes blob)
 {
-	// A NULL pointer would store NULL; an empty blob is meant.
+	// A NULL pointer would store NULL instead of an empty blob.
 	sqlite3_bind_blob64(statement, index, blob.bytes ? blob.data : "", blob.bytes, SQLITE_STATIC);
 }
 
@@ -102,7 +102,7 @@ static void bind_count(sqlite3_stmt *statement, int index, uint64_t value)
 	sqlite3_bind_int64(statement, index, (int64_t)value);
 }
 
-// Runs a statement that gives no rows.
+// Runs a statement that returns no rows of a table.
 static cau_status run(struct cau_store_writer *writer, enum statement_index index, const char *what,
                       cau_error *error)
 {
@@ -115,7 +115,7 @@ static cau_status run(struct cau_store_writer *writer, enum statement_index inde
 	return status;
 }
 
-// Runs a statement that gives one row of up to three integers, or none.
+// Runs a statement that returns at most one table row, of up to three integers.
 static cau_status look(struct cau_store_writer *writer, enum statement_index index, bool *found,
                        int64_t value[3], cau_error *error)
 {
@@ -149,7 +149,7 @@ static cau_status find_session(struct cau_store_writer *writer, const char *id, 
 	return CAU_OK;
 }
 
-// Counts bytes to a branch, which must be there.
+// Adds bytes to a branch's count. The branch must exist.
 static cau_status grow_branch(struct cau_store_writer *writer, int64_t key, int64_t branch,
                               int64_t bytes, cau_error *error)
 {
@@ -176,7 +176,7 @@ static cau_status check_branch(struct cau_store_writer *writer, int64_t key, int
 	return status;
 }
 
-// Counts a slot to its branch. Retention may have removed that meanwhile.
+// Adds a slot's bytes to its branch. Retention may have removed the branch meanwhile.
 static cau_status count_slot(struct cau_store_writer *writer, int index, cau_error *error)
 {
 	int64_t key = writer->uncounted.slot[index].key;
@@ -189,7 +189,8 @@ static cau_status count_slot(struct cau_store_writer *writer, int index, cau_err
 	return CAU_OK;
 }
 
-// The branch's slot, or else a free one; where all are in use, the fullest is counted first.
+// Finds the branch's slot, or else a free one. If all slots are in use, the fullest is counted and
+// freed first.
 static cau_status find_slot(struct cau_store_writer *writer, int64_t key, int64_t branch,
                             int *index, cau_error *error)
 {
@@ -213,7 +214,8 @@ static cau_status find_slot(struct cau_store_writer *writer, int64_t key, int64_
 	return status;
 }
 
-// Bytes of a command, counted with others of the same branch. The branch must be there.
+// Notes the bytes of a command, to count them later with others of the same branch. The branch must
+// exist.
 static cau_status count_later(struct cau_store_writer *writer, int64_t key, int64_t branch,
                               int64_t bytes, cau_error *error)
 {
@@ -302,7 +304,7 @@ static cau_status apply_answer(struct cau_store_writer *writer, const cau_store_
 	return status;
 }
 
-// A command's request: its answer, and the client among the session's.
+// Records a command's answer, and its client among the session's clients.
 static cau_status apply_request(struct cau_store_writer *writer, int64_t key,
                                 const cau_store_command *command, int64_t now_ms, cau_error *error)
 {
@@ -318,8 +320,8 @@ static cau_status apply_request(struct cau_store_writer *writer, int64_t key,
 	return run(writer, SEE_CLIENT, "a client", error);
 }
 
-// Where the log's last entry says how far the session was brought, this one takes its place, and
-// the branch has no more bytes than before.
+// Removes the log's last entry if both that one and the new one are of kind CAU_STORE_REACHED.
+// *taken: the new one replaces it, so the branch's bytes stay the same.
 static cau_status take_place(struct cau_store_writer *writer, int64_t key,
                              const cau_store_command *command, bool *taken, cau_error *error)
 {
@@ -443,7 +445,7 @@ static cau_status apply_gap(struct cau_store_writer *writer, const struct record
 	return run(writer, index, index == ADD_GAP ? "a gap" : "a mark", error);
 }
 
-// Goes up from *parent until the branch that owns the states up to fork_tick.
+// Goes from *parent towards the root until the branch that owns the states up to fork_tick.
 static cau_status find_owner(struct cau_store_writer *writer, int64_t key, uint64_t fork_tick,
                              int64_t *parent, cau_error *error)
 {

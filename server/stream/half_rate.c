@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A subscriber that keeps falling behind gets every second frame. All such of a profile share one
-// delta over two frames; it belongs to the same chain, so they come and go without a key frame.
+// A subscriber that keeps falling behind gets every second frame. All such subscribers of a profile
+// share one delta over two frames. This delta belongs to the same chain, so a subscriber changes
+// between the two rates without a key frame.
 #include <stdlib.h>
 
 #include "stream/internal.h"
 
 enum {
 	FALLS_TOLERATED = 3,
-	STEADY_FRAMES = 600, // without a fall: the falls before are forgotten
+	STEADY_FRAMES = 600, // earlier falls are forgotten after this many frames without a fall
 };
-#define ALONE_S 0.25 // a single last frame is sent after this, since none may follow it
+#define ALONE_S 0.25 // a single last frame is sent after this time, because no other may follow it
 
 static size_t slot_of(uint64_t sequence)
 {
@@ -44,7 +45,7 @@ void cau_half_publish(cau_streams *streams, cau_stream *stream)
 	if (!status)
 		status = cau_frame_thin(stream->half.thinner, stream->scratch, stream->scratch_bytes,
 		                        &bytes, &error);
-	if (status) // they go on with single frames
+	if (status) // these subscribers continue with single frames
 		cau_log(CAU_LOG_ERROR, streams->id, "half_rate_failed", "reason=\"%s\"", error.reason);
 	cau_buffer *buffer = bytes ? cau_ring_take(stream, bytes) : NULL;
 	if (!buffer)
@@ -95,7 +96,7 @@ void cau_half_steady(const cau_streams *streams, cau_stream *stream, cau_subscri
 	if (!sub->half)
 		return;
 	change(streams, stream, sub, false);
-	sub->falls = FALLS_TOLERATED; // on trial
+	sub->falls = FALLS_TOLERATED; // after one more fall, it gets half the rate again
 }
 
 void cau_half_leave(cau_stream *stream, const cau_subscriber *sub)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which profiles there are: one is opened for the first subscriber whom none fits, and taken over
-// when nobody watches it any more.
+// The open profiles of a session. A profile is opened for a subscriber if no open one fits. A
+// profile without subscribers is reused.
 #include <math.h>
 #include <stdalign.h>
 #include <stddef.h>
@@ -46,15 +46,16 @@ uint32_t cau_streams_watched(cau_streams *streams)
 	return channels;
 }
 
-// ---- finding
-// What every reader of the wish can read. A reader of meshoptimizer's codec reads plain numbers
-// too.
+// ---- finding a stream
+// True if every client with this wish can read the stream. A client that reads meshoptimizer's
+// codec reads plain numbers too.
 static bool is_readable(const cau_stream *stream, const cau_stream_wish *wish)
 {
 	return stream->used && (stream->def.plain || !wish->plain);
 }
 
-// NULL: one is to be opened, or, where no slot is free, none can be read.
+// Returns the stream that fits the wish. NULL: one must be opened or, if no slot is free, none is
+// readable.
 static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish)
 {
 	cau_stream *nearest = NULL, *any = NULL;
@@ -74,11 +75,12 @@ static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish
 	}
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		if (!streams->stream[i].used || streams->stream[i].subscribers == 0)
-			return NULL; // a slot is free
+			return NULL; // a slot is free, so that one can be opened
 	return nearest ? nearest : any;
 }
 
-// Nothing was published while nobody watched: what the ring still holds is of another time.
+// Clears what is left in the ring. Nothing was published without subscribers, so these frames are
+// old.
 static void wake_stream(cau_stream *stream)
 {
 	cau_buffer_release(stream->key.buffer);
@@ -86,8 +88,8 @@ static void wake_stream(cau_stream *stream)
 	stream->key_wanted = true;
 }
 
-// ---- opening
-// Where in one piece of memory things are that go together, each at an aligned place.
+// ---- opening a stream
+// Rounds up to a multiple of the largest alignment, for parts that share one allocation.
 static size_t aligned(size_t bytes)
 {
 	return (bytes + alignof(max_align_t) - 1) / alignof(max_align_t) * alignof(max_align_t);
@@ -104,7 +106,7 @@ static size_t topology_work_bytes(const cau_stream_def *def)
 	       (size_t)def->face_count;
 }
 
-// With the channels that most ask for; a wish for more makes the piece larger.
+// Returns a definition with the usual channels. A wish for more channels makes the memory larger.
 static cau_stream_def usual_def(int32_t vertex_count, int32_t face_count)
 {
 	cau_stream_def def = cau_default_stream_def();
@@ -119,7 +121,7 @@ size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count)
 	return profile_bytes(&def) + topology_work_bytes(&def) + cau_topology_bytes_max(&def);
 }
 
-// The topology of a stream: its faces, layers and texture are coded once for a session.
+// Encodes the topology of a stream. Faces, layers and texture are coded once for a session.
 static cau_status encode_topology(cau_streams *streams, const cau_stream_def *def,
                                   const cau_stream_shape *shape, cau_buffer **made,
                                   cau_error *error)
@@ -152,7 +154,7 @@ static cau_status encode_topology(cau_streams *streams, const cau_stream_def *de
 	return status;
 }
 
-// Later topologies are made from this one.
+// Keeps the topology, from which later ones are made.
 static void keep_topology(cau_streams *streams, cau_buffer *topology)
 {
 	cau_buffer_release(streams->topology);
@@ -166,7 +168,7 @@ cau_status cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape
 	if (!streams->profile_shelf || !streams->opening_shelf)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the shelves of a session");
 	if (!streams->epoch)
-		cau_streams_restart(streams); // no frame is of no epoch
+		cau_streams_restart(streams); // no frame has epoch 0
 	def.session = streams->session;
 	cau_shelf_stock(streams->profile_shelf, profile_bytes(&def), 1);
 	cau_shelf_stock(streams->opening_shelf, topology_work_bytes(&def), 1);
@@ -215,8 +217,9 @@ static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_w
 	return CAU_OK;
 }
 
-// ---- joining
-// Counts the subscriber into a stream that fits; NULL: *slot is to be opened for it.
+// ---- joining a stream
+// Counts the subscriber into a stream that fits. Returns NULL if the stream *slot must be opened
+// for it.
 static cau_stream *take_stream(cau_streams *streams, const cau_stream_wish *wish,
                                int32_t *subscribers, int *slot, bool *woken)
 {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames as they become due, once for each profile that somebody watches.
+// Makes the frames that are due, once for each profile that has subscribers.
 #include <math.h>
 #include <sys/random.h>
 
 #include "stream/internal.h"
 
-#define DUE_EARLY 0.25 // of a period: ticks and rates that nearly agree do not beat
+// share of a period by which a frame may be early, so that nearly equal rates of ticks and frames
+// do not beat
+#define DUE_EARLY 0.25
 
 static uint64_t random_epoch(void)
 {
@@ -32,7 +34,8 @@ uint64_t cau_streams_restart(cau_streams *streams)
 	return streams->epoch;
 }
 
-// Who waits for a key frame must not have the worker try again and again.
+// Cancels the request for a key frame, so that the worker does not try again and again while a
+// subscriber waits.
 static void give_up_key(cau_streams *streams, cau_stream *stream)
 {
 	pthread_mutex_lock(&streams->mutex);
@@ -40,7 +43,7 @@ static void give_up_key(cau_streams *streams, cau_stream *stream)
 	pthread_mutex_unlock(&streams->mutex);
 }
 
-// Advances the chain by a frame; the epoch's first is a key frame.
+// Advances the chain of deltas by a frame. The epoch's first frame is a key frame.
 static cau_status publish_frame(cau_streams *streams, cau_stream *stream,
                                 const cau_stream_sample *sample, bool *made, cau_error *error)
 {

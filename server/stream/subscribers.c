@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a subscriber gets next; on the thread of its transport.
+// Chooses the frame that a subscriber gets next, on the thread of its transport.
 #include <string.h>
 
 #include "stream/internal.h"
 
-#define KEY_PAUSE_S 1.0 // between key frames of one client
+#define KEY_PAUSE_S 1.0 // time between two key frames of one client
 
 static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
                               const cau_ring_frame *frame)
 {
 	if (sub->epoch != stream->epoch)
-		memset(sub->sent, 0, sizeof sub->sent); // each epoch numbers its frames anew
+		memset(sub->sent, 0, sizeof sub->sent); // each epoch numbers its frames from the start
 	sub->has_key = true;
 	sub->wants_key = false;
 	sub->epoch = stream->epoch;
@@ -21,7 +21,8 @@ static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
 	return cau_buffer_share(frame->buffer);
 }
 
-// The key frame, if the deltas after it are still there; otherwise a new one is ordered.
+// Returns the key frame if all deltas after it are still in the ring. Otherwise requests a new one
+// and returns NULL.
 static cau_buffer *next_key(cau_stream *stream, cau_subscriber *sub, double now_s, bool *wake)
 {
 	bool whole = stream->key.buffer && stream->newest < stream->key.sequence + RING_FRAMES;
@@ -45,7 +46,7 @@ static cau_buffer *next_delta(const cau_streams *streams, cau_stream *stream, ca
 	if (!frame)
 		return NULL;
 	uint64_t over = frame->sequence - sub->sequence;
-	if (!frame->buffer || over == 0 || over > CAU_FRAME_THINNING) { // it has left the ring
+	if (!frame->buffer || over == 0 || over > CAU_FRAME_THINNING) { // the frame has left the ring
 		sub->wants_key = true;
 		cau_half_fallen(streams, stream, sub);
 		return NULL;
@@ -89,7 +90,7 @@ bool cau_streams_has_frame(cau_streams *streams, const cau_subscriber *sub)
 	return behind;
 }
 
-// The oldest of the last SENT_FRAMES frames, whose bytes are known.
+// Returns the oldest of the last SENT_FRAMES frames, whose sizes are known.
 static uint64_t oldest_known(const cau_subscriber *sub)
 {
 	uint64_t oldest = UINT64_MAX;
@@ -105,7 +106,7 @@ void cau_streams_acknowledge(cau_subscriber *sub, uint64_t epoch, uint64_t seque
 		return;
 	sub->acknowledges = true;
 	if (sequence < oldest_known(sub))
-		return; // frames between the two may be on their way, and their bytes are forgotten
+		return; // frames between the two may be on their way, and their sizes are forgotten
 	sub->in_flight = 0;
 	for (size_t i = 0; i < SENT_FRAMES; i++)
 		if (sub->sent[i].sequence <= sequence)

@@ -10,8 +10,7 @@ static cau_status no_meaning(cau_error *error, const char *at)
 	return cau_fail(error, CAU_BAD_SYNTAX, "", "'%.60s' is not valid here", at);
 }
 
-// ---- one value: moves *at behind it; false if it is none
-// ------------------------------------------
+// ---- one value: moves *at behind it; returns false if there is none
 
 static void store_whole(const field *f, void *at, uint64_t value)
 {
@@ -59,7 +58,7 @@ static int nibble(char c)
 	return isdigit((unsigned char)c) ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-// The character after a backslash, or -1.
+// Reads the rest of an escape after its backslash. Returns the character, or -1.
 static int read_escaped(const char **at)
 {
 	char c = *(*at)++;

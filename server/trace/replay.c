@@ -6,14 +6,14 @@
 
 typedef struct replay {
 	FILE *trace;
-	char *line; // the one that is looked at, without its end; NULL: there is none
+	char *line; // the present line without its line feed; NULL: none
 	size_t line_bytes;
-	uint64_t number; // of that line
+	uint64_t number; // number of the present line
 	cau_logic *logic;
 	cau_trace_counts *counts;
 } replay;
 
-// The next line that was written whole.
+// Reads the next complete line. Returns false if there is none.
 static bool next_line(replay *r)
 {
 	ssize_t length = getline(&r->line, &r->line_bytes, r->trace);
@@ -67,7 +67,7 @@ static void take(replay *r, const cau_trace_call *call, cau_effects *effects)
 	r->counts->of_event[call->event]++;
 }
 
-// Makes the call and writes what comes of it.
+// Makes the call and writes its result to `answer`.
 static void make_call(replay *r, const cau_trace_call *call, FILE *answer)
 {
 	cau_effects effects = {.count = 0};
@@ -95,8 +95,8 @@ static void make_call(replay *r, const cau_trace_call *call, FILE *answer)
 	cau_trace_effects(answer, &effects);
 }
 
-// What the machine said then, line by line, beside what it says. *more: a call follows. A trace may
-// end anywhere.
+// Compares the lines of the trace with the machine's answer, line by line. *more: a call follows. A
+// trace may end anywhere.
 static cau_status compare(replay *r, char *answer, bool *more, cau_error *error)
 {
 	char *says = answer;
@@ -112,7 +112,7 @@ static cau_status compare(replay *r, char *answer, bool *more, cau_error *error)
 	return *more && *says ? differs(r, "", says, error) : CAU_OK;
 }
 
-// ---- the whole ----------------------------------------------------------------------------------
+// ---- the whole trace ----------------------------------------------------------------------------
 
 static cau_status replay_call(replay *r, bool *more, cau_error *error)
 {

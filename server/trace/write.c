@@ -146,7 +146,7 @@ void cau_trace_stepped(FILE *to, double now_s, const char *fault)
 	cau_trace_write(to, &call);
 }
 
-// ---- what came of them --------------------------------------------------------------------------
+// ---- the results of calls -----------------------------------------------------------------------
 
 void cau_trace_action(FILE *to, const cau_action *action)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transport in a build without DDS.
+// The DDS transport in a build without DDS: creating one fails.
 #include <stddef.h>
 
 #include "transport_dds/dds_transport.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Why DDS does not match a writer with a reader.
+// Finds why DDS does not match a writer with a reader.
 #pragma once
 
 #include <dds/dds.h>
 
-// The first policy of which less is offered than requested, as DDS names it, or NULL; reliability
-// is looked at last. What a QoS does not tell is DDS's default.
+// Returns DDS's name of the first policy of which less is offered than requested; NULL if there is
+// none. Reliability is checked last. A policy that a QoS does not set has DDS's default.
 const char *cau_dds_mismatch(const dds_qos_t *offered, const dds_qos_t *requested);

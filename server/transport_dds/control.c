@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery/session_request: from samples to the same orders and creations that JSON-RPC makes.
+// cautery/session_request: turns samples into the same orders and creations as JSON-RPC.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,8 +10,8 @@ enum { CHECK_BYTES = 2048 };
 
 typedef struct asked {
 	cau_dds *dds;
-	cau_dds_request *request; // who waits for the answer
-	cau_dds_writer *writer;   // who asks
+	cau_dds_request *request; // the request that waits for the answer
+	cau_dds_writer *writer;   // the writer that sent the request
 	const cautery_SessionRequest *sample;
 	const cau_method_info *method;
 	cau_asker asker;
@@ -25,7 +25,7 @@ static const cau_method methods[] = {
 	[cautery_TAKE_OVER] = CAU_METHOD_TOOL_TAKE_OVER,
 };
 
-// Checks params by the tables of JSON-RPC: writing them refuses what reading would.
+// Checks params by the tables of JSON-RPC. Writing refuses the same values as reading.
 static cau_status check_params(cau_method method, const void *params, cau_error *error)
 {
 	char text[CHECK_BYTES];
@@ -69,8 +69,9 @@ static cau_status read_rewind(asked *a, cau_order *order, cau_error *error)
 	return check_params(order->reply.method, &params, error);
 }
 
-// The client that drives by the named writer of the session's cautery/tool_command, or, with none
-// named, by the tool's ROS 2 topics; of the requester's participant.
+// Finds the client that drives, in the requester's participant. With a writer named, the client
+// drives by that writer of cautery/tool_command. With none named, the client drives by the tool's
+// ROS 2 topics.
 static const cau_dds_client *find_driver(const asked *a, cau_error *error)
 {
 	static const uint8_t nobody[16];
@@ -114,7 +115,8 @@ static cau_status read_take_over(asked *a, cau_order *order, cau_error *error)
 
 static const struct {
 	cau_order_kind kind;
-	cau_status (*read)(asked *a, cau_order *order, cau_error *error); // NULL: no order
+	// NULL if the method is no order
+	cau_status (*read)(asked *a, cau_order *order, cau_error *error);
 } orders[] = {
 	[cautery_LIST] = {0},
 	[cautery_CREATE] = {0},
@@ -127,7 +129,8 @@ static const struct {
 	[cautery_TAKE_OVER] = {CAU_ORDER_TAKE_OVER, read_take_over},
 };
 
-// The reply's `session` is where it is now.
+// Fails because the session is not on this daemon. If the session has moved, the reply's `session`
+// is its present id.
 static cau_status fail_missing(const asked *a, int32_t *code, cau_error *error)
 {
 	cau_moved_to to;
@@ -141,7 +144,8 @@ static cau_status fail_missing(const asked *a, int32_t *code, cau_error *error)
 	                a->sample->session);
 }
 
-// It may have been answered before its session was destroyed, or destroy one of the store only.
+// Handles a request for a session that does not exist. The request may have been answered before
+// the session was destroyed, or may destroy a session that only the store has.
 static cau_status look_up(const asked *a, cau_reply reply, int32_t *code, cau_error *error)
 {
 	if (a->method->changes && cau_hub_submit_missing(a->dds->hub, a->sample->session, &a->asker,
@@ -178,7 +182,7 @@ static cau_status order_session(asked *a, cau_reply reply, int32_t *code, cau_er
 	return status;
 }
 
-// ---- what needs no order
+// ---- requests that need no order
 static cau_status create(asked *a, cau_reply reply, cau_error *error)
 {
 	cau_wire_session_create params = {.has_client_sequence = true,
@@ -215,7 +219,7 @@ static cau_status create(asked *a, cau_reply reply, cau_error *error)
 	return status;
 }
 
-// The frames are there for everybody who reads them: a key frame is all there is to ask for.
+// Answers join. Every reader can already read the frames, so a join only asks for a key frame.
 static cau_status join(const asked *a, int32_t *code, cau_error *error)
 {
 	cau_wire_session_summary summary;
@@ -230,7 +234,7 @@ static cau_status join(const asked *a, int32_t *code, cau_error *error)
 	return fail_missing(a, code, error);
 }
 
-// ---- asking
+// ---- taking a request
 static cau_status serve(asked *a, int32_t *code, cau_error *error)
 {
 	cautery_SessionOperation operation = a->sample->operation;
@@ -261,14 +265,15 @@ bool cau_dds_is_too_fast(const cau_config *config, cau_dds_writer *writer)
 	return ++writer->requests > config->max_requests_per_s;
 }
 
-// Who owns the client_ids of a participant. Where clients of WebSocket need tokens, a participant
-// without a proved name must not have the client_id of one of them.
+// Returns the prefix of a participant's client_ids. If WebSocket clients need tokens, a participant
+// without a proved name must not get the client_id of one of them.
 static const char *owner_of(const cau_config *config, const cau_dds_writer *writer)
 {
 	return *writer->subject ? writer->subject : *config->tokens ? "dds:" : "";
 }
 
-// Several daemons may hear a request: it is for the one whose label begins the session's id.
+// True if the request is for this daemon. Several daemons may receive it; it is for the one whose
+// label begins the session's id.
 static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
 {
 	const char *label = dds->config->label;

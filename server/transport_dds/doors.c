@@ -40,8 +40,9 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 	return CAU_OK;
 }
 
-// Our writers wait for no reader (max_blocking_time 0). With KEEP_LAST a reader that is behind
-// loses the oldest samples; the newest state, or the next key frame, makes up for them.
+// Returns a reliable QoS. Our writers never wait for a reader (max_blocking_time 0). With
+// KEEP_LAST, a slow reader loses the oldest samples; the newest state or the next key frame makes
+// up for them.
 static dds_qos_t *reliable_qos(int32_t kept)
 {
 	dds_qos_t *qos = dds_create_qos();
@@ -93,12 +94,14 @@ static void close_door(cau_dds *dds, cau_door *door)
 		dds_delete(reader);
 		cau_dds_prune(dds, reader, false);
 	}
-	if (door->topic > 0 && !door->best_effort) // else it is the reliable door's
+	// a topic of a best-effort door belongs to the reliable door
+	if (door->topic > 0 && !door->best_effort)
 		dds_delete(door->topic);
 	*door = (cau_door){0};
 }
 
-// Replies are kept for a requester whose reader is found after its request was.
+// Opens the request reader and the reply writer. Replies are kept, because a requester's reader may
+// be discovered after its request.
 cau_status cau_dds_open_control(cau_dds *dds, cau_error *error)
 {
 	dds_qos_t *partition = dds_create_qos(), *taken = reliable_qos(REQUESTS_KEPT),
@@ -128,7 +131,7 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 	dds_qos_t *kept = reliable_qos(1), *last = reliable_qos(1), *chain = reliable_qos(DELTAS_KEPT);
 	dds_qset_durability(kept, DDS_DURABILITY_TRANSIENT_LOCAL);
 	dds_qset_durability(last, DDS_DURABILITY_TRANSIENT_LOCAL);
-	// It outlives its session: by then another one may have the name.
+	// The writer may outlive its session: by then another session may have the same name.
 	dds_qset_writer_data_lifecycle(last, false);
 	const struct {
 		cau_dds_outlet *outlet;
@@ -169,7 +172,7 @@ static bool admit_instrument(const void *sample, void *keys)
 	return cau_dds_keys_admit(keys, instrument->session, instrument->tool);
 }
 
-// A native topic that controllers write.
+// Opens a native topic that controllers write.
 static bool open_native(cau_dds *dds, cau_dds_session *session, cau_door *door, cau_door_kind kind)
 {
 	static const struct {
@@ -218,7 +221,8 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 
 static void close_writers(cau_dds_farewell **farewells, cau_dds_session *session)
 {
-	// Readers of other vendors do not take the end of its writer for the instance's own.
+	// Readers of other vendors do not treat the end of a writer as the end of its instance, so
+	// dispose the instance.
 	cautery_SessionStatus gone = {0};
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	if (session->status_writer > 0)
@@ -288,7 +292,8 @@ typedef struct ros_door {
 	const dds_topic_descriptor_t *type;
 } ros_door;
 
-// The beginning of the names of the tool's topics; false: another tool or session has it.
+// Writes the first part of the names of the tool's topics. Returns false if another tool or session
+// has that name.
 static bool ros_prefix(const cau_dds_session *session, const cau_dds_tool *tool,
                        char prefix[2 * CAU_NAME_BYTES])
 {
@@ -326,7 +331,7 @@ static void open_ros_doors(cau_dds *dds, cau_dds_session *session, const cau_dds
 
 static void open_operating(const cau_dds_entities *entities, cau_dds_tool *tool, const char *prefix)
 {
-	dds_qos_t *latched = reliable_qos(1); // late joiners want it, CRTK's clients ask for it
+	dds_qos_t *latched = reliable_qos(1); // for late joiners; CRTK's clients request it
 	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
 	tool->operating_topic =
 		ros_topic(entities, prefix, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From samples to orders: who may move a tool, energy and grasp as levels.
+// Turns samples into orders: checks who may move a tool, and treats energy and grasp as levels.
 #include <string.h>
 
 #include "transport_dds/internal.h"
 
-#define CLAIM_S 0.1 // a claim in the queue is not repeated for this
+#define CLAIM_S 0.1 // a claim in the queue is not repeated within this time
 
-// ---- the driver
-// The hand of a client of ours that drives this tool and has been silent for its deadline.
+// ---- the driver of a tool
+// Returns the hand of a DDS client that drives this tool and has been silent for its deadline; NULL
+// if there is none.
 static cau_dds_hand *silent_driver(const cau_dds_tool *tool, uint32_t driver, double now_s)
 {
 	for (cau_dds_hand *hand = tool->hands; hand; hand = hand->next)
@@ -17,7 +18,7 @@ static cau_dds_hand *silent_driver(const cau_dds_tool *tool, uint32_t driver, do
 	return NULL;
 }
 
-// Another's claim to the tool waits in the session's queue.
+// True if another client's claim to the tool waits in the session's queue.
 static bool is_claimed(const cau_dds_tool *tool, const cau_dds_client *client, double now_s)
 {
 	for (const cau_dds_hand *hand = tool->hands; hand; hand = hand->next)
@@ -26,7 +27,8 @@ static bool is_claimed(const cau_dds_tool *tool, const cau_dds_client *client, d
 	return false;
 }
 
-// Whether a motion of this client (NULL: who has no place yet) makes it the driver, or finds it so.
+// True if a motion of this client would make it the driver, or if it is the driver. `client` is
+// NULL for a writer that is not a client yet.
 static bool would_drive(const cau_dds_tool *tool, const cau_dds_client *client, uint32_t driver,
                         double now_s)
 {
@@ -45,7 +47,8 @@ static bool ask_for_tool(cau_dds_hand *hand, cau_dds_hand *silent)
 	return order && cau_dds_submit(hand, order);
 }
 
-// CAU_OK if the hand's client drives the tool, or will before what is submitted next.
+// Returns CAU_OK if the hand's client drives the tool, or will before the next submitted order
+// takes effect.
 static cau_status claim(cau_dds_hand *hand, const cau_hosted_tool *tool, double now_s,
                         cau_error *error)
 {
@@ -68,7 +71,7 @@ static cau_status claim(cau_dds_hand *hand, const cau_hosted_tool *tool, double 
 	return CAU_OK;
 }
 
-// What a motion must be and who may ask for it, before it takes a place.
+// Checks a motion and its writer's permission, before the writer may become a client.
 static cau_status check_motion(const cau_door *door, const cau_dds_writer *writer,
                                const cau_dds_tool *tool, cau_dds_motion *motion,
                                cau_hosted_tool *state, cau_error *error)
@@ -106,7 +109,8 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 		hand = cau_dds_take_hand(dds, writer, door->session, tool, now, &error);
 		if (hand)
 			hand->client->alive_s = writer->sign.alive_s;
-		status = hand ? claim(hand, &state, now_s, &error) : CAU_LIMIT; // or memory: error has it
+		// CAU_LIMIT, or no memory: `error` says which
+		status = hand ? claim(hand, &state, now_s, &error) : CAU_LIMIT;
 	}
 	if (!status)
 		status = cau_motion_check_leap(&hand->past, &motion.pose, now_s, &state.state.definition,

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The last word of sessions that have ended. A writer that is deleted resends nothing: a reader
-// that was busy just then would never hear that the session is gone. So the writer stays until
-// every reader has acknowledged, or for two seconds, without anybody waiting for it.
+// Sends the last sample of sessions that have ended. A deleted writer resends nothing, so a reader
+// that was busy then would never learn that the session is gone. So the writer stays until every
+// reader has acknowledged, or for two seconds. No thread waits for this.
 #include <math.h>
 #include <stdlib.h>
 #include <time.h>
 
 #include "transport_dds/internal.h"
 
-#define FAREWELL_S 2 // what a reader that hangs costs
+#define FAREWELL_S 2 // longest time that a hanging reader keeps a writer open
 #define LOOK_EVERY_S 0.01
 
 void cau_dds_bid_farewell(cau_dds_farewell **farewells, dds_entity_t publisher, dds_entity_t writer)

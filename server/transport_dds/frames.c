@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session's frames: cautery/topology, cautery/key_frame and cautery/delta. The transport is one
-// subscriber of the session, as a WebSocket connection is, while anybody reads one of the three.
+// A session's frames: cautery/topology, cautery/key_frame and cautery/delta. While any of the three
+// has a reader, the transport is one subscriber of the session, like a WebSocket connection.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,8 +10,8 @@
 
 #define RATE_HZ 60
 #define KEY_PERIOD_S 2.0
-#define LOOK_S 1.0       // at a key frame that is asked for and has not come
-#define LOST_PAUSE_S 0.1 // from a frame that the writer had no room for to a key frame
+#define LOOK_S 1.0       // time between checks for a requested key frame that has not come
+#define LOST_PAUSE_S 0.1 // time from a frame that the writer could not take to a key frame
 #define RETRY_S 1.0
 
 // ---- writing
@@ -48,7 +48,8 @@ static dds_entity_t writer_of(const cau_dds_stream *stream, cautery_FrameKind ki
 	                                 : stream->topology.writer;
 }
 
-// Takes the frame. One that the writer does not take is mended by the next key frame.
+// Writes the frame and releases it. If the writer cannot take it, the next key frame repairs the
+// stream.
 static void write_frame(cau_dds_session *session, cau_buffer *frame, double now_s)
 {
 	cau_dds_stream *stream = &session->stream;
@@ -73,14 +74,15 @@ static void write_frame(cau_dds_session *session, cau_buffer *frame, double now_
 	cau_buffer_release(frame);
 }
 
-// Whether the key frame that late joiners get is of an older state than the last delta.
+// True if the last key frame, which late joiners get, has an older state than the last delta.
 static bool key_is_old(const cau_dds_stream *stream)
 {
 	return stream->key_epoch != stream->chain.epoch ||
 	       stream->key_sequence != stream->chain.sequence;
 }
 
-// A key frame beside the chain, which goes on: readers that are in step do without it.
+// Requests a key frame outside the chain of deltas. The chain continues, so that readers that
+// follow it need no key frame.
 static void want_key(cau_dds_stream *stream)
 {
 	const cau_subscriber *chain = &stream->chain;
@@ -89,7 +91,7 @@ static void want_key(cau_dds_stream *stream)
 	                                .has_key = !stream->key_forced,
 	                                .wants_key = true,
 	                                .epoch = chain->epoch,
-	                                .sequence = chain->sequence - 1, // this state's or a newer
+	                                .sequence = chain->sequence - 1, // of this or a newer state
 	                                .key_asked_s = -INFINITY};
 	stream->key_wanted = stream->key_forced = false;
 }
@@ -101,7 +103,7 @@ static double write_new(cau_dds_session *session, double now_s)
 	while ((frame = cau_hosted_next_frame(session->hosted, &stream->chain, now_s)))
 		write_frame(session, frame, now_s);
 	if (!stream->chain.has_key || stream->chain.wants_key)
-		return now_s + LOOK_S; // the one on its way serves everybody
+		return now_s + LOOK_S; // the key frame on its way serves all readers
 	bool due = key_is_old(stream) && now_s >= stream->key_due_s;
 	if (due || stream->key_wanted)
 		want_key(stream);
@@ -115,7 +117,7 @@ static double write_new(cau_dds_session *session, double now_s)
 }
 
 // ---- joining and leaving
-// Notes newcomers too, who have only what was kept.
+// True if any outlet has readers. Also notes new readers, who have only the kept samples.
 static bool has_readers(cau_dds_stream *stream)
 {
 	cau_dds_outlet *outlets[] = {&stream->topology, &stream->key, &stream->delta};
@@ -157,12 +159,12 @@ void cau_dds_joined(cau_dds_session *session, cau_dds_post *post)
 		        error.reason);
 		return;
 	}
-	cau_hosted_release(post->joined); // the session has a reference of its own
+	cau_hosted_release(post->joined); // the session holds a reference of its own
 	post->joined = NULL;
 	stream->joined = true;
 	stream->chain = (cau_subscriber){.stream = post->stream, .key_asked_s = -INFINITY};
 	stream->keys = (cau_subscriber){0};
-	stream->key_wanted = stream->key_forced = false; // the chain begins with one
+	stream->key_wanted = stream->key_forced = false; // the chain begins with a key frame
 	stream->key_epoch = stream->key_sequence = 0;
 }
 
@@ -173,7 +175,8 @@ void cau_dds_leave_frames(cau_dds_session *session)
 		return;
 	stream->joined = false;
 	cau_hosted_leave(session->hosted, &stream->chain);
-	// What was kept would mislead who comes later: the next stream may be another one.
+	// Disposes the kept samples: they would mislead a later reader, because the next stream may be
+	// another one.
 	cautery_Frame key = {0};
 	snprintf(key.session, sizeof key.session, "%s", cau_hosted_id(session->hosted));
 	dds_dispose(stream->topology.writer, &key);

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 // Cyclone DDS takes its ports from DDSI 2.2, 9.6.1.1: 7400 + 250 domain + 10 + 2 index, and the
-// next one.
+// port after it.
 enum { FIRST_PORT = 7410, DOMAIN_GAIN = 250, INDEX_GAIN = 2, INDICES = 120 };
 
 static bool is_free(int port)
@@ -19,7 +19,7 @@ static bool is_free(int port)
 	                         .sin_addr.s_addr = htonl(INADDR_ANY)};
 	int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 	if (descriptor < 0)
-		return true; // without a socket there is no sign that the port is taken
+		return true; // without a socket nothing shows that the port is taken
 	bool bound = bind(descriptor, (struct sockaddr *)&at, sizeof at) == 0;
 	close(descriptor);
 	return bound;

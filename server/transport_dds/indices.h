@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Participant indices. Each DDS program of a machine holds one in its domain, and two ports by it.
+// Participant indices. Each DDS program on a machine has one in its domain, and two ports that
+// follow from it.
 #pragma once
 
 #include "cautery/status.h"
 #include "config/config.h"
 
-// Explains in *error why Cyclone DDS opened no domain; `word` is its own, short reason. Returns
-// CAU_LIMIT where programs of this machine hold all participant indices, else CAU_IO.
+// Explains in *error why Cyclone DDS opened no domain; `word` is Cyclone's own short reason.
+// Returns CAU_LIMIT if programs of this machine hold all participant indices, else CAU_IO.
 cau_status cau_dds_explain_domain(const cau_config *config, const char *word, cau_error *error);

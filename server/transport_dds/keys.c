@@ -35,7 +35,7 @@ static bool is_tool(const cau_dds_keys *keys, const char *session, const char *t
 	return false;
 }
 
-// One of those that are let in already, or that still can be.
+// True if this session and tool are among the strangers, or can still be added to them.
 static bool is_known_stranger(cau_dds_keys *keys, const char *session, const char *tool)
 {
 	for (int i = 0; i < keys->stranger_count; i++)

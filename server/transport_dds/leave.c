@@ -18,8 +18,8 @@ static void *leave(void *domain)
 	return NULL;
 }
 
-// Cyclone's threads still run. The exit handler of OpenSSL frees memory that they use, so the
-// process ends before it. Exit handlers run in the reverse order of their registration.
+// Ends the process before OpenSSL's exit handler, which frees memory that Cyclone's running threads
+// use. Exit handlers run in the reverse order of their registration.
 static void end_at_once(int status, void *unused)
 {
 	(void)unused;

@@ -16,7 +16,7 @@ static bool is_loopback(const struct sockaddr_storage *address)
 	return IN6_IS_ADDR_LOOPBACK(&((const struct sockaddr_in6 *)address)->sin6_addr);
 }
 
-// A UDP socket that hears others than this machine.
+// True if the descriptor is a UDP socket that can receive from other machines.
 static bool is_open(int descriptor)
 {
 	struct sockaddr_storage address = {0};

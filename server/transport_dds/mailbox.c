@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What other threads have for the transport's own: that it is to look again, at which sessions, and
-// the answers of workers and of the store's thread.
+// Deliveries from other threads to the DDS thread: the request to look again, the sessions to look
+// at, and the answers of workers and of the store thread.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/rpc.h"
 #include "transport_dds/internal.h"
 
-// ---- looking again; from any thread
+// ---- waking the DDS thread; from any thread
 void cau_dds_wake(cau_dds_wakeup *wakeup, atomic_bool *why)
 {
 	if (!atomic_exchange(why, true) && wakeup->guard > 0)
@@ -20,7 +20,7 @@ void cau_dds_mark(cau_dds_wakeup *wakeup, uint32_t session)
 	cau_dds_wake(wakeup, &wakeup->sliced);
 }
 
-// ---- sets of sessions, which are marked without a lock
+// ---- sets of sessions, marked without a lock
 void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session)
 {
 	uint32_t bit = session % BITS_MOST;
@@ -102,7 +102,7 @@ cau_dds_post *cau_dds_next_post(cau_dds_mailbox *mailbox)
 
 void cau_dds_post_free(cau_dds_post *post)
 {
-	if (post->joined) { // nobody took it
+	if (post->joined) { // no stream took it
 		cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
 		cau_hosted_release(post->joined);
 	}

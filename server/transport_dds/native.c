@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of cautery/tool_command.
+// Takes samples of cautery/tool_command.
 #include <string.h>
 
 #include "cautery.h"
@@ -38,6 +38,6 @@ void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 		cau_dds_energy(hand, writer, sample->energy, 0);
 		cau_dds_grasp(hand, sample->grasp);
 	} else if (!sample->energy && (hand = cau_dds_find_hand(writer->client, tool))) {
-		cau_dds_energy(hand, writer, false, 0); // off is heard in any sample that is in order
+		cau_dds_energy(hand, writer, false, 0); // energy off is obeyed in every valid sample
 	}
 }

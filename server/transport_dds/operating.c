@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CRTK's operating states of a tool: operating_state and state_command. They bind whoever drives
-// the tool over DDS.
+// CRTK's operating states of a tool: operating_state and state_command. They apply to every DDS
+// client that drives the tool.
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ cau_status cau_dds_check_ready(const cau_dds_session *session, const char *name,
 {
 	const cau_dds_tool *tool = cau_dds_find_tool(session, name);
 	if (!tool)
-		return CAU_OK; // nothing was ever said of it
+		return CAU_OK; // no operating state was ever published for the tool
 	if (tool->operating.state != OPERATING_ENABLED)
 		return cau_fail(error, CAU_BAD_STATE, "tool",
 		                "the operating state of the tool is %s, not ENABLED",
@@ -28,7 +28,7 @@ cau_status cau_dds_check_ready(const cau_dds_session *session, const char *name,
 	return CAU_OK;
 }
 
-// ---- telling
+// ---- publishing the state
 static void tell(cau_dds_tool *tool, cau_dds_operating_state seen)
 {
 	int64_t now_us = cau_wall_us();
@@ -66,7 +66,7 @@ void cau_dds_publish_operating(cau_dds_session *session)
 	}
 }
 
-// ---- being told
+// ---- taking commands
 typedef enum word { ENABLE, DISABLE, PAUSE, RESUME, HOME, UNHOME, WORD_COUNT } word;
 
 static bool read_word(const char *text, word *read)
@@ -83,7 +83,7 @@ static bool read_word(const char *text, word *read)
 	return false;
 }
 
-// The state after a command; where CRTK has no transition it stays.
+// Returns the state after a command. If CRTK has no transition, the state stays.
 static cau_dds_operating after(cau_dds_operating now, word command)
 {
 	switch (command) {
@@ -115,7 +115,8 @@ static bool is_ready(const cau_dds_operating *now)
 	return now->state == OPERATING_ENABLED && !now->unhomed;
 }
 
-// Whoever stops a tool may; whoever sets it going again must drive it, or nobody does.
+// Checks the sender of a command. Any operator may stop a tool. To start it again, the sender must
+// be its driver, or the tool must have none.
 static cau_status check_asker(const cau_door *door, const cau_dds_writer *writer, word command,
                               cau_error *error)
 {

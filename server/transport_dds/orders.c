@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders of a hand, as they go into its session's queue.
+// Makes the orders of a hand and submits them to its session.
 #include <stdlib.h>
 #include <string.h>
 
@@ -85,11 +85,11 @@ bool cau_dds_order_move(const cau_dds_hand *hand, const cau_pose *pose, double j
 	cau_error error = {0};
 	if (!cau_hosted_submit(hand->session->hosted, order, &error))
 		return true;
-	free(order); // the session has counted it
+	free(order); // the session has counted the refusal
 	return false;
 }
 
-// ---- CRTK's states
+// ---- orders of CRTK's states
 void cau_dds_stop_tool(cau_dds_session *session, cau_dds_tool *tool, const cau_asker *by)
 {
 	cau_hosted_tool state;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who reads: writers of ours that know whether somebody is there, so that nothing is written for
-// nobody.
+// Writers of this daemon that count their readers, so that nothing is written without a reader.
 #include "transport_dds/internal.h"
 
-// On Cyclone's threads.
+// Counts the readers. Called on Cyclone's threads.
 static void on_matched(dds_entity_t writer, const dds_publication_matched_status_t status,
                        void *user)
 {
@@ -30,7 +29,7 @@ bool cau_dds_open_outlet(cau_dds_wakeup *wakeup, cau_dds_outlet *outlet, uint32_
 void cau_dds_close_outlet(cau_dds_outlet *outlet)
 {
 	if (outlet->writer > 0)
-		dds_delete(outlet->writer); // which waits for on_matched
+		dds_delete(outlet->writer); // dds_delete waits for a running on_matched
 	outlet->writer = 0;
 	outlet->readers = 0;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who is in the domain: readers and writers of others that want our topics. DDS matches those that
-// are compatible and is silent about the rest, which would look like a robot that does nothing:
-// each of them is logged and counted, once. Writers of motion that are but best effort, as sensor
-// data is in ROS 2, get a reader of their own kind.
+// Watches the readers and writers of other programs that want our topics. DDS matches compatible
+// ones and is silent about the rest, which would look like a robot that does nothing. So each
+// incompatible peer is logged and counted, once. A best-effort writer of motion, as for sensor data
+// in ROS 2, gets a best-effort reader.
 #include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,17 +10,18 @@
 #include "transport_dds/compatible.h"
 #include "transport_dds/internal.h"
 
-enum { TAKEN_AT_ONCE = 32, TYPE_BYTES = 256, PEERS_TOLD_MOST = 16 }; // log lines a second
+// PEERS_TOLD_MOST: log lines a second
+enum { TAKEN_AT_ONCE = 32, TYPE_BYTES = 256, PEERS_TOLD_MOST = 16 };
 
-// What of ours a peer could be matched with.
+// One of our readers or writers with which a peer could be matched.
 typedef struct end {
-	dds_entity_t entity; // 0: nothing
+	dds_entity_t entity; // 0 if there is none
 	const cau_door *door;
-	cau_door *loose; // of the same topic; NULL: there can be none
+	cau_door *loose; // best-effort door of the same topic; NULL if there can be none
 	const char *session;
 } end;
 
-// ---- which end of ours
+// ---- our end for a peer
 static bool is_in_partition(const dds_qos_t *qos, const char *partition)
 {
 	uint32_t count = 0;
@@ -119,9 +120,9 @@ static end find_end(cau_dds *dds, const cau_dds_peer *peer)
 	return found;
 }
 
-// ---- what is wrong with it
+// ---- why a peer does not match
 
-// NULL: nothing. The names of types are all that a type is matched by.
+// Returns what does not match; NULL if all does. DDS compares types only by name.
 static const char *find_mismatch(const cau_dds_peer *peer, const end *ours)
 {
 	char type[TYPE_BYTES] = "";
@@ -170,7 +171,7 @@ static void look_at(cau_dds *dds, cau_dds_peer *peer)
 	}
 }
 
-// ---- who is there
+// ---- the list of peers
 static void free_peer(cau_dds_peer *peer)
 {
 	free(peer->topic);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who has a place: as a client of the hub, and with a hand on a tool. A place is taken by a valid
-// sample of somebody who may drive. There is room for a driver of every tool that the sessions may
-// have, whatever others do: who drives nothing has but a few places, and makes way for who would.
+// Limits how many DDS writers become clients of the hub and get a hand (cau_dds_hand) on a tool. A
+// writer becomes a client with a valid sample, if its role may drive. The limits always allow a
+// driver for every tool that the sessions may have. Clients that drive nothing are limited to a
+// few, and make way for a writer that would drive.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,17 +11,17 @@
 #include "transport_dds/internal.h"
 
 enum {
-	// Clients of one participant, and of one identity, that drive nothing.
+	// Largest number of clients of one participant, or of one identity, that drive nothing.
 	IDLE_OF_ONE_MOST = 64,
-	// Clients beyond one for each tool, for those that stand by.
+	// Additional clients beyond one for each tool, for those that are ready to take over.
 	CLIENTS_BESIDE_DRIVERS = 1024,
 	HANDS_OF_TOOL_MOST = 32,
 };
 
-#define DENIED_S 0.5       // a writer without a place does not ask for one again before
-#define DENIALS_TOLD_S 10. // between log lines
+#define DENIED_S 0.5       // after a denial, a writer asks again only after this time
+#define DENIALS_TOLD_S 10. // time between log lines about denials
 
-// ---- who drives
+// ---- clients that drive
 static bool drives(const cau_dds_hand *hand)
 {
 	cau_hosted_tool tool;
@@ -145,7 +146,7 @@ void cau_dds_give_up(cau_dds_client *client)
 	}
 }
 
-// ---- quotas
+// ---- limits
 static bool is_same(const cau_dds_client *client, const cau_dds_writer *writer)
 {
 	return client->participant == writer->participant ||
@@ -171,11 +172,11 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 	return CAU_OK;
 }
 
-// Who makes way: of those that drive nothing one that never had a motion accepted, else the first
-// come. `of`: only one of the same participant or identity; NULL: any.
+// Finds the client to end: among those that drive nothing, one that never had a motion accepted,
+// else the oldest. `of`: only clients of its participant or identity; NULL: all.
 static cau_dds_client *find_idle(const cau_dds_places *places, const cau_dds_writer *of)
 {
-	cau_dds_client *found = NULL; // in a list whose newest comes first
+	cau_dds_client *found = NULL; // the list has the newest client first
 	for (cau_dds_client *client = places->clients; client; client = client->next)
 		if ((!of || is_same(client, of)) && (!found || found->accepted || !client->accepted) &&
 		    is_idle(client))
@@ -183,7 +184,7 @@ static cau_dds_client *find_idle(const cau_dds_places *places, const cau_dds_wri
 	return found;
 }
 
-// Its writers are nobody's.
+// Removes the client from its writers.
 static void forget_client(const cau_dds_writers *writers, const cau_dds_client *client)
 {
 	for (int i = 0; i < WRITER_BUCKETS; i++)

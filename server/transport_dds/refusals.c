@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is not done for a writer: told to its session, counted, and logged once a second.
+// Refusals of samples: reported to the session, counted, and logged once a second.
 #include "transport_dds/internal.h"
 
-#define REFUSALS_TOLD_S 1 // between log lines
+#define REFUSALS_TOLD_S 1 // time between log lines
 
 static void tell_refused(cau_dds_session *session, const char *tool, const char *client,
                          const cau_error *error)
@@ -35,7 +35,8 @@ void cau_dds_count_dropped(cau_dds_session *session)
 		session->refused += (int64_t)dropped;
 		session->drops_untold = true;
 	}
-	if (!session->drops_untold || session->refused == 0) { // told with others' refusals
+	// dropped samples are logged together with other refusals
+	if (!session->drops_untold || session->refused == 0) {
 		session->drops_untold = false;
 		return;
 	}

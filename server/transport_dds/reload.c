@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Roles of identities that change while the daemon runs: read by whoever tells it to, taken over by
-// the DDS thread, which alone looks at them.
+// Changes the roles of identities while the daemon runs. The thread that calls cau_dds_reload reads
+// the file; the DDS thread, which alone uses the roles, takes them over.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -20,7 +20,7 @@ cau_status cau_dds_reload(cau_dds *dds, cau_error *error)
 		return status;
 	}
 	pthread_mutex_lock(&dds->mailbox.mutex);
-	free(dds->mailbox.roles); // of a moment ago, not taken yet
+	free(dds->mailbox.roles); // roles of an earlier reload that were not taken yet
 	dds->mailbox.roles = read;
 	pthread_mutex_unlock(&dds->mailbox.mutex);
 	cau_dds_wake(&dds->wakeup, &dds->wakeup.roles_changed);
@@ -32,8 +32,9 @@ static cau_role role_of(const cau_dds_roles *roles, const char *subject)
 	return cau_dds_roles_find(roles, *subject ? subject : NULL);
 }
 
-// Whose role is less gives up its place, energy off, and asks for another with its next sample, as
-// what it is now. Whose role is more keeps it.
+// Applies a changed role to a client. If the role is smaller, the client ends with energy off; its
+// writers become clients with the new role by their next samples. If the role is larger, the client
+// continues.
 static void follow_role(cau_dds *dds, cau_dds_client *client)
 {
 	cau_role role = role_of(&dds->roles, client->subject), before = client->asker.role;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery/session_reply: what became of requests, once it is on the disk.
+// cautery/session_reply: the results of requests, published once they are on the disk.
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,7 +64,8 @@ void cau_dds_reply_fail(const cau_dds_control *control, cau_dds_request *request
 	cau_rpc_fault_of_error(&fault, error);
 	if (code)
 		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)code, error->reason);
-	const char *path = error->path; // of JSON-RPC's params: the sample has the same members
+	// path within JSON-RPC's params: the sample has the same members
+	const char *path = error->path;
 	if (strncmp(path, prefix, sizeof prefix - 1) == 0)
 		path += sizeof prefix - 1;
 	reply.code = fault.code;
@@ -120,8 +121,8 @@ void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 	free(statuses);
 }
 
-// ---- from posts
-// The number by which frames name a session; 0: it is gone again.
+// ---- replies from posts
+// Returns the number by which frames name a session; 0 if the session is gone.
 static uint32_t number_of(cau_hub *hub, const char *id)
 {
 	cau_hosted *hosted = cau_hub_find(hub, id);
@@ -177,7 +178,7 @@ static cau_status fill(cau_hub *hub, const cau_dds_post *post, cautery_SessionRe
 		reply->driver = (uint32_t)driver.client;
 		return status;
 	default:
-		return CAU_OK; // done, and nothing to tell
+		return CAU_OK; // the reply has no result
 	}
 }
 

@@ -27,7 +27,7 @@ static cau_status add(cau_dds_roles *roles, cau_role role, const char *subject, 
 	return CAU_OK;
 }
 
-// A subject may have spaces within.
+// Reads one line: a role and a subject. A subject may contain spaces.
 static cau_status read_line(cau_dds_roles *roles, char *line, int number, cau_error *error)
 {
 	cau_role role;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The role that an authenticated identity has.
+// The roles of authenticated identities.
 #pragma once
 
 #include "cautery/message_choices.h"
@@ -10,7 +10,7 @@
 enum { CAU_DDS_ROLES_MOST = 256 };
 
 typedef struct cau_dds_roles {
-	bool named; // there is a file: who has proved no name has the least role
+	bool named; // there is a file, so a participant without a proved name has the least role
 	cau_role role_else;
 	int count;
 	struct {
@@ -19,10 +19,11 @@ typedef struct cau_dds_roles {
 	} identities[CAU_DDS_ROLES_MOST];
 } cau_dds_roles;
 
-// Reads the settings dds_role and dds_roles: `ROLE SUBJECT` a line; lines that begin with `#` are
-// comments. A file that others than its owner can write is refused, and so is a subject named
-// twice.
+// Reads the settings dds_role and dds_roles. The file has one `ROLE SUBJECT` for each line; lines
+// that begin with `#` are comments. A file that users other than its owner can write is refused. So
+// is a subject that is named twice.
 cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, cau_error *error);
 
-// The role of who has proved this subject name; NULL: of who has proved none.
+// Returns the role of a participant that has proved this subject name. `subject` is NULL if it has
+// proved none.
 cau_role cau_dds_roles_find(const cau_dds_roles *roles, const char *subject);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of the ROS 2 topics of a tool. Their writers count nothing, so we count for them.
+// Takes samples of the ROS 2 topics of a tool. These samples have no sequence number, so the daemon
+// counts for their writers.
 #include "ros2.h"
 
 #include <math.h>
 
 #include "transport_dds/internal.h"
 
-// To a pose, with the jaw as it was asked for last.
+// Moves the tool to a pose, with the jaw opening that was requested last.
 static void move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool, cau_dds_writer *writer,
                  const cau_pose *pose)
 {
@@ -41,7 +42,8 @@ static cau_status check_jaw(const cau_hosted_tool *tool,
 	return CAU_OK;
 }
 
-// The jaw moves with the pose: with the last one at once, else with the first that comes.
+// Takes a jaw opening. The jaw moves together with a pose: with the last pose at once, or else with
+// the first pose that comes.
 void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	cau_hosted_tool state;
@@ -66,7 +68,8 @@ void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
 		move(dds, door, tool, writer, &hand->past.pose);
 }
 
-// Of who has not moved the tool a level says nothing: energy wants one that rises while it drives.
+// Takes an energy level. The level of a client that has not moved the tool is ignored: energy needs
+// a level that rises while the client drives.
 void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	const sensor_msgs_msg_dds__Joy_ *sample = taken;
@@ -74,7 +77,7 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
 	cau_dds_hand *hand = tool ? cau_dds_find_hand(writer->client, tool) : NULL;
 	(void)dds;
 	const dds_sequence_long *buttons = &sample->buttons_;
-	if (hand) // no button is a button let go
+	if (hand) // a missing button counts as released
 		cau_dds_energy(hand, writer, buttons->_length > 0 && buttons->_buffer[0] > 0,
 		               buttons->_length > 1 ? buttons->_buffer[1] : 0);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DDS Security: the daemon's identity, from a folder of files named as in a ROS 2 keystore's
-// enclave, as properties of its participant. Cyclone makes no participant of a broken identity, so
-// one that was given is always in force.
+// DDS Security: sets the daemon's identity as properties of its participant. The files are in one
+// folder, named as in a ROS 2 keystore's enclave. Cyclone makes no participant with a broken
+// identity, so a given identity is always in force.
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,10 +23,10 @@ static const struct {
 	{"dds.sec.access.permissions", "permissions.p7s"},
 };
 
-// Certificates that the authority has taken back; where there is such a list.
+// List of certificates that the authority has revoked; optional.
 static const char revoked_property[] = "org.eclipse.cyclonedds.sec.auth.crl", revoked[] = "crl.pem";
 
-// Debian keeps the plugins out of the linker's folders; the build has looked where.
+// Debian keeps the plugins outside the linker's folders; the build has found their folder.
 static const struct {
 	const char *name, *path, *function;
 } plugins[] = {
@@ -41,7 +41,7 @@ static void set_plugin(dds_qos_t *qos, const char *name, const char *member, con
 	dds_qset_prop(qos, property, value);
 }
 
-// Authentication is Cyclone's too, within a plugin of ours that notes who was authenticated.
+// Sets our authentication plugin, which wraps Cyclone's own and notes who was authenticated.
 static void set_authentication(dds_qos_t *qos, const char *library)
 {
 	set_plugin(qos, "auth", "path", library);
@@ -61,7 +61,8 @@ static void set_plugins(dds_qos_t *qos)
 	}
 }
 
-// Cyclone opens it by itself, and would wait for the writer of a FIFO.
+// Checks that a file can be read. Cyclone opens the file by itself, and would wait for the writer
+// of a FIFO.
 static cau_status check_file(const char *folder, const char *name, cau_error *error)
 {
 	char reason[CAU_NAMED_FILE_REASON_BYTES];
@@ -89,7 +90,8 @@ static cau_status set_identity(dds_qos_t *qos, const char *folder, cau_error *er
 	snprintf(uri, sizeof uri, "file:%s/%s", folder, revoked);
 	if (access(uri + strlen("file:"), F_OK) != 0)
 		return CAU_OK;
-	dds_qset_prop(qos, revoked_property, uri); // one that cannot be read is no reason to go without
+	// an unreadable revocation list is an error; the daemon does not start without it
+	dds_qset_prop(qos, revoked_property, uri);
 	return check_file(folder, revoked, error);
 }
 

@@ -6,6 +6,6 @@
 
 #include "config/config.h"
 
-// Adds the identity in the folder config->dds_security to the participant's QoS; nothing if that is
-// empty. CAU_NOT_FOUND: a file of it cannot be read.
+// Adds the identity in the folder config->dds_security to the participant's QoS. Adds nothing if
+// the setting is empty. Returns CAU_NOT_FOUND if one of its files cannot be read.
 cau_status cau_dds_secure(dds_qos_t *qos, const cau_config *config, cau_error *error);

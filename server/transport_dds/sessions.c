@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Follows the hub's sessions and their tools: opens and closes what each has on the wire.
+// Follows the hub's sessions and their tools. Opens and closes the DDS readers and writers of each.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "transport_dds/internal.h"
 
-#define LOOK_EVERY_S 1    // what readers have dropped wakes nobody
-#define UNREAD_LOOK_S 0.1 // at sessions that had a slice and that nobody reads
+// longest time between checks: samples that readers drop do not wake the thread
+#define LOOK_EVERY_S 1
+#define UNREAD_LOOK_S 0.1 // time between checks of sessions that had a slice and have no readers
 
 static cau_dds_session *find_session(cau_dds *dds, const cau_hosted *hosted)
 {
@@ -33,7 +34,7 @@ static bool name_taken(const cau_dds *dds, const char *name)
 	return false;
 }
 
-// The hub's visitor: keeps what is new in the list, not opened yet.
+// Adds a new session of the hub to the list, without opening it yet. The hub's visitor.
 static void note_session(void *user, cau_hosted *hosted)
 {
 	cau_dds *dds = user;
@@ -166,7 +167,7 @@ static bool is_session_read(const cau_dds_session *session)
 	return any;
 }
 
-// Returns when to look at the session again.
+// Serves one session. Returns when to check it again.
 static double serve_session(cau_dds *dds, cau_dds_session *session, double now_s)
 {
 	follow_session(dds, session, now_s);
@@ -176,7 +177,8 @@ static double serve_session(cau_dds *dds, cau_dds_session *session, double now_s
 	return fmin(look_s, cau_dds_serve_frames(dds, session, now_s));
 }
 
-// Whoever reads a session is told of it at once; of others the thread need not hear at each slice.
+// Notes which sessions have readers. A slice of such a session wakes the thread at once; a slice of
+// another session does not.
 static void note_read(cau_dds *dds)
 {
 	cau_dds_bits read = {0};
@@ -195,10 +197,12 @@ double cau_dds_serve(cau_dds *dds)
 		deliver(dds, post);
 		cau_dds_post_free(post);
 	}
-	note_read(dds); // before the marks are taken: a slice that did not wake the thread left one
+	// before the marks are taken: a slice that does not wake the thread leaves a mark
+	note_read(dds);
 	cau_dds_take_bits(&dds->wakeup.marked, &marked);
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
-		if (cau_hosted_ended(s->hosted)) // listed anew at once, whoever else tells of it
+		// list the sessions again at once, even if no other notice comes
+		if (cau_hosted_ended(s->hosted))
 			cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
 		if (!s->subscriber)
 			continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of cautery/tool_setting: power, voltage, crest factor and current of a tool's generator;
-// and of cautery/tool_instrument: the instrument that a tool is. Each sample states all. So it
-// needs nothing of a sample before it, which may still wait in the session's queue.
+// Takes samples of cautery/tool_setting (power, voltage, crest factor and current of a tool's
+// generator) and of cautery/tool_instrument (the tool's instrument). Each sample has all values, so
+// it does not depend on an earlier sample, which may still wait in the session's queue.
 #include <string.h>
 
 #include "cautery.h"
@@ -9,7 +9,7 @@
 #include "cautery/instrument.h"
 #include "transport_dds/internal.h"
 
-// Sets one of the tool's sizes, in its range.
+// Sets one of the tool's sizes, after a check of its range.
 static cau_status set(cau_tool_def *tool, const char *name, double value, cau_error *error)
 {
 	const struct {
@@ -40,7 +40,8 @@ static cau_status set_all(cau_tool_def *tool, const cautery_ToolSetting *sample,
 	return status ? status : set(tool, "current_max_a", sample->current_max_a, error);
 }
 
-// The hand of the writer's participant that drives the tool, whatever it drives it by.
+// Returns the hand that drives the tool and belongs to the writer's participant, by whatever topic
+// it drives.
 static cau_dds_hand *find_driving(const cau_dds_tool *tool, const cau_dds_writer *writer,
                                   uint32_t driver)
 {
@@ -66,7 +67,8 @@ static cau_status order_setting(const cau_dds_hand *hand, const cau_tool_def *to
 	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders at the moment");
 }
 
-// Finds the tool that a sample names, as it is, and the writer's hand that drives it.
+// Finds the tool that a sample names, its present definition, and the hand of the writer's
+// participant that drives it.
 static cau_status find(const cau_dds *dds, const cau_door *door, cau_dds_writer *writer,
                        const char *session, const char *name, const cau_dds_hand **hand,
                        cau_tool_def *definition, cau_error *error)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server says of tools: cautery/tool_state, cautery/tool_grasp, cautery/tool_power,
+// Publishes the states of tools: cautery/tool_state, cautery/tool_grasp, cautery/tool_power,
 // cautery/tool_force, measured_cp, setpoint_cp, measured_cf, raw/measured_cf, jaw/measured_js,
 // jaw/setpoint_js.
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
-#define UNREAD_PERIOD_S 1.0 // between writes for nobody
+#define UNREAD_PERIOD_S 1.0 // time between writes while there are no readers
 
 static char world_frame[] = "world", jaw_text[] = "jaw";
 static char *jaw_name = jaw_text;
@@ -117,7 +117,7 @@ static std_msgs_msg_dds__Header_ header_now(void)
 		{(int32_t)(now_us / 1000000), (uint32_t)(now_us % 1000000) * 1000}, world_frame};
 }
 
-// Whether what the outlet tells is to be written now.
+// True if the outlet's sample must be written now.
 static bool is_due(cau_dds_outlet *outlet, bool changed)
 {
 	if (outlet->writer <= 0 || !cau_dds_is_read(outlet))
@@ -189,7 +189,7 @@ void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
 	dds_dispose(session->force.writer, &unloaded);
 }
 
-// What a late joiner must not be told of wrongly, not for a second.
+// True if the state must be written at once, so that a late joiner never reads an old value.
 static bool is_news(const cau_hosted_tool *was, const cau_hosted_tool *now)
 {
 	return was->driver.client != now->driver.client || was->energized != now->energized ||
@@ -204,9 +204,9 @@ double cau_dds_states_due(const cau_dds_session *session)
 	return INFINITY;
 }
 
-// A topic of tools beside cautery/tool_state.
+// A topic of tools other than cautery/tool_state.
 typedef struct own_topic {
-	bool (*has)(const cau_tool_state *state); // which tools; NULL: all
+	bool (*has)(const cau_tool_state *state); // selects the tools that have the topic; NULL: all
 	void (*publish)(const cau_dds_session *session, const cau_tool_state *state, uint64_t tick);
 	bool is_read, newcomers;
 } own_topic;
@@ -229,11 +229,12 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 	bool due = now_s >= cau_dds_states_due(session);
 	if (newcomers || due)
 		session->states_s = now_s;
-	memset(session->states_owed + count, 0, (size_t)(CAU_MAX_TOOLS - count)); // of removed tools
+	// those of removed tools
+	memset(session->states_owed + count, 0, (size_t)(CAU_MAX_TOOLS - count));
 	for (int32_t i = 0; i < count; i++) {
 		cau_hosted_tool *last = &session->states[i];
 		cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);
-		// Padding may differ: then it is written once more.
+		// Padding bytes may differ; then the state is written once more.
 		// NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
 		bool moved = memcmp(last, &tools[i], sizeof *last) != 0;
 		bool changed = moved || session->states_tick != tick;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery/session_status: at once when something changes, the running figures ten times a second.
+// Publishes cautery/session_status: at once after a change, and the running counts ten times a
+// second.
 #include <math.h>
 #include <string.h>
 
 #include "transport_dds/internal.h"
 
 #define PERIOD_S 0.1
-#define UNREAD_PERIOD_S 1.0 // for who comes late
+#define UNREAD_PERIOD_S 1.0 // time between writes while there are no readers, for late joiners
 
 void cau_dds_fill_status(cautery_SessionStatus *status, const cau_wire_session_summary *summary,
                          uint32_t number, const cau_hosted_counts *counts)
@@ -36,7 +37,7 @@ void cau_dds_fill_status(cautery_SessionStatus *status, const cau_wire_session_s
 		memcpy(status->fault, summary->fault, sizeof summary->fault);
 }
 
-// What a reader must hear at once.
+// True if readers must get the change at once.
 static bool is_news(const cau_wire_session_summary *was, const cau_wire_session_summary *now)
 {
 	return was->state != now->state || was->epoch != now->epoch || was->speed != now->speed ||
@@ -65,7 +66,7 @@ double cau_dds_publish_status(cau_dds_session *session, double now_s)
 	cau_hosted_summary(session->hosted, &summary);
 	cau_hosted_count(session->hosted, &counts);
 	if (!*summary.session)
-		return INFINITY; // it has not been built yet
+		return INFINITY; // the session is not built yet
 	bool news = last->written_s == 0 || is_news(&last->summary, &summary);
 	bool differs = news || last->summary.tick != summary.tick ||
 	               last->summary.realtime_factor != summary.realtime_factor ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transport's life and its thread.
+// Creates and destroys the transport, and runs its thread.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = 4096 };
 
-// ---- the sink; from any thread
+// ---- the sink; called by any thread
 static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 {
 	cau_dds *dds = user;
@@ -27,10 +27,10 @@ static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 
 static void on_frames(void *user)
 {
-	(void)user; // a slice that made frames ends soon, and on_sliced tells
+	(void)user; // nothing to do: a slice that made frames ends soon and calls on_sliced
 }
 
-// What nobody reads can wait until the thread looks anyway.
+// Marks the session. Without readers it can wait until the thread's next check.
 static void on_sliced(void *user, uint32_t session)
 {
 	cau_dds *dds = user;
@@ -40,7 +40,8 @@ static void on_sliced(void *user, uint32_t session)
 }
 
 // ---- samples
-// Every sample has its writer's clock, unless the writer's DDS leaves it out.
+// Notes a sign of life of the writer. A sample has the time of the writer's clock, unless the
+// writer's DDS omits it.
 static void hear(cau_dds_writer *writer, dds_time_t source_timestamp)
 {
 	double now_s = cau_monotonic_s();
@@ -145,13 +146,13 @@ void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
 	}
 }
 
-// ---- life
+// ---- creating and destroying
 static cau_status fail(cau_error *error, const char *what, dds_return_t code)
 {
 	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));
 }
 
-// Closing a session's writers must not wait for a dead reader's acknowledgements.
+// Closing a session's writers must not wait for the acknowledgements of a dead reader.
 static const char no_linger[] =
 	"<CycloneDDS><Domain Id=\"any\"><Internal>"
 	"<WriterLingerDuration>0 s</WriterLingerDuration></Internal></Domain></CycloneDDS>";
@@ -167,7 +168,8 @@ static cau_status open_domain(cau_dds_entities *entities, const cau_config *conf
 		return cau_fail(error, CAU_IO, "dds_config", "cannot open %.160s: %s", config->dds_config,
 		                reason);
 	if (settings)
-		fclose(settings); // Cyclone opens it by itself, and would wait for the writer of a FIFO
+		fclose(settings); // opened only as a check: Cyclone opens the file by itself, and would
+		                  // wait for the writer of a FIFO
 	if (*config->dds_config)
 		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
 	else

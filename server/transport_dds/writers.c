@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who writes: one record for each writer that a reader of ours has met, as long as it is matched.
-// A record is no place: it costs less than what Cyclone keeps of the same writer. Places, which are
-// few, are places.c's.
+// Keeps one record for each writer that matches a reader of ours, as long as it matches. A record
+// is not a client: it takes less memory than Cyclone's own record of the writer. Clients are
+// limited by places.c.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum { ONLOOKERS_TOLD_MOST = 16 }; // log lines a second
 
-// Bounds on a declared deadline, s.
+// Bounds on the deadline that a writer's QoS declares, s.
 static const double deadline_least_s = 0.02, deadline_most_s = 1;
 
 static double deadline_of(const cau_config *config, const dds_qos_t *qos)
@@ -50,7 +50,7 @@ static cau_dds_writer *find_writer(cau_dds_writers *writers, dds_entity_t reader
 	return writer;
 }
 
-// By the name that its participant has proved.
+// Fills the writer's asker, with the role of the name that its participant has proved.
 static void describe_asker(const cau_dds *dds, cau_dds_writer *writer,
                            const dds_builtintopic_endpoint_t *endpoint)
 {
@@ -66,7 +66,7 @@ static void describe_asker(const cau_dds *dds, cau_dds_writer *writer,
 	snprintf(asker->client_id, sizeof asker->client_id, "dds-%s", guid);
 }
 
-// Who may not drive never gets a place, whose log line would name it: it is named here.
+// Logs a writer that may not drive. It never becomes a client, so no other log line names it.
 static void tell_onlooker(cau_dds_writers *writers, const cau_dds_writer *writer)
 {
 	double now_s = cau_monotonic_s();
@@ -114,15 +114,16 @@ cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instan
 	return writer;
 }
 
-// ---- who is matched
+// ---- matched writers
 
-// The writers that the reader has matched, in order; to be freed, NULL: none.
+// Returns the writers that the reader has matched, in order. The caller frees the array; NULL if
+// there are none.
 static dds_instance_handle_t *matched_of(dds_entity_t reader, size_t *count)
 {
 	dds_instance_handle_t *handles = NULL;
 	dds_return_t there = dds_get_matched_publications(reader, NULL, 0);
 	*count = 0;
-	for (size_t room = 0; there > 0 && room < (size_t)there;) { // more may come meanwhile
+	for (size_t room = 0; there > 0 && room < (size_t)there;) { // more writers may match meanwhile
 		room = (size_t)there;
 		free(handles);
 		handles = malloc(room * sizeof *handles);
@@ -165,7 +166,7 @@ cau_dds_writer *cau_dds_find_writer(cau_dds *dds, const cau_door *door, uint64_t
 	return found ? cau_dds_writer_of(dds, door, found) : NULL;
 }
 
-// ---- going
+// ---- forgetting writers
 static void drop_writer(cau_dds *dds, cau_dds_writer *writer)
 {
 	if (writer->reader == dds->control.door.reader)
@@ -198,8 +199,8 @@ void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all)
 }
 
 // ---- liveliness
-// On Cyclone's threads: each writer that stops being alive is noted, since the status tells but the
-// last one of several.
+// Notes each writer that stops being alive, because the status reports only the last of several.
+// Called on Cyclone's threads.
 static void on_liveliness(dds_entity_t reader, const dds_liveliness_changed_status_t status,
                           void *user)
 {
@@ -208,7 +209,7 @@ static void on_liveliness(dds_entity_t reader, const dds_liveliness_changed_stat
 		return;
 	cau_dds_silenced *noted = malloc(sizeof *noted);
 	if (!noted)
-		return; // the watchdog cuts its energy all the same
+		return; // the watchdog turns its energy off all the same
 	*noted = (cau_dds_silenced){.reader = reader, .handle = status.last_publication_handle};
 	pthread_mutex_lock(&dds->mailbox.mutex);
 	noted->next = dds->mailbox.silenced;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How connections end. Whoever decides it, the handler is told at once, a close
-// frame goes out behind what was queued, our side of the socket is shut behind
-// that, and what the peer still sends is read and dropped until it shuts its
-// own. A peer that does not do so within CLOSE_WITHIN_S, or is one of more than
-// LINGERING_MOST, is reset: no socket of a closed connection stays.
+// How connections end. Whoever ends a connection, the handler is notified soon. A close frame goes
+// out behind the queued bytes, and then our side of the socket is shut. What the peer still sends
+// is read and dropped until it shuts its side. A peer that does not do so within CLOSE_WITHIN_S, or
+// is one of more than LINGERING_MOST, is reset. So no socket of a closed connection stays.
 #include <math.h>
 #include <netinet/in.h>
 #include <string.h>
@@ -14,16 +13,16 @@
 #include "transport_ws/internal.h"
 
 enum {
-	CLOSE_WITHIN_S = 2, // a round trip around the world and a busy peer
+	CLOSE_WITHIN_S = 2, // enough for a round trip around the world and a busy peer
 	LINGERING_MOST = 64,
-	UNPLACED_S = 1, // for a client that comes back, see cau_connection_has_place
-	MUTED_S = 1,    // between two guesses of a token
+	UNPLACED_S = 1, // grace for a client that resumes, see cau_connection_has_place
+	MUTED_S = 1,    // time between two guesses of a token
 	UNHEARD_PINGS = 3,
 	CLOSE_FRAME = 0x88,
 	CODE_BYTES = 2,
 };
 
-// ---- lists: open connections are the handler's to see, ending ones are not
+// ---- lists: the handler sees open connections, but not ending ones
 void cau_connection_link(cau_connection **first, cau_connection *c)
 {
 	c->previous = NULL;
@@ -43,8 +42,8 @@ void cau_connection_unlink(cau_connection **first, cau_connection *c)
 		c->next->previous = c->previous;
 }
 
-// Resets the connection by and by: nothing is delivered any more, nothing stays
-// in the kernel.
+// Resets the connection in the next service loop. Nothing more is delivered, and no bytes stay in
+// the kernel.
 static void reset(cau_connection *c)
 {
 	c->end.resetting = true;
@@ -58,7 +57,7 @@ static void bound_lingering(cau_network *network)
 	cau_connection *oldest = NULL;
 	int count = 0;
 	for (cau_connection *c = network->lingering; c; c = c->next) {
-		oldest = c->end.resetting ? oldest : c; // new ones come first
+		oldest = c->end.resetting ? oldest : c; // the list has the newest first
 		count += !c->end.resetting;
 	}
 	if (count > LINGERING_MOST)
@@ -80,8 +79,8 @@ void cau_connection_leave(cau_connection *c)
 }
 
 // ---- reasons
-// The handler may be in the middle of this connection, so it is told by the
-// timer, a moment later.
+// Begins to close the connection. The timer notifies the handler a moment later, because the
+// handler may be working with this connection now.
 static void begin_closing(cau_connection *c, int code, const char *reason)
 {
 	c->end.code = code;
@@ -114,7 +113,7 @@ void cau_connection_close_late(cau_connection *c, cau_close_code code)
 
 void cau_connection_closed_by_peer(cau_connection *c, int code)
 {
-	c->end.peer_ended = true; // it sends nothing after its close frame
+	c->end.peer_ended = true; // a peer sends nothing after its close frame
 	if (!c->end.code)
 		begin_closing(c, code ? code : CAU_CLOSE_DONE, "");
 }
@@ -122,7 +121,7 @@ void cau_connection_closed_by_peer(cau_connection *c, int code)
 void cau_connection_ended_by_peer(cau_connection *c)
 {
 	c->end.peer_ended = true;
-	cau_input_end(c); // else its end would be told again and again
+	cau_input_end(c); // otherwise epoll would report the end again and again
 	if (!c->end.code)
 		begin_closing(c, CAU_CLOSE_DONE, "");
 	lws_callback_on_writable(c->wsi);
@@ -154,9 +153,9 @@ static size_t write_close_frame(const cau_connection_end *end, unsigned char *at
 	return 4 + reason_bytes;
 }
 
-// By hand: libwebsockets would close the socket right behind its own, and with
-// input unread the kernel then resets the connection before the peer has seen
-// the code. It calls again when the frame is with the kernel.
+// Writes the close frame, then shuts the socket; libwebsockets calls it again once the frame is in
+// the kernel. libwebsockets' own close would close the socket right behind the frame. With input
+// unread, the kernel would then reset the connection before the peer has seen the code.
 int cau_connection_write_close(cau_connection *c)
 {
 	unsigned char frame[LWS_PRE + CAU_CLOSE_FRAME_BYTES];
@@ -170,8 +169,8 @@ int cau_connection_write_close(cau_connection *c)
 	return lws_write(c->wsi, frame + LWS_PRE, bytes, LWS_WRITE_RAW) < 0 ? -1 : 0;
 }
 
-// libwebsockets ends a connection that it still read itself: what came behind
-// the request broke the protocol. The socket takes so few bytes at once.
+// Called when libwebsockets ends a connection that it still reads itself: bytes behind the request
+// broke the protocol. The close frame is so short that the socket takes it at once.
 void cau_connection_dropped(cau_connection *c)
 {
 	unsigned char frame[CAU_CLOSE_FRAME_BYTES];
@@ -183,7 +182,8 @@ void cau_connection_dropped(cau_connection *c)
 	cau_connection_put(c, frame, bytes);
 }
 
-// Not by a timer for each: libwebsockets looks for a timer's place from the first one on.
+// Closes a connection whose hello is late. It has no timer of its own, because libwebsockets
+// searches its sorted list of timers from the start.
 static void watch_hello(cau_connection *c, double now_s)
 {
 	double within_s = c->network->def.config->hello_timeout_s, age_s = now_s - c->opened_s;

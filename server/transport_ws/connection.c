@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One connection as libwebsockets tells of it: its beginning, what it writes, its end. sending.c
-// queues what is written, reading.c reads, closing.c ends.
+// The libwebsockets callbacks of one connection: its beginning, its writes, its end. sending.c
+// queues bytes to write, reading.c reads, closing.c ends.
 #include "transport_ws/connection.h"
 
 #include <netinet/in.h>
@@ -14,8 +14,8 @@
 enum { PONG_FRAME = 0x8A };
 
 // ---- beginning and end
-// A slow reader must see fresh data: without the low-water mark the kernel
-// takes seconds of frames ahead of it, and pings queue behind them.
+// Limits unsent bytes in the kernel, so that a slow reader gets fresh data. Without the low-water
+// mark the kernel takes seconds of frames in advance, and pings wait behind them.
 static void set_socket(int descriptor)
 {
 	int low = NOTSENT_LOWAT_BYTES, on = 1;
@@ -122,13 +122,13 @@ static bool take_over(cau_connection *c)
 {
 	if (!cau_input_take_over(c))
 		return false;
-	// The rest of a record of TLS whose beginning was the request.
+	// These bytes are the rest of a TLS record that began with the request.
 	if (c->input.reading == CAU_READING_OURS && cau_connection_has_more(c))
 		cau_connection_close(c, CAU_CLOSE_PROTOCOL, "data before the handshake was answered");
 	return true;
 }
 
-// Replies go first: many viewers must not hold up commands.
+// Writes one reply or frame. Replies go first, because many viewers must not hold up commands.
 static int writable(cau_network *network, cau_connection *c)
 {
 	if (c->input.reading < CAU_READING_OURS && !take_over(c))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One WebSocket connection, as the network thread sees it.
+// One WebSocket connection, as the network thread uses it.
 #pragma once
 
 #include <stdbool.h>
@@ -18,11 +18,11 @@ typedef struct cau_network cau_network;
 
 enum {
 	CAU_ADDRESS_BYTES = 64,
-	CAU_CLOSE_REASON_BYTES = 124,     // RFC 6455 allows 123 and this a zero
-	CAU_CONTROL_BYTES_MAX = 16 << 20, // replies that wait for one connection; more closes it
+	CAU_CLOSE_REASON_BYTES = 124,     // RFC 6455 allows 123, plus a zero
+	CAU_CONTROL_BYTES_MAX = 16 << 20, // a connection with more bytes of waiting replies is closed
 };
 
-// Who reads the socket, see input.c.
+// Who reads the socket; see input.c.
 typedef enum cau_reading {
 	CAU_READING_HELD, // nobody, while the handshake is answered
 	CAU_READING_LIBRARY,
@@ -30,81 +30,86 @@ typedef enum cau_reading {
 	CAU_READING_ENDED,
 } cau_reading;
 
-// Bytes that come in; the network thread's. input.c, reading.c.
+// Incoming bytes; only the network thread uses this. input.c, reading.c.
 typedef struct cau_connection_input {
 	cau_reading reading;
 	cau_frame_reader reader;
-	double heard_s;      // when something came last
-	bool polled;         // epoll reports what comes
-	unsigned char *held; // received in a turn, and left for the next one; NULL: nothing
+	double heard_s;      // time of the last received bytes
+	bool polled;         // epoll reports input of this connection
+	unsigned char *held; // bytes received in one turn and left for the next; NULL: none
 	size_t held_at, held_bytes;
-	double empty_s;      // when its socket was known to be empty last
-	double sent_after_s; // what is handled now was sent after this moment
-	// messages, control frames and short fragments of the present second
+	double empty_s;      // time when the socket was last known to be empty
+	double sent_after_s; // the message at hand was sent after this time
+	// Messages, control frames and short fragments of the present second:
 	double rate_start_s;
 	int64_t rate_count;
 } cau_connection_input;
 
-// Its place among the connections that are read; the network thread's. turns.c.
+// The connection's turn among those that are read; only the network thread uses this. turns.c.
 typedef struct cau_connection_turn {
 	cau_share share;
-	struct cau_connection *next; // that waits
+	struct cau_connection *next; // next waiting connection
 	bool waits;
 } cau_connection_turn;
 
-// An answer to a ping, then replies, then frames go out; the network thread's. sending.c.
+// Outgoing bytes, in this order: the answer to a ping, replies, frames. Only the network thread
+// uses this. sending.c.
 typedef struct cau_connection_output {
 	bool pong_due;
 	unsigned char pong[CAU_CONTROL_FRAME_BYTES];
 	size_t pong_bytes;
-	cau_buffer *first, *last; // replies
-	size_t bytes;             // of replies
+	cau_buffer *first, *last; // waiting replies
+	size_t bytes;             // bytes of the waiting replies
 } cau_connection_output;
 
-// The end of the connection; the network thread's. closing.c.
+// How the connection ends; only the network thread uses this. closing.c.
 typedef struct cau_connection_end {
-	int code; // of the close frame; 0: open
+	int code; // code of the close frame; 0: open
 	char reason[CAU_CLOSE_REASON_BYTES];
 	bool muted;      // nothing is written to it for a second
-	bool close_sent; // bytes that still come are dropped until the peer has ended
-	bool peer_ended; // it sends no more
-	bool left;       // the handler was notified; the connection is among the lingering ones
+	bool close_sent; // received bytes are dropped until the peer has ended
+	bool peer_ended; // the peer sends nothing more
+	bool left;       // the handler was notified; the connection is in the list of lingering ones
 	bool resetting;
 } cau_connection_end;
 
-// All of it is the network thread's.
+// A connection. Only the network thread uses it.
 typedef struct cau_connection {
-	uint64_t id; // never used again
+	uint64_t id; // never used for another connection
 	cau_network *network;
 	struct lws *wsi;
 	struct cau_connection *previous, *next;
-	void *peer; // the handler's own
+	void *peer; // belongs to the handler
 	double opened_s;
-	bool served;   // hello was accepted: the hello timeout is off
-	bool unplaced; // as many as may be were served when it came: it may only resume
+	bool served; // hello was accepted, so the hello timeout is off
+	// the number of served connections was at its limit when it opened: it may only resume
+	bool unplaced;
 	int descriptor;
-	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "": not known
-	char owner[CAU_ADDRESS_BYTES];   // owner of this address: cau_address_owner
+	char address[CAU_ADDRESS_BYTES]; // the peer's address as text; "" if unknown
+	char owner[CAU_ADDRESS_BYTES];   // owner of this address, from cau_address_owner
 	cau_connection_input input;
 	cau_connection_turn turn;
 	cau_connection_output output;
 	cau_connection_end end;
 } cau_connection;
 
-// Whether one more connection may be served; `resumes`: one that comes back to its tools.
+// True if one more connection may be served. `resumes`: it comes back to its tools, and has a
+// higher limit.
 bool cau_connection_has_place(const cau_connection *connection, bool resumes);
-// Its hello was accepted, with this role.
+// Notes that the connection's hello was accepted, with this role.
 void cau_connection_serve(cau_connection *connection, cau_role role);
-// A moment that the message at hand was sent after, for all that the network thread knows. It is
-// `now_s`, unless the thread was stopped or the message waited for its turn. Monotonic clock.
+// Returns a time after which the message at hand was sent, as far as the network thread can tell.
+// This is `now_s`, unless the thread was stopped or the message waited for its turn. Monotonic
+// clock.
 double cau_connection_sent_after_s(const cau_connection *connection, double now_s);
-// Queues a text message; takes the buffer. A connection whose replies pile up
-// beyond CAU_CONTROL_BYTES_MAX is closed.
+// Queues a text message and takes the buffer. Closes the connection if its waiting replies exceed
+// CAU_CONTROL_BYTES_MAX.
 void cau_connection_send(cau_connection *connection, cau_buffer *buffer);
-// Asks for next_frame to be called when the socket can take more.
+// Asks for a call of next_frame when the socket can take more.
 void cau_connection_want_frame(cau_connection *connection);
-// Sends what is queued, then closes; the handler hears of the end a moment
-// later, not from within. The first reason stands; NULL is the code's own.
+// Sends the queued bytes, then closes. The handler is notified a moment later, not from within this
+// call. Only the first reason counts; NULL means the code's own text.
 void cau_connection_close(cau_connection *connection, cau_close_code code, const char *reason);
-// The same, but all that is queued waits for a second: for answers that tell whoever guesses.
+// Closes like cau_connection_close, but sends the queued bytes only after a second. Used for
+// answers that would help someone who guesses tokens.
 void cau_connection_close_late(cau_connection *connection, cau_close_code code);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every rule is checked as soon as the byte is there that breaks it: a peer
-// that sends nothing more gets its answer too.
+// Every rule is checked as soon as the byte that breaks it is there. So a peer that sends nothing
+// more gets its answer too.
 //
-// A message may come in any number of fragments, so frames, not messages, are
-// what a flood is made of. Fragments of 1,024 bytes and more bring what they
-// cost; shorter ones are told to the caller, who counts them.
+// A message may have any number of fragments, so a flood is counted in frames, not in messages.
+// Fragments of 1,024 bytes and more pay for themselves by their bytes. The caller is notified of
+// shorter ones, and counts them.
 #include "transport_ws/frame_reader.h"
 
 #include <assert.h>
@@ -20,10 +20,10 @@ enum {
 	MASKED = 0x80,
 	LENGTH = 0x7f,
 	LENGTH_16 = 126, // the length follows in two bytes
-	LENGTH_64 = 127, // in eight
+	LENGTH_64 = 127, // the length follows in eight bytes
 	MASK_BYTES = 4,
 	FIRST_CAPACITY = 4096,
-	KEPT_CAPACITY = 65536, // a larger message was the exception
+	KEPT_CAPACITY = 65536, // a larger buffer is freed after its message
 };
 
 enum { CONTINUATION = 0, TEXT = 1, BINARY = 2, CONTROL = 8, CLOSE = 8, PING = 9, PONG = 10 };
@@ -109,7 +109,7 @@ static void begin_payload(cau_frame_reader *r)
 	r->message_bytes = r->valid_bytes = 0;
 }
 
-// Takes bytes of the head; false if a rule is broken.
+// Takes bytes of a frame's head. Returns false if they break a rule.
 static bool take_head(cau_frame_reader *r, const unsigned char **at, const unsigned char *end)
 {
 	while (*at < end && !r->in_payload) {
@@ -132,7 +132,7 @@ static bool take_head(cau_frame_reader *r, const unsigned char **at, const unsig
 // ---- the payload
 static bool grow(cau_frame_reader *r, size_t bytes)
 {
-	size_t wanted = r->message_bytes + bytes + 1; // and a zero
+	size_t wanted = r->message_bytes + bytes + 1; // 1 for a zero at the end
 	size_t capacity = r->message_capacity ? r->message_capacity : FIRST_CAPACITY;
 	while (capacity < wanted)
 		capacity *= 2;
@@ -146,8 +146,8 @@ static bool grow(cau_frame_reader *r, size_t bytes)
 	return true;
 }
 
-// The mask is the last of the head; its bytes take turns over the whole
-// payload.
+// Applies the mask, whose four bytes repeat over the whole payload. The mask is the last part of
+// the head.
 static void unmask(const cau_frame_reader *r, const unsigned char *from, size_t bytes,
                    unsigned char *to)
 {
@@ -159,8 +159,8 @@ static void unmask(const cau_frame_reader *r, const unsigned char *from, size_t 
 		to[i] = from[i] ^ turned[i % MASK_BYTES];
 }
 
-// A text is checked as it comes. A character may be cut by the end of what is
-// there, but not by the end of the message.
+// Checks a text as it arrives. A character may be cut at the end of the present bytes, but not at
+// the end of the message.
 static bool check_text(cau_frame_reader *r, bool whole)
 {
 	const char *text = (const char *)r->message;
@@ -178,7 +178,7 @@ static bool check_text(cau_frame_reader *r, bool whole)
 	}
 }
 
-// Takes bytes of the payload; false if they break a rule.
+// Takes bytes of the payload. Returns false if they break a rule.
 static bool take_payload(cau_frame_reader *r, const unsigned char **at, const unsigned char *end)
 {
 	uint64_t left = r->payload_bytes - r->taken;
@@ -202,8 +202,7 @@ static bool take_payload(cau_frame_reader *r, const unsigned char **at, const un
 }
 
 // ---- the end of a frame
-// Codes that may stand in a frame: section 7.4, and those that were registered
-// since.
+// True if the code may be in a close frame: those of section 7.4, and those registered since.
 static bool is_close_code(int code)
 {
 	return (code >= 1000 && code <= 1003) || (code >= 1007 && code <= 1014) ||
@@ -245,7 +244,7 @@ static cau_frame_event end_frame(cau_frame_reader *r)
 	return r->binary ? CAU_FRAME_BINARY : CAU_FRAME_TEXT;
 }
 
-// The message that was handed out last is done with.
+// Drops the message that was returned last. Frees a large buffer.
 static void shrink(cau_frame_reader *r)
 {
 	if (r->in_message)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clients send: the bytes of a connection become messages and control
-// frames, checked by the letter of RFC 6455, section 5. Pure: knows no socket.
+// Turns the bytes that a client sends into messages and control frames, strictly checked against
+// RFC 6455, section 5. Pure: it uses no socket.
 //
 //     cau_frame_reader_init(&reader, most);
 //     while (at < end)
@@ -14,43 +14,41 @@
 #include "cautery/rpc_errors.h"
 
 enum {
-	CAU_CONTROL_FRAME_BYTES = 125,   // most that a control frame carries
+	CAU_CONTROL_FRAME_BYTES = 125,   // largest payload of a control frame
 	CAU_FRAGMENT_LEAST_BYTES = 1024, // shorter fragments count as messages, see frame_reader.c
-	CAU_FRAME_HEAD_BYTES = 14,       // of the longest head: 2, length 8, mask 4
+	CAU_FRAME_HEAD_BYTES = 14,       // longest head: 2, length 8, mask 4
 };
 
 typedef enum cau_frame_event {
-	CAU_FRAME_MORE,     // all bytes are taken; nothing is whole
-	CAU_FRAME_TEXT,     // message, message_bytes: a whole message in UTF-8, a zero
-	                    // behind it
-	CAU_FRAME_BINARY,   // likewise, any bytes
-	CAU_FRAME_FRAGMENT, // a short fragment of a message has ended, which goes on
-	CAU_FRAME_PING,     // control, control_bytes: its payload
+	CAU_FRAME_MORE,     // all bytes are taken; nothing is complete
+	CAU_FRAME_TEXT,     // message, message_bytes: a complete UTF-8 message, followed by a zero
+	CAU_FRAME_BINARY,   // message, message_bytes: a complete binary message
+	CAU_FRAME_FRAGMENT, // a short fragment ended, and its message continues
+	CAU_FRAME_PING,     // control, control_bytes: the ping's payload
 	CAU_FRAME_PONG,
-	CAU_FRAME_CLOSE,  // close_code: the peer's, 0 if it gave none
-	CAU_FRAME_BROKEN, // close_code, reason: what to close with. Nothing is read
-	                  // any more
+	CAU_FRAME_CLOSE,  // close_code: the peer's code, 0 if it gave none
+	CAU_FRAME_BROKEN, // close_code, reason: close the connection with these; nothing more is read
 } cau_frame_event;
 
 typedef struct cau_frame_reader {
 	size_t message_most;
-	// the head of the present frame, as far as it has come
+	// The received part of the present frame's head:
 	unsigned char head[CAU_FRAME_HEAD_BYTES];
 	size_t head_bytes;
-	// the present frame, once its head is whole
+	// The present frame, once its head is complete:
 	bool in_payload;
 	unsigned opcode;
 	bool final;
-	uint64_t payload_bytes, taken; // all of it; so many have come
-	// the message that its frames make
+	uint64_t payload_bytes, taken; // bytes of the payload: all, and received
+	// The message to which the frame belongs:
 	bool in_message, binary;
 	unsigned char *message; // malloc'ed
 	size_t message_bytes, message_capacity;
-	size_t valid_bytes; // of a text: so many are whole characters
-	// the control frame
+	size_t valid_bytes; // for a text: bytes that end with a complete character
+	// The control frame:
 	unsigned char control[CAU_CONTROL_FRAME_BYTES];
 	size_t control_bytes;
-	// how it ended
+	// The error, once a rule is broken:
 	bool broken;
 	int close_code;
 	const char *reason;
@@ -59,7 +57,7 @@ typedef struct cau_frame_reader {
 void cau_frame_reader_init(cau_frame_reader *reader, size_t message_most);
 void cau_frame_reader_finish(cau_frame_reader *reader);
 
-// Takes bytes from *at on until something is whole or all are taken. What an
-// event points to lasts until the next call.
+// Takes bytes from *at on until an event occurs or all are taken. The data of an event is valid
+// until the next call.
 cau_frame_event cau_frame_reader_next(cau_frame_reader *reader, const unsigned char **at,
                                       const unsigned char *end);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libwebsockets lets pass what RFC 6455 and our rules forbid (a missing
-// subprotocol, other versions, any Origin and Host), and ends without an answer
-// what it cannot use (no key, no Connection). This is the door: whoever is
-// refused is told what, where, and what to do.
+// Checks upgrade requests. libwebsockets accepts what RFC 6455 and our rules forbid (a missing
+// subprotocol, other versions, any Origin and Host). It closes without an answer if it cannot use
+// the request (no key, no Connection). Here each refusal says what is wrong, where, and what to do.
 #include <string.h>
 #include <strings.h>
 
@@ -41,7 +40,7 @@ cau_http_refusal cau_request_check(cau_network *network, struct lws *wsi)
 	return served;
 }
 
-// Whether the comma-separated list names `wanted`, in any case.
+// True if the comma-separated list contains `wanted`, ignoring case.
 static bool names(const char *list, const char *wanted)
 {
 	size_t length = strlen(wanted);
@@ -55,7 +54,7 @@ static bool names(const char *list, const char *wanted)
 	return false;
 }
 
-// ---- what an upgrade must bring
+// ---- requirements of an upgrade
 static bool has_path(struct lws *wsi)
 {
 	char text[HEADER_BYTES];
@@ -78,7 +77,7 @@ static bool has_version(struct lws *wsi)
 	return cau_request_header(wsi, WSI_TOKEN_VERSION, text, sizeof text) && strcmp(text, "13") == 0;
 }
 
-// 16 bytes in base 64: 22 digits and two signs of filling.
+// True if the key is 16 bytes in base 64: 22 digits and two padding characters.
 static bool has_key(struct lws *wsi)
 {
 	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -87,7 +86,8 @@ static bool has_key(struct lws *wsi)
 	       strspn(text, digits) == 22 && strcmp(text + 22, "==") == 0;
 }
 
-// A longer list of subprotocols than this libwebsockets does not read.
+// True if the request lists our subprotocol. This libwebsockets cannot read a longer list than
+// LIST_BYTES.
 static bool has_subprotocol(struct lws *wsi)
 {
 	enum { LIST_BYTES = 128 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transport_ws/internal.h"
 
-// Below 0: the upgrade was refused, and the connection ends behind the answer.
+// Returns a negative value if the upgrade is refused; the connection then ends behind the answer.
 static int confirm_upgrade(cau_network *network, struct lws *wsi)
 {
 	cau_http_refusal refusal = cau_handshake_check(network, wsi);
@@ -23,7 +23,8 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 	cau_network *network = cau_network_of(wsi);
 	cau_http_body *body = user;
 	switch (reason) {
-	case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: // its context of TLS is made
+	case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: // libwebsockets has made its TLS
+	                                                          // context
 		if (network->tls)
 			cau_tls_configure(network->tls, user);
 		return 0;
@@ -34,14 +35,15 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 		return cau_http_serve(network, wsi, body, in);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
 		return cau_http_answer_continue(wsi, body);
-	case LWS_CALLBACK_HTTP_DROP_PROTOCOL: // answered: the next request of this connection may come
+	case LWS_CALLBACK_HTTP_DROP_PROTOCOL: // the answer is sent: the connection's next request may
+	                                      // come
 		return cau_unread_add(network, wsi) ? 0 : -1;
 	case LWS_CALLBACK_CLOSED_HTTP:
 		cau_unread_remove(network, wsi);
 		if (body)
 			cau_http_body_finish(body);
 		return 0;
-	case LWS_CALLBACK_RAW_ADOPT: // CONNECT: the library would pass bytes on to nobody
+	case LWS_CALLBACK_RAW_ADOPT: // CONNECT: libwebsockets would pass the bytes to no handler
 		cau_refuse_unread(network, wsi, false);
 		return -1;
 	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:

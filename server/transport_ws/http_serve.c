@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain HTTP: pages that the handler makes, files of the viewer and the manual from memory.
+// Plain HTTP: pages that the handler makes, and the files of the viewer and the manual, from
+// memory.
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +13,8 @@ static bool is_page(const char *path)
 	       strcmp(path, "/api/fleet") == 0;
 }
 
-// That a daemon is alone is no secret: the viewer asks before it has a token.
+// True if the page needs a token. /api/fleet needs none: the viewer asks for it before it has a
+// token, and whether a daemon is alone is no secret.
 static bool needs_token(const char *path)
 {
 	if (strcmp(path, "/api/fleet") == 0)
@@ -20,8 +22,8 @@ static bool needs_token(const char *path)
 	return strcmp(path, "/metrics") == 0 || strncmp(path, "/api/", 5) == 0;
 }
 
-// Authorization: Bearer TOKEN, when tokens are in use. The pages tell of every session: a token for
-// some of them does not open them.
+// True if the request has a valid Authorization: Bearer TOKEN, or no tokens are in use. The pages
+// show every session, so a token for only some sessions does not open them.
 static bool may_read(cau_network *network, struct lws *wsi)
 {
 	static const char scheme[] = "Bearer ";
@@ -44,7 +46,7 @@ static int serve_page(cau_network *network, struct lws *wsi, cau_http_body *body
 		                          .extra_value = "Bearer"};
 		return cau_http_answer_start(wsi, body, &denied);
 	}
-	// A header that is longer than ours asks for more than the pages come in.
+	// An Accept header that is longer than ours counts as absent.
 	char accept[HEADER_BYTES];
 	if (!cau_request_header(wsi, WSI_TOKEN_HTTP_ACCEPT, accept, sizeof accept))
 		accept[0] = 0;
@@ -80,7 +82,7 @@ static int serve_file(struct lws *wsi, cau_http_body *body, const cau_static_fil
 	return cau_http_answer_start(wsi, body, &answer);
 }
 
-// The manual's pages lie under /manual/. Every other path is the viewer's.
+// Serves a file. The manual's pages are under /manual/; every other path is the viewer's.
 static int serve_files(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
 {
 	static const char manual[] = "/manual";

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who reads the socket of a connection. libwebsockets 4.1.6 reads what RFC 6455
-// forbids (unmasked frames), tells nobody of empty fragments, and ends a
-// connection without a close frame where the protocol is broken. So once it has
-// answered the handshake it reads no more: its own reading is held back, and
-// this room's epoll, itself a descriptor in libwebsockets' loop, says when
-// there is something for the frame reader.
+// Decides who reads a connection's socket. libwebsockets 4.1.6 accepts what RFC 6455 forbids
+// (unmasked frames), reports no empty fragments, and ends a connection without a close frame if the
+// protocol is broken. So after it has answered the handshake, it reads no more: flow control stops
+// its reading. Our own epoll descriptor, which is in libwebsockets' loop, then reports input for
+// the frame reader.
 #include <sys/epoll.h>
 
 #include "clock/clock.h"
@@ -21,11 +20,11 @@ bool cau_input_open(cau_network *network)
 }
 
 // ---- taking over from libwebsockets
-// What a client sent behind its request, without waiting for the answer as it
-// must, is in libwebsockets' hands already and comes out only if that may read
-// on for a moment. So: held back while the handshake is answered; let go in the
-// first callback, in whose pass the buffer is served but no socket; held back
-// for good in the second, which comes before any socket is read.
+// Takes over the reading in two steps. A client may send bytes right behind its request, although
+// it must wait for the answer. libwebsockets already holds these bytes, and returns them only if it
+// may read on for a moment. So its reading is stopped while the handshake is answered. The first
+// callback allows it: that pass handles the buffer but no socket. The second callback, before any
+// socket is read, stops it for good.
 bool cau_input_begin(cau_connection *c)
 {
 	lws_callback_on_writable(c->wsi);
@@ -60,7 +59,7 @@ void cau_input_end(cau_connection *c)
 	c->input.reading = CAU_READING_ENDED;
 }
 
-// ---- the list of those with something to read
+// ---- the list of connections with input
 void cau_input_wait(cau_connection *c)
 {
 	if (c->turn.waits)

@@ -11,7 +11,7 @@
 
 enum { TICK_MS = 100 };
 
-// The library has no context for its log: a thread serves one network.
+// libwebsockets' log function has no context argument. So each thread serves one network.
 static _Thread_local cau_network *own;
 
 static void log_library(int level, const char *line)
@@ -34,9 +34,10 @@ static void set_protocols(cau_network *network)
 	network->protocols[2] = (struct lws_protocols){.name = "input", .callback = cau_input_callback};
 }
 
-// libwebsockets reads the pair at first and makes the context of TLS; from then on it is ours
-// (cau_http_callback). With its own list of protocols browsers would choose HTTP/2, over which it
-// has no WebSocket that they know.
+// Sets the files of certificate and key. libwebsockets reads them first and makes the TLS context;
+// afterwards cau_http_callback sets our own pair. The only protocol is HTTP/1.1: with
+// libwebsockets' own list browsers would choose HTTP/2, over which libwebsockets offers no
+// WebSocket that browsers support.
 static void add_tls(const cau_network *network, struct lws_context_creation_info *info)
 {
 	info->options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
@@ -50,8 +51,8 @@ static cau_status open_context(cau_network *network, cau_error *error)
 {
 	cau_config *config = network->def.config;
 	network->validity.secs_since_valid_ping = (uint16_t)fmax(1, config->ping_s);
-	// A connection that is not heard of is closed with a code before (closing.c);
-	// this is for one that sends and answers no ping.
+	// This is for a connection that sends, but answers no ping. A silent connection is closed
+	// earlier, with a code (closing.c).
 	network->validity.secs_since_valid_hangup = (uint16_t)fmax(6, 3 * config->ping_s + 3);
 	struct lws_context_creation_info info = {
 		.port = config->port ? (int)config->port : 0,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The network thread: HTTP and WebSocket on one port. Only cau_network_wake may be called from
-// other threads; everything else of this room runs on the network thread.
+// The network thread: HTTP and WebSocket on one port. Only the functions that say so may be called
+// from other threads. Everything else in transport_ws runs on the network thread.
 #pragma once
 
 #include "auth/auth.h"
@@ -11,62 +11,65 @@
 
 typedef struct cau_network cau_network;
 
-// A page that is made when it is asked for.
+// A page that the handler makes for a request.
 typedef struct cau_page {
-	const char *path;         // of the request, like `accept`
-	const char *accept;       // its Accept header; "": none
-	unsigned status;          // the rest is the answer: HTTP's status,
-	const char *content_type; // static
-	char *body;               // malloc'ed, NULL if memory ran out
+	const char *path;         // path of the request
+	const char *accept;       // Accept header of the request; "" if none
+	unsigned status;          // HTTP status of the answer; the members below are the answer too
+	const char *content_type; // borrowed static text
+	char *body;               // malloc'ed; NULL if memory ran out
 	size_t bytes;
 } cau_page;
 
-// What serves the requests, called on the network thread.
+// The functions that serve requests, called on the network thread.
 typedef struct cau_network_handler {
 	void *user;
-	// The handshake passed; hello is still to come. `session` is the URL's, or "". False: refused.
+	// Called after the handshake, before hello. `session` is from the URL, or "". Returns false to
+	// refuse.
 	bool (*opened)(void *user, cau_connection *connection, const char *session);
 	void (*text)(void *user, cau_connection *connection, const char *text, size_t bytes);
 	void (*binary)(void *user, cau_connection *connection, const void *bytes, size_t byte_count);
 	void (*closed)(void *user, cau_connection *connection);
-	// The next frame that this connection should get now, or NULL; the caller releases it.
+	// Returns the next frame for this connection, or NULL. The caller releases the frame.
 	cau_buffer *(*next_frame)(void *user, cau_connection *connection);
-	void (*woken)(void *user);                // after cau_network_wake
-	void (*tick)(void *user);                 // about every 100 ms while there are connections
-	void (*page)(void *user, cau_page *page); // /healthz, /readyz, /metrics, /api/sessions
+	void (*woken)(void *user); // called after cau_network_wake
+	// called about every 100 ms while there are connections
+	void (*tick)(void *user);
+	void (*page)(void *user, cau_page *page); // makes /healthz, /readyz, /metrics, /api/sessions
 } cau_network_handler;
 
 typedef struct cau_network_def {
-	cau_config *config; // borrowed; its port becomes the real one
+	cau_config *config; // borrowed; `port` is set to the real port
 	const cau_auth *auth;
-	const cau_static_files *files;  // of the viewer
-	const cau_static_files *manual; // served under /manual/; NULL: none is installed
+	const cau_static_files *files;  // the viewer's files
+	const cau_static_files *manual; // served under /manual/; NULL: no manual is installed
 	cau_network_handler handler;
 } cau_network_def;
 
-// Listens at once; serves from cau_network_start on. CAU_IO if the port is taken.
+// Makes a network that listens at once and serves after cau_network_start. Returns CAU_IO if the
+// port is taken.
 cau_status cau_network_create(cau_network **network, const cau_network_def *def, cau_error *error);
 // Starts the thread.
 cau_status cau_network_start(cau_network *network, cau_error *error);
-// Calls `woken` soon on the network thread. From any thread.
+// Makes the network thread call `woken` soon. Any thread may call it.
 void cau_network_wake(cau_network *network);
-// Closes every connection with the code, waits at most `seconds` for that, then ends the
-// thread. From the thread that created it.
+// Closes every connection with the code, waits at most `seconds` for this, then ends the thread.
+// Call it from the thread that created the network.
 void cau_network_stop(cau_network *network, cau_close_code code, double seconds);
-// Reads certificate and key anew, if there are any; on failure they stay as they were, and the
-// error says why. Nobody is disconnected. Any thread.
+// Reads certificate and key again, if TLS is in use. On failure they stay as they were, and the
+// error says why. Existing connections stay. Any thread may call it.
 cau_status cau_network_reload_tls(cau_network *network, cau_error *error);
-void cau_network_destroy(cau_network *network); // takes NULL
+void cau_network_destroy(cau_network *network); // `network` may be NULL
 
-// Every open connection, in no order; on the network thread.
+// Returns the first open connection; they are in no order. Network thread only.
 cau_connection *cau_network_first(cau_network *network);
-// An open connection by id, or NULL; on the network thread.
+// Returns the open connection with this id, or NULL. Network thread only.
 cau_connection *cau_network_find(cau_network *network, uint64_t id);
 
 typedef struct cau_network_counts {
 	uint64_t served, strangers_closed;
 	uint64_t connections, accepted, refused_handshakes, closed_slow, closed_errors;
-	uint64_t refused_tokens; // of pages
+	uint64_t refused_tokens; // pages refused for a missing or wrong token
 	uint64_t messages_in, bytes_in, messages_out, bytes_out, frames_out;
 } cau_network_counts;
-cau_network_counts cau_network_count(cau_network *network); // on the network thread
+cau_network_counts cau_network_count(cau_network *network); // network thread only

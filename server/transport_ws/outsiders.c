@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The log of connections that end without hello. Anybody can open one, so each address has one line
-// a minute, which counts what ended since the last.
+// The log of connections that end without hello. Anyone can open such a connection. So each address
+// has at most one line a minute, which counts the connections since the last line.
 #include <stdio.h>
 #include <string.h>
 
@@ -18,8 +18,8 @@ static void write_line(cau_outsider *o, double now_s)
 	o->told_s = now_s;
 }
 
-// The row of an owner: its own, or a free one, or, where all are in use, the first, which is for
-// all who have none.
+// Returns the entry of an owner, or a free one. If all are in use, returns the first, which all
+// owners without an entry share.
 static cau_outsider *find_row(cau_network *network, const char *owner)
 {
 	cau_outsider *free_row = NULL;
@@ -56,6 +56,6 @@ void cau_outsiders_tick(cau_network *network, double now_s)
 		if (o->count)
 			write_line(o, now_s);
 		else
-			*o = (cau_outsider){0}; // a quiet minute: the row is free again
+			*o = (cau_outsider){0}; // nothing came within a minute, so the entry is free again
 	}
 }

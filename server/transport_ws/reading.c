@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What comes in over the sockets that input.c took over: frames, and what they lead to.
+// Reads from the sockets that input.c took over, and handles the frames.
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "transport_ws/internal.h"
 
 enum {
-	READ_BYTES = 65536, // at once
+	READ_BYTES = 65536, // largest number of bytes in one read
 };
 
 static bool within_rate(cau_connection_input *input, int64_t most)
@@ -60,14 +60,14 @@ static void handle(cau_connection *c, cau_frame_event event)
 	}
 }
 
-// Returns how many of the bytes were handled when the turn was over.
+// Handles received bytes. Returns how many were handled when the turn ended.
 static size_t take(cau_connection *c, const unsigned char *bytes, size_t count, double until_s)
 {
 	const unsigned char *at = bytes, *end = bytes + count;
 	bool in_time = true;
 	c->input.heard_s = cau_monotonic_s();
-	// A connection that is being closed is read on, so that its peer gets to the
-	// close frame, but nothing is done for it.
+	// A closing connection is still read, so that its peer gets to the close frame. Its messages
+	// are ignored.
 	while (at < end && !c->end.code && in_time) {
 		cau_frame_event event = cau_frame_reader_next(&c->input.reader, &at, end);
 		bool counts =
@@ -109,7 +109,8 @@ static void take_held(cau_connection *c, double until_s)
 
 static bool receive(cau_connection *c, double until_s)
 {
-	static unsigned char bytes[READ_BYTES]; // the network thread's alone, more than a record of TLS
+	// used by the network thread only; holds more than a TLS record
+	static unsigned char bytes[READ_BYTES];
 	ssize_t got = cau_connection_receive(c, bytes, sizeof bytes);
 	if (got <= 0) {
 		if (got == 0 || (errno != EAGAIN && errno != EINTR))

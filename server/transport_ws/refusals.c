@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A request that is refused: a count, its part in a line of the log, and the answer through
-// libwebsockets.
+// Refuses a request: counts it, notes it for the log, and answers through libwebsockets.
 #include <stdio.h>
 
 #include "transport_ws/internal.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the network thread ran without a stop, and so when what it reads was sent.
+// Notes when the network thread did not run, to know when the bytes that it reads were sent.
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
 
-#define WAITED_S 0.02 // a message that waited for so long counts as one that was sent before
+#define WAITED_S 0.02 // a message that waited this long counts as sent before the wait
 
 void cau_network_comes_round(cau_network *network)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is to go out over a connection waits here until its socket can take more.
+// The queue of outgoing bytes of a connection, which wait until the socket can take more.
 #include <string.h>
 
 #include "transport_ws/internal.h"
@@ -34,7 +34,7 @@ void cau_connection_want_frame(cau_connection *c)
 
 void cau_connection_pong(cau_connection *c, const void *payload, size_t bytes)
 {
-	c->output.pong_due = true; // of several pings the last may be answered alone
+	c->output.pong_due = true; // if several pings came, one answer to the last is enough
 	c->output.pong_bytes = bytes;
 	memcpy(c->output.pong, payload, bytes);
 	lws_callback_on_writable(c->wsi);

@@ -7,7 +7,8 @@
 
 #define BURST_S 0.2
 
-// Parts of one core. Viewers together leave most of it to drivers and to the sessions' workers.
+// Shares of one core. All viewers together leave most of the core to drivers and to the sessions'
+// workers.
 static const struct {
 	double connection, address, all;
 } rates[CAU_STANDING_COUNT] = {

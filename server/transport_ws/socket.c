@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bytes of a connection that this room reads and ends by itself, past libwebsockets: those of
-// its socket or, behind TLS, what the socket's records hold. The library writes, this room reads,
-// on one thread, so that the state of TLS has one user at a time.
+// The bytes of a connection that transport_ws reads and ends by itself, past libwebsockets. These
+// are the bytes of its socket or, with TLS, the contents of its records. The library writes and
+// transport_ws reads, both on one thread. So the TLS state has one user at a time.
 #include <errno.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
@@ -29,10 +29,10 @@ static ssize_t receive_tls(SSL *tls, void *bytes, size_t most)
 	case SSL_ERROR_ZERO_RETURN:
 		return 0;
 	case SSL_ERROR_WANT_READ:
-	case SSL_ERROR_WANT_WRITE: // an answer to a new key, which goes out with the next bytes
+	case SSL_ERROR_WANT_WRITE: // an answer to a key update, which goes out with the next bytes
 		errno = EAGAIN;
 		return -1;
-	default: // the peer is gone, or sends what is no TLS
+	default: // the peer is gone, or sent something that is not TLS
 		ERR_clear_error();
 		errno = EIO;
 		return -1;
@@ -64,7 +64,8 @@ void cau_connection_put(cau_connection *c, const void *bytes, size_t count)
 	put(tls_of(c), c->descriptor, bytes, count);
 }
 
-// A socket that is closed with bytes unread is reset, which may overtake what was sent.
+// Sends the last bytes, then reads and drops what has arrived. Closing a socket with unread bytes
+// resets it, and the reset may overtake the sent bytes.
 void cau_wsi_last_words(struct lws *wsi, const void *bytes, size_t count)
 {
 	enum { DROPPED_MOST = 256, PIECE_BYTES = 4096 };
@@ -82,6 +83,6 @@ void cau_connection_shut(cau_connection *c)
 	SSL *tls = tls_of(c);
 	ERR_clear_error();
 	if (tls && SSL_shutdown(tls) < 0)
-		ERR_clear_error(); // the socket is shut all the same
+		ERR_clear_error(); // an error here does not matter: the socket is shut anyway
 	shutdown(c->descriptor, SHUT_WR);
 }

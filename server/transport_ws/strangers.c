@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connections that have not said hello. Opening one needs no token, so they must not use up
-// max_connections. They have a limit of their own, and a lower one for each address. Those whose
-// request has not come yet are counted apart from WebSocket connections. Beyond a limit the oldest
-// is closed, because a client that means to say hello does so at once. A message may be long on its
-// way, and strangers that are closed come back thousands of times in a second, so a connection that
-// is younger than GRACE_S is closed only beyond GRACE_FACTOR times as many.
+// Limits connections that have not said hello. Opening one needs no token, so they must not use up
+// max_connections. They have a limit of their own, and a lower one for each address. Connections
+// whose request has not come yet are counted apart from WebSocket connections. Beyond a limit the
+// oldest is closed, because an honest client says hello at once. But a message may be long on its
+// way, and closed strangers may reconnect thousands of times in a second. So a connection younger
+// than GRACE_S is closed only beyond GRACE_FACTOR times the limit.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <stdio.h>
@@ -16,15 +16,19 @@
 
 enum {
 	STRANGERS_MOST = 256,
-	UNREAD_MOST = 512, // of two addresses whose requests are late
+	// Connections whose request has not come, of all addresses together: four addresses at their
+	// limit. Each holds a file descriptor and no more.
+	UNREAD_MOST = 512,
 	OF_ADDRESS_MOST = 128,
-	GRACE_FACTOR = 8,  // 4,000 come back in a second: 512 of them in an eighth of it
-	NETWORK_BYTES = 8, // of an IPv6 address: its owner chooses the rest
-	RESUMES_MOST = 16, // beyond max_connections, for clients that come back to their tools
+	// strangers reconnect 4,000 times in a second, which is 512 times in an eighth of a second
+	GRACE_FACTOR = 8,
+	NETWORK_BYTES = 8, // an IPv6 address's owner chooses the remaining bytes
+	RESUMES_MOST = 16, // connections beyond max_connections, for clients that return to their tools
 };
 
-#define READ_WITHIN_S 0.02 // the thread reads bytes within this time of their arrival
-#define GRACE_S 1.0        // for the request and for hello, from far away or of a busy machine
+#define READ_WITHIN_S 0.02 // the thread reads bytes within this time after their arrival
+// time for the request and for hello, from far away or from a busy machine
+#define GRACE_S 1.0
 
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
 {
@@ -42,21 +46,22 @@ static bool is_unread(const cau_unread *unread, const char *owner)
 	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
 }
 
-// Bytes that had arrived are read by now, or within moments. Later the connection is asked again.
+// True if bytes had arrived: the thread reads them within READ_WITHIN_S. After that the connection
+// is checked again.
 static bool is_read_soon(const cau_unread *unread, double now_s)
 {
 	return now_s - unread->input_s < READ_WITHIN_S;
 }
 
-// Whether bytes have come that this thread has yet to read: such a one is not closed.
+// True if bytes have arrived that this thread has not read yet. Such a connection is not closed.
 static bool has_input(int descriptor)
 {
 	struct pollfd polled = {.fd = descriptor, .events = POLLIN};
 	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
 }
 
-// The oldest of an owner, or (NULL) of all, of which nothing is known to have come, and their
-// count.
+// Finds the oldest connection of an owner (NULL: of all) of which no bytes are known to have
+// arrived. *count: their number.
 static cau_unread *find_oldest(const cau_network *network, const char *owner, double now_s,
                                int *count)
 {
@@ -73,14 +78,14 @@ static cau_unread *find_oldest(const cau_network *network, const char *owner, do
 	return oldest;
 }
 
-// How many there may be while the oldest is so old.
+// Returns the largest number of connections that is allowed while the oldest has this age.
 static int bound(int most, double age_s)
 {
 	return age_s < GRACE_S ? GRACE_FACTOR * most : most;
 }
 
-// The oldest of which nothing has come; NULL if there are not too many of these. Only the one that
-// would be closed is asked: many connect at once, and this is called for each of them.
+// Finds the oldest connection of which no bytes have arrived; NULL if there are not too many. Only
+// the connection that would be closed is polled, because this runs for each new connection.
 static cau_unread *find_unread(cau_network *network, const char *owner, int most)
 {
 	int count;
@@ -95,7 +100,8 @@ static cau_unread *find_unread(cau_network *network, const char *owner, int most
 	}
 }
 
-// Behind a proxy the address is known with the request; until then it is the proxy's.
+// Closes a connection if too many requests are outstanding. Behind a proxy, the client's address is
+// known only from the request; before, it is the proxy's, so the limit for each address is skipped.
 void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 {
 	bool is_proxy = cau_list_has(network->def.config->trusted_proxies, newest->address);
@@ -116,7 +122,8 @@ static bool is_silent(const cau_connection *c, const char *owner)
 	return !c->served && !c->end.code && (!owner || strcmp(c->owner, owner) == 0);
 }
 
-// New ones come first in the list.
+// Finds the oldest connection without hello, of an owner (NULL: of all). The list has the newest
+// first.
 static cau_connection *find_silent(const cau_network *network, const char *owner, int *count)
 {
 	cau_connection *oldest = NULL;
@@ -135,8 +142,8 @@ static void close_silent(cau_connection *c)
 	cau_connection_close(c, CAU_CLOSE_FULL, "too many connections without hello");
 }
 
-// Only the oldest is asked whether something of it waits to be read, which may be its hello: this
-// is called for each that opens, and strangers open many.
+// Closes the oldest connection without hello if there are too many. Only the oldest is checked for
+// unread input, which may be its hello: this runs for each new connection, and strangers open many.
 static bool bound_silent(const cau_network *network, const char *owner, int most)
 {
 	int count;
@@ -164,7 +171,7 @@ void cau_strangers_bound_talk(cau_connection *c)
 		close_silent(c);
 }
 
-// ---- places
+// ---- limits on served connections
 bool cau_connection_has_place(const cau_connection *c, bool resumes)
 {
 	uint64_t most = (uint64_t)c->network->def.config->max_connections;

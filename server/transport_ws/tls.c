@@ -14,17 +14,17 @@ enum { CHAIN_MOST = 16 };
 
 typedef struct pair {
 	X509 *certificate;
-	STACK_OF(X509) * chain; // what stands behind it, up to an authority
+	STACK_OF(X509) * chain; // the chain of certificates up to an authority
 	EVP_PKEY *key;
 } pair;
 
 struct cau_tls {
-	pthread_mutex_t mutex; // guards the pair
+	pthread_mutex_t mutex; // guards `pair`
 	pair pair;
 };
 
-// Mozilla's intermediate profile, without the ciphers that need parameters of an own group. Those
-// of TLS 1.3 are OpenSSL's.
+// The ciphers of Mozilla's intermediate profile for TLS 1.2, without those that need DH parameters.
+// The ciphers of TLS 1.3 are OpenSSL's.
 const char cau_tls_ciphers[] =
 	"ECDHE-ECDSA-AES128-GCM-SHA256:ECDHE-RSA-AES128-GCM-SHA256:ECDHE-ECDSA-AES256-GCM-SHA384:"
 	"ECDHE-RSA-AES256-GCM-SHA384:ECDHE-ECDSA-CHACHA20-POLY1305:ECDHE-RSA-CHACHA20-POLY1305";
@@ -60,16 +60,16 @@ static cau_status read_certificate(pair *p, const char *file, cau_error *error)
 	while (p->certificate && p->chain && sk_X509_num(p->chain) < CHAIN_MOST &&
 	       (next = PEM_read_X509(stream, NULL, NULL, NULL)) && sk_X509_push(p->chain, next))
 		next = NULL;
-	X509_free(next); // one that could not be kept
+	X509_free(next); // a certificate that could not be added
 	fclose(stream);
-	ERR_clear_error(); // the file's end is told as an error
+	ERR_clear_error(); // OpenSSL reports the end of the file as an error
 	if (!p->certificate || !p->chain || next)
 		return fail_file(error, CAU_BAD_SYNTAX, "tls_certificate", file,
 		                 "the file has no certificate in PEM");
 	return CAU_OK;
 }
 
-// Nobody is at hand to be asked for it.
+// Refuses to give a passphrase: the daemon has no user to ask.
 static int no_passphrase(char *buffer, int size, int writing, void *user)
 {
 	(void)buffer, (void)size, (void)writing, (void)user;
@@ -157,7 +157,7 @@ cau_status cau_tls_reload(cau_tls *tls, const cau_config *config, cau_error *err
 	before = tls->pair;
 	tls->pair = now;
 	pthread_mutex_unlock(&tls->mutex);
-	forget(&before); // handshakes that use it hold it themselves
+	forget(&before); // handshakes that use the old pair hold references to it
 	return CAU_OK;
 }
 
@@ -175,7 +175,8 @@ void cau_tls_configure(cau_tls *tls, SSL_CTX *context)
 {
 	SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
 	SSL_CTX_set1_groups_list(context, groups);
-	// Clients know best which cipher their processor is quick at; tickets would outlive a key.
+	// Clients know best which cipher is fast on their processor. Tickets are off: they would
+	// outlive a key.
 	SSL_CTX_clear_options(context, SSL_OP_CIPHER_SERVER_PREFERENCE);
 	SSL_CTX_set_options(context,
 	                    SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION | SSL_OP_NO_TICKET);

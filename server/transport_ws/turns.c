@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which connection is read next. Connections with something to read wait in a list. A turn is
-// about a millisecond of processor time, and is charged to the connection's share (shares.h).
-// Drivers go first, so that energy off and heartbeats do not wait behind what others ask; then
-// the connection that has used the least. One whose share is used up waits until some of it is
-// given back. Meanwhile epoll does not report it, and its messages stay in the socket.
+// Chooses the connection that is read next. Connections with input wait in a list. A turn is about
+// a millisecond of processor time, charged to the connection's share (shares.h). Drivers go first,
+// so that energy off and heartbeats do not wait behind other requests. Then comes the connection
+// that has used the least. A connection whose share is used up waits until some is given back.
+// Meanwhile epoll does not report it, and its messages stay in the socket.
 #include <math.h>
 #include <sys/epoll.h>
 
@@ -13,12 +13,13 @@
 enum { EVENTS_AT_ONCE = 64 };
 
 #define TURN_S 1e-3
-#define ROUND_S 4e-3 // then libwebsockets writes and looks for new input
-#define REST_S 5e-3  // the least wait: for less than a millisecond libwebsockets does not sleep
+#define ROUND_S 4e-3 // after this time libwebsockets writes and checks for new input
+#define REST_S 5e-3  // least wait: libwebsockets does not sleep for less than a millisecond
 
-// One that is closing is read to its end, which costs next to nothing and is over soon. A first
-// turn costs less than the handshake before it, and brings hello: it does not wait for what others
-// of its address have used up.
+// Returns how long the connection must wait for its turn. A closing connection does not wait:
+// reading it to its end is cheap and short. A first turn does not wait either: it costs less than
+// the handshake before it, and brings hello, which must not wait for time that others of its
+// address have used.
 static double wait_s(cau_connection *c, double now_s)
 {
 	double seconds = cau_share_wait_s(&c->turn.share, now_s);
@@ -50,7 +51,7 @@ static void give_turn(cau_connection *c)
 
 static void run_again(lws_sorted_usec_list_t *turns);
 
-// Connections that still wait are not polled, since they are known to have something.
+// Plans the next turns. Waiting connections are not polled, because they are known to have input.
 static void wait_for_turns(cau_network *network, double now_s)
 {
 	double soonest_s = INFINITY;
@@ -90,8 +91,8 @@ void cau_turns_resume(cau_connection *c)
 		lws_sul_schedule(c->network->context, 0, &c->network->turns, run_again, 1);
 }
 
-// No connection is freed in here: ends are asked for, and made by
-// libwebsockets' loop.
+// Reads the connections that epoll reports. No connection is freed here: closing is only requested,
+// and libwebsockets' loop frees.
 int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes)
 {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that libwebsockets 4.1.6 refuses or gives up by itself. It answers some with HTTP/1.0
-// 403 and no reason, and ends the others without a word: those whose headers are longer than it
-// reads, or that name nothing. It has no callback for either. But it calls two of its own public
-// functions by their names in the program's table of symbols, so that those of this file stand in
-// their place, and it logs what it gives up, while it reads that connection and before it ends it.
+// Handles requests that libwebsockets 4.1.6 refuses or drops by itself. It answers some with
+// HTTP/1.0 403 and no reason. It ends the others without an answer: those with too long headers,
+// and those without a path. It has no callback for either case. But it calls two of its own public
+// functions through the program's symbol table, so the functions of this file replace them. It also
+// logs each request that it drops, while it reads that connection and before it ends the
+// connection.
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,7 @@ static const cau_http_refusal too_large = {
 	"the request and its headers are longer than this daemon reads",
 	"send fewer or shorter headers: all of them in less than 4096 bytes"};
 
-// The descriptor that this thread's libwebsockets serves; -1: none.
+// Descriptor that this thread's libwebsockets serves now; -1: none.
 static _Thread_local int served = -1;
 
 void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large)
@@ -30,7 +31,7 @@ void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large)
 	cau_wsi_last_words(wsi, text, cau_http_write_refusal(refusal, text, sizeof text));
 }
 
-// ---- in the library's place
+// ---- functions that replace the library's
 int lws_return_http_status(struct lws *wsi, unsigned int code, const char *html_body)
 {
 	(void)code, (void)html_body;
@@ -43,19 +44,19 @@ int lws_service_fd_tsi(struct lws_context *context, struct lws_pollfd *pollfd, i
 	typedef int service(struct lws_context * context, struct lws_pollfd * pollfd, int tsi);
 	static _Thread_local service *library;
 	if (!library)
-		*(void **)&library = dlsym(RTLD_NEXT, "lws_service_fd_tsi"); // as POSIX has it
+		*(void **)&library = dlsym(RTLD_NEXT, "lws_service_fd_tsi"); // as POSIX advises
 	served = pollfd ? pollfd->fd : -1;
 	int result = library(context, pollfd, tsi);
 	served = -1;
 	return result;
 }
 
-// ---- connections whose request is still to come
+// ---- connections whose request has not come yet
 bool cau_unread_add(cau_network *network, struct lws *wsi)
 {
 	int descriptor = lws_get_socket_fd(wsi);
 	if (descriptor < 0)
-		return true; // it has ended
+		return true; // the connection has ended
 	if (descriptor >= network->unread_capacity) {
 		int capacity = 2 * (descriptor + 1);
 		cau_unread *grown = realloc(network->unread, (size_t)capacity * sizeof *grown);
@@ -91,6 +92,6 @@ void cau_unread_complaint(cau_network *network, const char *line)
 		served >= 0 && served < network->unread_capacity ? network->unread[served].wsi : NULL;
 	if (!wsi || (!large && !formless))
 		return;
-	cau_unread_remove(network, wsi); // once
+	cau_unread_remove(network, wsi); // only one answer
 	cau_refuse_unread(network, wsi, large);
 }

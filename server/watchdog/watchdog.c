@@ -14,7 +14,7 @@ struct cau_watchdog {
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;
 	bool started, woken, ending;
-	bool asked_to_move; // not looked since
+	bool asked_to_move; // cau_watchdog_moves() was called, and the watchdog has not looked since
 	double (*look)(void *user, double now_s);
 	void *user;
 };
@@ -41,7 +41,7 @@ static void *watch(void *argument)
 		pthread_mutex_unlock(&w->mutex);
 		double look_s = w->look(w->user, cau_monotonic_s());
 		pthread_mutex_lock(&w->mutex);
-		w->asked_to_move = w->asked_to_move && w->woken; // asked while it looked: looks again
+		w->asked_to_move = w->asked_to_move && w->woken; // asked while it looked: it looks again
 		wait_until(w, look_s);
 	}
 	pthread_mutex_unlock(&w->mutex);

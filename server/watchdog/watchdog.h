@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy watchdog: a thread of its own, on the monotonic clock, that sleeps until the earliest
-// driver of an energized tool would have been silent for too long.
+// The energy watchdog: a thread of its own, on the monotonic clock. It sleeps until the earliest
+// deadline of a driver whose tool has energy on.
 #pragma once
 
 #include <stdbool.h>
@@ -9,12 +9,13 @@
 
 typedef struct cau_watchdog cau_watchdog;
 
-// `look` cuts what is due at `now_s` and returns when to look again, INFINITY for not before
-// cau_watchdog_wake.
+// Makes a watchdog. `look` cuts off the energy whose deadline has passed at `now_s`, and returns
+// when to look again. INFINITY: only after cau_watchdog_wake.
 cau_status cau_watchdog_create(cau_watchdog **watchdog, double (*look)(void *user, double now_s),
                                void *user, cau_error *error);
-void cau_watchdog_destroy(cau_watchdog *watchdog); // takes NULL
-// Something was energized: look at once. From any thread.
+void cau_watchdog_destroy(cau_watchdog *watchdog); // `watchdog` may be NULL
+// Makes the watchdog look at once, because energy was turned on. Any thread may call it.
 void cau_watchdog_wake(cau_watchdog *watchdog);
-// Whether it has looked since this was asked last, and asks it to. From any thread.
+// Returns whether the watchdog has looked since the last call, and asks it to look again. Any
+// thread may call it.
 bool cau_watchdog_moves(cau_watchdog *watchdog);

@@ -10,18 +10,18 @@
 
 struct cau_worker_pool {
 	pthread_mutex_t mutex;
-	pthread_cond_t changed;     // tasks or times changed
-	pthread_cond_t left;        // a slice ended
-	bool ending, last_was_long; // of the slices begun
-	double longest_s;           // processor time of a slice, without what cannot be divided
+	pthread_cond_t changed;     // signals that tasks or their times changed
+	pthread_cond_t left;        // signals that a slice ended
+	bool ending, last_was_long; // last_was_long: the last slice that began was of a long task
+	double longest_s;           // processor time of the longest slice, without the undivided part
 	int32_t nice;
-	int32_t workers; // threads wanted, all the time; thread_count: made so far
+	int32_t workers; // workers: wanted threads; thread_count: threads made so far
 	int32_t thread_count, task_count, task_capacity;
 	pthread_t *threads;
 	cau_task **tasks;
 };
 
-// A short task that ran this lately will soon want a worker again, whatever it says.
+// A short task that ran within this time counts as one that soon needs a worker again.
 #define LATELY_S 1.0
 
 static bool is_long(const cau_task *task)
@@ -29,8 +29,8 @@ static bool is_long(const cau_task *task)
 	return task->next.piece_s > CAU_SLICE_MOST_S;
 }
 
-// Whether a long task may begin a slice now. Where others are, one worker is kept for them; the
-// only worker is theirs after each long slice.
+// True if a long task may begin a slice now. If there are short tasks, one worker is kept for them.
+// If there is only one worker, short tasks get it after each slice of a long task.
 static bool long_may_begin(const cau_worker_pool *pool, double now_s)
 {
 	int32_t running = 0;
@@ -50,7 +50,8 @@ static bool long_may_begin(const cau_worker_pool *pool, double now_s)
 	return !others || running < pool->workers - 1;
 }
 
-// The due task with the earliest deadline, or NULL and the time when one becomes due.
+// Returns the due task with the earliest deadline. Returns NULL if none is due; *wake_s: the time
+// when one becomes due.
 static cau_task *pick(cau_worker_pool *pool, double now_s, double *wake_s)
 {
 	cau_task *best = NULL;
@@ -93,7 +94,7 @@ static void run_slice(cau_worker_pool *pool, cau_task *task)
 	task->running = false;
 	task->next = next;
 	task->ended_s = cau_monotonic_s();
-	// What became due meanwhile goes first, however far behind a long task is.
+	// Tasks that became due meanwhile go first, however late a long task is.
 	if (is_long(task))
 		task->next.deadline_s = fmax(next.deadline_s, task->ended_s);
 	if (task->woken && next.due_s > 0)
@@ -101,14 +102,14 @@ static void run_slice(cau_worker_pool *pool, cau_task *task)
 	if (task->woken && isinf(next.deadline_s))
 		task->next.deadline_s = cau_monotonic_s();
 	pthread_cond_broadcast(&pool->left);
-	pthread_cond_signal(&pool->changed); // its new time may be the earliest
+	pthread_cond_signal(&pool->changed); // the task's new time may be the earliest
 }
 
 static void *work(void *argument)
 {
 	cau_worker_pool *pool = argument;
 	pthread_setname_np(pthread_self(), "cautery-work");
-	// Without the right to it the thread stays at the process's priority, which is no fault.
+	// Without the permission the thread stays at the process's priority, which is no error.
 	cau_thread_set_nice(pool->nice);
 	pthread_mutex_lock(&pool->mutex);
 	while (!pool->ending) {
@@ -191,7 +192,7 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task)
 void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task)
 {
 	pthread_mutex_lock(&pool->mutex);
-	task->leaving = true; // it counts among the running ones until its slice ends
+	task->leaving = true; // the task counts as running until its slice ends
 	while (task->running)
 		pthread_cond_wait(&pool->left, &pool->mutex);
 	cau_task *last = pool->tasks[--pool->task_count];

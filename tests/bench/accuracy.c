@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps that end at an accuracy against steps of K iterations: two sessions of one scene, stepped
-// by turns, so that whatever the machine does beside it slows both. Sampled steps are taken again
-// from the same state by a third session that iterates until they have converged.
+// Compares steps that end at an accuracy with steps of K iterations. Two sessions of one scene are
+// stepped alternately, so that other load on the machine slows both. A third session repeats
+// sampled steps from the same state and iterates until they converge.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,9 +13,9 @@
 
 enum {
 	WARM_UP = 60,
-	MOST = 40, // iterations of a step that has an accuracy to reach
+	MOST = 40, // largest number of iterations of a step with an accuracy
 	SAMPLES = 20,
-	REST_TICKS = 3000, // until tissue rests, at most
+	REST_TICKS = 3000, // longest wait until the tissue rests
 	RESTING_TICKS = 100000,
 };
 
@@ -81,7 +81,8 @@ static void measure(turns *t, int32_t steps, bench_accuracy_result *result)
 	result->error_p95 = bench_quantile(error, samples, 0.95);
 }
 
-// Steps that nothing wakes: until it rests, and then what they cost of a core.
+// Steps a session without commands until it rests. Then measures the share of one core that resting
+// steps take.
 static int measure_rest(turns *t, bench_accuracy_result *result)
 {
 	int32_t ticks = 0;
@@ -95,7 +96,8 @@ static int measure_rest(turns *t, bench_accuracy_result *result)
 	for (int32_t i = 0; i < RESTING_TICKS; i++)
 		cau_session_step(t->session, NULL);
 	result->rest_core_share = (bench_now_s() - start) / (RESTING_TICKS * t->session->solver.step_s);
-	bench_copy_state(t->fixed, t->session); // awake, both from rest
+	// after this, both sessions are awake and start from rest
+	bench_copy_state(t->fixed, t->session);
 	return 0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts allocations of the whole program, its libraries among them, by standing before glibc's.
+// Counts the allocations of the whole program and its libraries, by replacing glibc's functions.
 #include <errno.h>
 #include <stdatomic.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A class: many sessions of one scene at the pace of the clock, few of them driven, all by a few
-// workers. Without the daemon: what the machine holds if nothing but steps cost anything.
+// A class: many sessions of one scene in real time, a few of them driven, on a few workers. There
+// is no daemon. So this is the largest number of sessions if only steps took time.
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
@@ -17,19 +17,19 @@ enum { SETTLE_TICKS = 600, WARM_UP_TICKS = 120 };
 typedef struct desk {
 	cau_session *session;
 	double first_due_s;
-	int64_t ticks;   // of the class, so far
-	int64_t counted; // when measuring began
-	bool busy;       // a worker has it
+	int64_t ticks;   // ticks so far
+	int64_t counted; // ticks at the start of the measurement
+	bool busy;       // a worker computes this desk
 	bool driven, failed;
 } desk;
 
 typedef struct classroom {
 	const cau_cut_def *cut;
 	double step_s, end_s;
-	double first_bytes; // of the program with one session that has been stepped
+	double first_bytes; // memory of the program with one session after its first steps
 	desk *desks;
 	int32_t count;
-	pthread_mutex_t mutex; // guards what desks have but their sessions
+	pthread_mutex_t mutex; // guards the members of desks except their sessions
 } classroom;
 
 static double due_s(const classroom *room, const desk *d)
@@ -45,7 +45,7 @@ static void sleep_until(double when_s)
 		;
 }
 
-// ---- the hand: to and fro along the scene's cut at its speed, lit on every other way
+// ---- the tool's motion: along the scene's cut and back at its speed, energy on every other way
 static double way_s(const cau_cut_def *cut)
 {
 	double square = 0;
@@ -74,7 +74,7 @@ static void drive(const classroom *room, desk *d)
 }
 
 // ---- the workers
-// Whose tick is due first among those that nobody has; NULL: all are at work.
+// Takes the free desk whose tick is due first. Returns NULL if every desk is busy.
 static desk *take(classroom *room)
 {
 	desk *first = NULL;
@@ -120,7 +120,7 @@ static void *work(void *context)
 	return NULL;
 }
 
-// Until `end_s`.
+// Steps the sessions until `end_s`.
 static int work_until(classroom *room, int32_t workers, double end_s)
 {
 	pthread_t thread[16];
@@ -133,9 +133,9 @@ static int work_until(classroom *room, int32_t workers, double end_s)
 	return started == workers ? 0 : 1;
 }
 
-// ---- the room
-// What is this program's, each page shared by its number of users: a page that sessions
-// share one day counts once.
+// ---- setting up
+// Returns the memory of this program. A page that is shared counts in proportion, so a page that
+// sessions might share counts once.
 static double proportional_bytes(void)
 {
 	char line[256];
@@ -149,7 +149,7 @@ static double proportional_bytes(void)
 	return 1024 * kib;
 }
 
-// The first settles; the others begin as it did.
+// Creates a session. The first one settles; the others start from its state.
 static cau_session *seat(const cau_scene_def *scene, const cau_session *first)
 {
 	cau_session_def def = cau_default_session_def();
@@ -175,7 +175,8 @@ static cau_session *seat(const cau_scene_def *scene, const cau_session *first)
 	return session;
 }
 
-// As in a class, all have been there for a while: the tissue that nobody touches is at rest.
+// Creates all sessions. They have been running for a while, so the tissue that no tool touches is
+// at rest.
 static bool furnish(classroom *room, const bench_options *options, const cau_scene_def *scene)
 {
 	for (int32_t i = 0; i < room->count; i++) {

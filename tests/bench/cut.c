@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cutting run: the scene's tool dwells, then is drawn across at the scene's speed with its
-// energy on, however many steps that takes. Cutting steps are those that removed an element, and
-// those before or after which one was to be taken out of the factor. Repeated runs are the same to
-// the last bit: the least time of a step is nearest to its own cost, the rest is what the machine
-// did beside it.
+// The cutting run. The scene's tool dwells with energy on and is then moved across at the scene's
+// speed, for as many steps as needed. Cutting steps are the steps that removed an element, and
+// those with a pending downdate before or after them. Repeated runs have the same bits. So the
+// smallest time of a step is nearest to its own cost, and the rest is other load on the machine.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,7 +57,7 @@ static int step(const cut_run *run, double *ms, cau_frame *frame)
 	return status != CAU_OK;
 }
 
-// Ticks that the scene's cut takes from end to end.
+// Returns the number of ticks that the scene's cut takes from end to end.
 static int32_t ticks_across(const cut_run *run)
 {
 	const cau_cut_def *cut = &run->scene->cut;
@@ -68,10 +67,10 @@ static int32_t ticks_across(const cut_run *run)
 	return (int32_t)ceil(sqrt(squared) / (cut->speed_m_s * run->step_s));
 }
 
-// Times of one step each, the least of the runs so far.
+// Time of each step, the smallest of the runs so far.
 typedef struct cut_times {
 	double plain[PLAIN_STEPS], *drawn;
-	uint8_t *cuts; // of the drawn steps: whether it is a cutting one
+	uint8_t *cuts; // true for a drawn step that is a cutting step
 	int32_t drawn_count;
 } cut_times;
 
@@ -123,7 +122,7 @@ static void sum_up(cut_times *times, bench_cut_result *result)
 		result->plain_median_ms > 0 ? result->cut_p99_ms / result->plain_median_ms : 0;
 }
 
-// The cut on a fresh session.
+// Performs the cut in a new session.
 static int run_once(const bench_options *options, const cau_scene_def *scene, cut_times *times,
                     bench_cut_result *result)
 {
@@ -160,7 +159,7 @@ int bench_cut(const bench_options *options, bench_cut_result *result)
 	return failed;
 }
 
-// ---- errors along the cut
+// ---- errors during the cut
 
 enum { SAMPLE_EVERY = 24 }; // steps; a converged step takes some hundred iterations
 
@@ -215,7 +214,8 @@ static void sum_up_along(along_run *run, bench_along_result *result)
 	result->ms_p99 = bench_quantile(run->ms, n, 0.99);
 }
 
-// The tool dwells and is drawn across; PLAIN_STEPS before and after, when the wound settles.
+// Dwells and moves the tool across, with PLAIN_STEPS before, and PLAIN_STEPS after while the wound
+// settles.
 static int draw_along(along_run *run, const cau_scene_def *scene, bench_along_result *result)
 {
 	int32_t dwell = (int32_t)(scene->cut.dwell_s / run->cut.step_s);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Error of a step of K iterations under the scene's pull: each measured step is taken again from
-// the same state by a session in double that iterates to convergence; the error is the distance
-// between the two results relative to the step's own motion, over all free vertices, in the norm of
-// mass.
+// The error of a step of K iterations under the scene's pull. A session in double precision repeats
+// each measured step from the same state and iterates to convergence. The error is the distance
+// between both results relative to the step's own motion, over all free vertices, in the mass norm.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +12,8 @@
 
 enum {
 	CONVERGED_ITERATIONS = 1000,
-	CONVERGED_DIAGONAL = 10000, // it takes hundreds for each halving
+	// the diagonal solver takes hundreds of iterations to halve the error
+	CONVERGED_DIAGONAL = 10000,
 	SAMPLES = 10,
 	MOST_SAMPLES = 64
 };
@@ -85,7 +85,7 @@ static void copy_reals(void *to, int to_single, const void *from, int from_singl
 		cau_real_set(to, to_single, i, cau_real_get(from, from_single, i));
 }
 
-// The state of one session, whatever its precision, into the other.
+// Copies the state of one session to another, which may have another precision.
 static void copy_state(cau_session *to, const cau_session *from)
 {
 	size_t bytes = 3 * (size_t)from->tissue.vertex_count * sizeof(double);
@@ -114,7 +114,8 @@ static double mass_distance(const cau_session *session, const double *a, const d
 	return sqrt(sum);
 }
 
-// Error of one step of `iterations` from the state of `state`; the converged result is in `exact`.
+// Returns the error of one step of `iterations` from the state of `state`. `exact` has the
+// converged result.
 static double step_error(pull_run *pull, cau_session *trial, const cau_session *state,
                          const cau_session *exact, double share, int32_t iterations, double *ms)
 {
@@ -128,7 +129,7 @@ static double step_error(pull_run *pull, cau_session *trial, const cau_session *
 	return moved > 0 ? mass_distance(exact, trial->position, exact->position) / moved : 0;
 }
 
-// One sample of error against time: steps of several numbers of iterations from one state.
+// Adds one sample of error over time: steps with several numbers of iterations from one state.
 static void sample_curve(pull_run *pull, cau_session *trial, const cau_session *state,
                          const cau_session *exact, double share, error_curve *curve)
 {
@@ -182,8 +183,8 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 	finish_curve(&curve, result);
 }
 
-// A trial takes a step many times over from one state, and each counts as a tick towards a tear: it
-// would soon be another tissue than the one whose converged step it is held against.
+// Turns tearing off. A trial repeats a step many times from one state, and each repetition would
+// count as a tick towards a tear. Its tissue would soon differ from that of the converged step.
 static void tear_nothing(cau_scene_def *scene)
 {
 	for (int32_t l = 0; l < scene->layer_count; ++l) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast a step could be if only its bytes counted: what K iterations read and write, each array
-// once a pass, over the rate at which one core reads a block of that size again and again (so from
-// the cache that would hold it).
+// The time of a step if only its bytes mattered: the bytes that K iterations read and write, each
+// array once a pass, over the rate at which one core reads a block of this size repeatedly. So the
+// block comes from the cache that would hold it.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,15 +11,16 @@
 
 enum { PASSES = 40, RUNS = 5 };
 
-// Reals and indices that an element of each kind reads and writes in one evaluation
-// (constraint/elements.h); what a pair shares is read once. Records stay in the nearest cache while
-// they are added to; they count as they are written and summed.
+// Reals and indices that one evaluation of an element of each kind reads and writes
+// (constraint/elements.h). Values that a pair of elements shares are read once. Records stay in the
+// nearest cache while contributions are added. They count when they are written and when they are
+// summed.
 enum {
 	SHEET_REALS = 4 + 6 + 1 + 3 + 2 * 6,
 	FAT_REALS = 9 + 1,
 	FAT_LIMIT_REALS = 2 * 4,
 	FAT_TARGET_REALS = 6,
-	FAT_SHRUNK_REALS = 1, // its limit's weight, where no other limit is
+	FAT_SHRUNK_REALS = 1, // weight of its limit, for fat without other limits
 	FAT_PLASTIC_REALS = 6,
 	LINK_REALS = 3 + 1 + 1,
 	HINGE_REALS = 4 + 3 + 1 + 1,
@@ -51,13 +52,14 @@ static double bytes_of_elements(const cau_elements *e)
 	double places =
 		(double)e->sheet.slot_count * SHEET_INDICES + (double)e->fat.slot_count * FAT_INDICES +
 		(double)e->link.slot_count * LINK_INDICES + (double)e->hinge.slot_count * HINGE_INDICES;
-	// a record's vertex is named to take its displacement, a vertex's record to sum it
+	// The index of a record's vertex is read for the displacement. The index of a vertex's record
+	// is read for the sum.
 	double names = 2.0 * e->record_count;
 	return reals * real_bytes + places * sizeof(uint16_t) + names * sizeof(int32_t);
 }
 
-// Both sweeps read the panels once, but for the zeros above diagonal blocks; right-hand sides and
-// permutations are small beside them.
+// Returns the bytes of a solve. Each sweep reads the panels once, except the zeros above diagonal
+// blocks. Right-hand sides and permutations are small in comparison.
 static double bytes_of_solve(const cau_step_solver *solver)
 {
 	return solver->diagonal ? 0
@@ -65,8 +67,9 @@ static double bytes_of_solve(const cau_step_solver *solver)
 	                              (double)cau_sweep_entry_bytes(&solver->sweep);
 }
 
-// Position, its start, prediction and step in double; displacement, gradient, increments and the
-// window of the acceleration (a column each of df and h) in real.
+// Returns the bytes of the vertices. Position, its start, prediction and step are double.
+// Displacement, gradient, increments and the window of the acceleration (a column each of df and h)
+// are real.
 static double bytes_of_vertices(const cau_step_solver *solver)
 {
 	double doubles = 5 * 3, reals = 4 * (6 + 3 * CAU_ANDERSON_WINDOW);
@@ -74,7 +77,7 @@ static double bytes_of_vertices(const cau_step_solver *solver)
 	       (doubles * sizeof(double) + reals * (double)cau_real_bytes(solver->elements.single));
 }
 
-// Bytes per second of one core's reads, the best of a few runs.
+// Returns the bytes per second that one core reads, the best of a few runs.
 static double bandwidth(const cau_step_solver *solver, double bytes)
 {
 	size_t half = (size_t)bytes / 2 / 64 * 64;

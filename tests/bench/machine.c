@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kernels differ in what they tell: x86 has families and models, ARM implementers and parts, others
-// less. Every line that is missing leaves its field unknown.
+// The content of /proc/cpuinfo depends on the processor: x86 has families and models, ARM has
+// implementers and parts, and others have less. A missing line leaves its field unknown.
 #include "bench/machine.h"
 
 #include <ctype.h>
@@ -20,7 +20,7 @@ static FILE *open_under(const char *root, const char *path)
 	return fopen(whole, "r");
 }
 
-// The first line of a file without its end; false if there is none.
+// Reads the first line of a file without its line end. Returns false if there is none.
 static bool read_first_line(const char *root, const char *path, char *line, size_t bytes)
 {
 	FILE *file = open_under(root, path);
@@ -34,22 +34,22 @@ static bool read_first_line(const char *root, const char *path, char *line, size
 
 // ---- the processor
 
-// Copies text that is still unknown; the first processor's line counts.
+// Copies a text unless it is known already. So the first processor's line counts.
 static void take_text(char *to, size_t bytes, const char *value)
 {
 	if (!*to)
-		snprintf(to, bytes, "%.*s", (int)bytes - 1, value); // cut where it is longer
+		snprintf(to, bytes, "%.*s", (int)bytes - 1, value); // a longer text is cut
 }
 
 static void take_number(int *to, const char *value)
 {
 	char *end;
-	long number = strtol(value, &end, 0); // ARM writes 0x41
+	long number = strtol(value, &end, 0); // ARM writes hexadecimal numbers like 0x41
 	if (*to < 0 && end != value && number >= 0)
 		*to = (int)number;
 }
 
-// ARM numbers that become one stepping.
+// ARM numbers that are combined into the stepping.
 typedef struct arm_revision {
 	int variant, revision;
 } arm_revision;
@@ -72,8 +72,8 @@ static void take_line(bench_machine *m, arm_revision *arm, const char *key, cons
 		{"CPU variant", NULL, 0, &arm->variant},
 		{"CPU revision", NULL, 0, &arm->revision},
 		{"model name", m->name, sizeof m->name, NULL},
-		{"Model", m->name, sizeof m->name, NULL},    // of boards
-		{"Hardware", m->name, sizeof m->name, NULL}, // of older ARM kernels
+		{"Model", m->name, sizeof m->name, NULL},    // boards
+		{"Hardware", m->name, sizeof m->name, NULL}, // older ARM kernels
 		{"uarch", m->name, sizeof m->name, NULL},    // RISC-V
 		{"cpu", m->name, sizeof m->name, NULL},      // POWER
 	};
@@ -89,7 +89,7 @@ static void take_line(bench_machine *m, arm_revision *arm, const char *key, cons
 		m->mhz_present = strtod(value, NULL);
 }
 
-// Splits "key \t: value" in place; false if it has no colon.
+// Splits "key \t: value" in place. Returns false if the line has no colon.
 static bool split(char *line, char **key, char **value)
 {
 	char *colon = strchr(line, ':');
@@ -118,7 +118,8 @@ static void read_processor(const char *root, bench_machine *m)
 		m->stepping = 16 * arm.variant + arm.revision;
 	if (!*m->name && read_first_line(root, "/proc/device-tree/model", line, sizeof line))
 		take_text(m->name, sizeof m->name, line);
-	const char most[] = "/sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq"; // in kHz
+	// the file's number is in kHz
+	const char most[] = "/sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq";
 	if (read_first_line(root, most, line, sizeof line))
 		m->mhz_most = strtod(line, NULL) / 1e3;
 }
@@ -143,7 +144,7 @@ static void read_caches(const char *root, bench_machine *m)
 		told = told && read_first_line(root, path, size, sizeof size);
 		if (!told || read_bytes(size) <= 0)
 			continue;
-		const char *kind = *type == 'D' ? "d" : *type == 'I' ? "i" : ""; // Data, Instruction
+		const char *kind = *type == 'D' ? "d" : *type == 'I' ? "i" : ""; // "Data" or "Instruction"
 		snprintf(m->caches[m->cache_count].name, sizeof m->caches[0].name, "L%.3s%s", level, kind);
 		m->caches[m->cache_count++].bytes = read_bytes(size);
 	}
@@ -158,7 +159,7 @@ void bench_machine_read(const char *root, bench_machine *machine)
 	read_caches(root, machine);
 }
 
-// ---- what else it did
+// ---- other load
 
 void bench_cpu_time_read(const char *root, bench_cpu_time *time)
 {
@@ -175,7 +176,7 @@ void bench_cpu_time_read(const char *root, bench_cpu_time *time)
 	if (read_first_line(root, "/proc/stat", line, sizeof line))
 		got = sscanf(line, "cpu %lf %lf %lf %lf %lf %lf %lf %lf", &f[0], &f[1], &f[2], &f[3], &f[4],
 		             &f[5], &f[6], &f[7]);
-	if (got < 4) // busy and idle at least
+	if (got < 4) // the busy and idle numbers are needed at least
 		return;
 	time->busy = f[0] + f[1] + f[2] + f[5] + f[6];
 	time->steal = got == 8 ? f[7] : -1;
@@ -188,16 +189,16 @@ bench_disturbance bench_disturbance_between(const bench_cpu_time *before,
 	bench_disturbance d = {before->load, -1, -1};
 	double total = after->total - before->total;
 	if (before->total <= 0 || total <= 0)
-		return d; // not told, or shorter than a tick
+		return d; // unknown, or shorter than a tick
 	double own = (after->own_s - before->own_s) * ticks_per_s;
-	// The kernel counts by whole ticks, so that the difference may be a little below 0.
+	// The kernel counts whole ticks, so the difference may be slightly negative.
 	d.others = fmin(fmax((after->busy - before->busy - own) / total, 0), 1);
 	if (before->steal >= 0 && after->steal >= before->steal)
 		d.steal = (after->steal - before->steal) / total;
 	return d;
 }
 
-// ---- telling it
+// ---- output
 
 static void write_json_text(FILE *out, const char *name, const char *text)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Machines of several kinds, as their kernels describe them, in a folder that stands for the root.
+// Reads machines of several kinds from a folder with the files that their kernels provide.
 #include "bench/machine.h"
 
 #include <setjmp.h>
@@ -91,7 +91,7 @@ static void arm_has_implementer_and_part(void **state)
 	assert_int_equal(machine.model, 0xd0c);
 	assert_int_equal(machine.stepping, 0x31);
 	assert_true(machine.mhz_present == 0 && machine.mhz_most == 0);
-	put("/proc/device-tree/model", "Some Board 4"); // without a line's end
+	put("/proc/device-tree/model", "Some Board 4"); // without a line end
 	bench_machine_read(root, &machine);
 	assert_string_equal(machine.name, "Some Board 4");
 }
@@ -158,12 +158,12 @@ static void others_and_steal_are_shares_of_all_cores(void **state)
 	bench_cpu_time_read(root, &before);
 	put("/proc/stat", "cpu  160 10 120 880 10 5 5 20 0 0\ncpu0 1 2 3\n");
 	bench_cpu_time_read(root, &after);
-	after.own_s = before.own_s + 0.5; // of 100 busy ticks, 100 a second
+	after.own_s = before.own_s + 0.5; // 0.5 s are half of the 100 busy ticks, at 100 ticks a second
 	bench_disturbance d = bench_disturbance_between(&before, &after, 100);
 	assert_true(d.load_before == 0.75);
-	assert_float_equal(d.others, 50. / 200, 1e-12); // rounding of the quotient
+	assert_float_equal(d.others, 50. / 200, 1e-12); // the limit is for rounding
 	assert_float_equal(d.steal, 10. / 200, 1e-12);
-	after.own_s = before.own_s + 1.01; // ticks are whole: it never falls below 0
+	after.own_s = before.own_s + 1.01; // ticks are whole numbers, but the share is never below 0
 	assert_true(bench_disturbance_between(&before, &after, 100).others == 0);
 }
 
@@ -178,7 +178,7 @@ static void a_kernel_without_steal_says_nothing_of_it(void **state)
 	after.own_s = before.own_s;
 	bench_disturbance d = bench_disturbance_between(&before, &after, 100);
 	assert_true(d.steal == -1);
-	assert_float_equal(d.others, 0.5, 1e-12); // rounding of the quotient
+	assert_float_equal(d.others, 0.5, 1e-12); // the limit is for rounding
 }
 
 int main(void)

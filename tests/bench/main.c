@@ -203,7 +203,7 @@ static bool wants_along(const bench_options *options)
 	return options->accuracy > 0 && options->cut;
 }
 
-// Returns 0, or 1 after a line on standard error.
+// Runs all wanted measurements. Returns 0, or 1 after an error message.
 static int measure(const bench_options *options, results *of)
 {
 	return bench_steps(options, &of->steps) || bench_limit(options, &of->limit) ||
@@ -217,7 +217,7 @@ static int measure(const bench_options *options, results *of)
 	       (options->classroom && bench_classroom(options, &of->classroom));
 }
 
-// Whether a part was measured; separates it from the part before.
+// Returns `measured`. Writes a comma before a further part of the JSON.
 static bool has_part(const bench_options *options, bool measured)
 {
 	fputs(measured && options->json ? "," : "", stdout);

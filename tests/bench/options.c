@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cautery-bench is asked on its command line.
+// The command line of cautery-bench.
 #include "bench/bench.h"
 
 #include "cautery/options.h"

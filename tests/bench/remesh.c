@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Section 7.1: the same cut by a method that changes the topology, and by ours. The other method
-// follows the tip along the scene's line of cut with the upright plane through it: elements that
-// the plane crosses behind the tip are refined by bisecting their crossed edges, each at the plane
-// and in all elements around it, so that the mesh stays conforming; vertices in the plane behind
-// the tip are doubled, and what lies on one side takes the double. Then it has to do what the
-// change asks for: assemble, order, analyse and factor the system of the new size, and write vertex
-// and index buffers of new sizes. Only elements of the cut layer are in it, without pins and links,
-// which flatters it.
+// Section 7.1: the same cut by a method that changes the topology, and by Cautery's method.
+//
+// The other method follows the tip along the scene's line of cut, with the vertical plane through
+// the line. Behind the tip it refines elements that the plane crosses. It bisects their crossed
+// edges at the plane, in all elements around the edge, so that the mesh stays conforming. Vertices
+// in the plane behind the tip are doubled, and the elements on one side take the double. After each
+// change the method must assemble, order, analyse and factorise the system of the new size. It must
+// also write vertex and index buffers of new sizes. The system has only elements of the cut layer,
+// without pins and links, which favours this method.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,22 +17,24 @@
 #include "session/session_internal.h"
 
 enum { MOST_CORNERS = 4, VERTEX_BYTES = 12, INDEX_BYTES = 4, GROWTH = 4 };
-static const double NEAR_PLANE =
-	0.05; // of an element's longest edge: such a vertex is in the plane
-static const double ILL_SHAPED =
-	0.05; // measure over that of the regular element of its longest edge
+// A vertex is in the plane if it is within this share of its element's longest edge.
+static const double NEAR_PLANE = 0.05;
+// An element is ill-shaped if its area or volume is below this share of that of a regular element
+// with the same longest edge.
+static const double ILL_SHAPED = 0.05;
 
 typedef struct remesh {
-	int corners; // of an element: 3, 4
+	int corners; // corners of an element: 3 or 4
 	int32_t vertices, elements, most_vertices, most_elements;
 	double *rest;      // m, (most_vertices x 3)
-	double *off;       // m from the plane, 0 in it, (most_vertices)
-	double *along;     // m along the line of cut, (most_vertices)
+	double *off;       // distance in m from the plane, 0 in the plane, (most_vertices)
+	double *along;     // position in m along the line of cut, (most_vertices)
 	double *mass;      // kg, (most_vertices)
 	int32_t *element;  // (most_elements x corners)
-	double *stiffness; // N m over m^dimension, (most_elements)
-	int32_t *head;     // (most_vertices): first entry of a vertex's list
-	int32_t *next; // (most_elements x corners): the list's next entry, element x corners + corner
+	double *stiffness; // stiffness in N m over m^dimension, (most_elements)
+	int32_t *head;     // (most_vertices): first entry of each vertex's list
+	// (most_elements x corners): next entry of the list; an entry is element x corners + corner
+	int32_t *next;
 	uint8_t *doubled; // (most_vertices)
 	bench_remesh_result *result;
 	double step_s;
@@ -84,8 +87,8 @@ static double longest_edge(const remesh *r, const int32_t *v)
 	return longest;
 }
 
-// Gradients of the barycentric coordinates (1/m) by dimension and corner; returns area or volume. A
-// sheet lies in a plane z = const.
+// Computes the gradients of the barycentric coordinates (1/m) by dimension and corner. Returns area
+// or volume. A sheet lies in a plane z = const.
 static double gradients(const remesh *r, const int32_t *v, double g[3][MOST_CORNERS])
 {
 	double e[3][3] = {{0}, {0}, {0, 0, 1}}, cross[3][3], determinant = 0;
@@ -119,7 +122,7 @@ static void test_shape(remesh *r, int32_t element)
 }
 
 // ---- refinement
-// Splits one element at the vertex `middle` of its edge from the corner `a` to the corner `b`.
+// Splits one element at `middle`, the vertex on its edge from corner `a` to corner `b`.
 static void split_element(remesh *r, int32_t element, int a, int b, int32_t middle)
 {
 	int32_t first = element * r->corners, child = r->elements++, to = child * r->corners;
@@ -152,7 +155,7 @@ static int corner_of(const remesh *r, int32_t element, int32_t vertex)
 	return -1;
 }
 
-// Bisects an edge at the plane, in every element around it.
+// Bisects an edge at the plane, in all elements around the edge.
 static void bisect(remesh *r, int32_t a, int32_t b)
 {
 	double share = r->off[a] / (r->off[a] - r->off[b]);
@@ -170,7 +173,8 @@ static void bisect(remesh *r, int32_t a, int32_t b)
 		split_element(r, around[k], corner_of(r, around[k], a), corner_of(r, around[k], b), middle);
 }
 
-// The first edge of an element that the plane crosses behind the tip; false if there is none.
+// Finds the first edge of an element that the plane crosses behind the tip. Returns false if there
+// is none.
 static bool crossed_edge(const remesh *r, int32_t element, double tip_m, int32_t edge[2])
 {
 	const int32_t *v = r->element + (size_t)element * (size_t)r->corners;
@@ -196,7 +200,8 @@ static int side_of(const remesh *r, int32_t element)
 	return sum > 0;
 }
 
-// Whether all of the plane around the vertex is behind the tip, and no element there crosses it.
+// True if the whole neighbourhood of the vertex is behind the tip and no element there crosses the
+// plane.
 static bool is_free(const remesh *r, int32_t vertex, double tip_m)
 {
 	int sides = 0;
@@ -228,7 +233,7 @@ static void open_vertex(remesh *r, int32_t vertex)
 	}
 }
 
-// Follows the tip to `tip_m`. Whether the mesh has changed.
+// Follows the tip to `tip_m`. Returns true if the mesh has changed.
 static bool follow(remesh *r, double tip_m)
 {
 	int32_t before = r->vertices, edge[2];
@@ -242,7 +247,7 @@ static bool follow(remesh *r, double tip_m)
 	return r->vertices > before;
 }
 
-// ---- the system of the mesh as it is: M/dt^2 + sum of w G^T G
+// ---- the system of the present mesh: M/dt^2 + sum of w G^T G
 static int by_number(const void *a, const void *b)
 {
 	int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
@@ -403,7 +408,7 @@ static int change(remesh *r, double tip_m)
 	bool changed = follow(r, tip_m);
 	double took = bench_now_s() - start;
 	if (!changed)
-		return 0; // looking for nothing to do is not counted
+		return 0; // a search without a change is not counted
 	r->result->remesh_s += took;
 	r->result->changes++;
 	r->result->buffer_bytes +=
@@ -422,7 +427,7 @@ static int follow_cut(remesh *r, const cau_scene_def *scene)
 	return failed;
 }
 
-// Area or volume of all elements, which no refinement changes.
+// Returns the area or volume of all elements, which refinement must not change.
 static double whole_measure(const remesh *r)
 {
 	double g[3][MOST_CORNERS], sum = 0;

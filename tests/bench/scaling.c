@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Step time against elements: the slab grown in its plane from its own size to eight times as many
-// cells, the exponent fitted to the logarithms by least squares. Of several runs each size has its
-// least median.
+// Step time over the number of elements. The slab grows in its plane from its own size to eight
+// times as many cells. The exponent is fitted to the logarithms by least squares. Each size takes
+// the smallest median of several runs.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static void grow(cau_scene_def *scene, double side)
 		}
 	for (int32_t i = 0; i < scene->pin_count; ++i)
 		for (int c = 0; c < 2; ++c) {
-			// the end planes move out with the slab
+			// the pinned ends move outwards with the slab
 			double middle = (scene->pins[i].least_m[c] + scene->pins[i].most_m[c]) / 2;
 			double half = (scene->pins[i].most_m[c] - scene->pins[i].least_m[c]) / 2;
 			if (half > 1e-3)
@@ -78,7 +78,8 @@ int bench_scaling(const bench_options *options, bench_scaling_result *result)
 {
 	memset(result, 0, sizeof *result);
 	result->count = 4;
-	for (int32_t r = 0; r < options->repeat; ++r) // all sizes see the same minutes
+	// interleaved, so that other load on the machine affects all sizes alike
+	for (int32_t r = 0; r < options->repeat; ++r)
 		for (int doubled = 0; doubled < result->count; ++doubled)
 			if (measure(options, doubled, result))
 				return 1;

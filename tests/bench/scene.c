@@ -81,7 +81,7 @@ cau_scene_def *bench_scene(const bench_options *options)
 	if (!scene)
 		return NULL;
 	scene->iterations = options->iterations;
-	scene->accuracy = 0; // so many in each step
+	scene->accuracy = 0; // each step has exactly `iterations` iterations
 	if (options->solver >= 0)
 		scene->solver = options->solver;
 	if (options->precision >= 0)
@@ -89,8 +89,8 @@ cau_scene_def *bench_scene(const bench_options *options)
 	return scene;
 }
 
-// The last scene with built-in tension of which a session was made, and how that came to rest,
-// which takes seconds. Another session of an equal scene begins there, with the same bits.
+// The last scene with prestress of which a session was made, and its state at rest. Coming to rest
+// takes seconds. Another session of an equal scene starts from this state, with the same bits.
 static struct {
 	cau_scene_def *scene;
 	void *shot;

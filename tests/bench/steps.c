@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain steps with heat and contact on: one tool is energized a hand's breadth above the tissue, so
-// that its grid diffuses; another, cold, presses a millimetre into it.
+// Plain steps with heat and contact. One tool has energy on a hand's breadth above the tissue, so
+// that heat flows in its grid. Another tool is cold and presses a millimetre into the tissue.
 #include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static cau_command move_command(const char *tool, const double at[3])
 	return command;
 }
 
-// Highest vertex near the middle of the scene.
+// Finds the highest vertex near the middle of the scene.
 static void top_middle(const cau_session *session, double at[3])
 {
 	double best = -1e300;
@@ -65,7 +65,8 @@ void bench_place_tools(cau_session *session)
 	bench_submit(session, &move);
 }
 
-// One three-column solve by CHOLMOD on the same matrix, one thread: median, ms.
+// Returns the median time, ms, of a three-column solve by CHOLMOD with the same matrix on one
+// thread.
 static double time_cholmod(cau_session *session)
 {
 	cau_step_solver *solver = &session->solver;

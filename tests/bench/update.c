@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What keeping the matrix in step with a cut costs (section 7.2), by the number of elements that it
-// takes: exact downdates of the factor, as a cut of a few elements goes; a numeric factorisation
-// with the pattern that there is, as a cut of many goes; and what a method has to do whose cuts
-// change the topology, and with it the pattern: order, analyse and factor anew. Each with all that
-// has to follow before the next solve can begin (packing), and without the steps between.
+// The cost of updating the matrix after a cut (section 7.2), over the number of removed elements.
+// There are three ways. Exact downdates of the factor are for cuts of a few elements. A numeric
+// factorisation with the present pattern is for cuts of many elements. A method whose cuts change
+// the topology, and so the pattern, must order, analyse and factorise again. Each time includes all
+// work before the next solve (packing), and excludes the steps between cuts.
 //
-// A cut takes the elements that are nearest to the scene's line of cut.
+// A cut removes the elements nearest to the scene's line of cut.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "bench/bench.h"
 #include "session/session_internal.h"
 
-enum { ROUNDS = 5 }; // each time is the least of them
+enum { ROUNDS = 5 }; // each time is the smallest of these rounds
 
 typedef struct ranked {
 	double distance_m;
@@ -44,7 +44,7 @@ static int by_distance(const void *a, const void *b)
 	return (first->element > second->element) - (first->element < second->element);
 }
 
-// The `count` elements nearest to the line. NULL if memory ran out.
+// Returns the `count` elements nearest to the line, or NULL if memory ran out.
 static cau_waiting *nearest_elements(const cau_session *session, int kind, int32_t of,
                                      const cau_scene_def *scene, int32_t count)
 {
@@ -99,7 +99,7 @@ static void keep_least(double *least_ms, double start_s)
 		*least_ms = ms;
 }
 
-// One cut in each of the three ways; the factor is whole again afterwards.
+// Measures one cut in each of the three ways. The factor is complete again afterwards.
 static int measure(cau_session *session, const cau_waiting *list, bench_update_row *row)
 {
 	cau_matrix_update *update = &session->update;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core's signed distances for the viewer's tests. Each line "SHAPE HOT_RADIUS TIP SHAFT_RADIUS
-// JAW PART X Y Z STEPS" on standard input (metres; PART 0 hot, 1 cold) moves the point STEPS times
+// Signed distances of the core for the viewer's tests. Each line "SHAPE HOT_RADIUS TIP SHAFT_RADIUS
+// JAW PART X Y Z STEPS" on standard input (metres; PART 0 is hot, 1 cold) moves a point STEPS times
 // towards the part's surface, by its distance along the gradient. The answer is the distance of the
-// point where it ends, and that point.
+// final point, and the point.
 #include <stdio.h>
 #include <stdlib.h>
 

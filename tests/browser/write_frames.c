@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes a topology frame, a key frame and deltas as the C encoder makes them, and beside each what
-// the C decoder then holds, for the viewer's decoder to be compared with: write_frames FOLDER.
+// write_frames FOLDER: writes a topology frame, a key frame and deltas from the C encoder. For each
+// frame it also writes the C decoder's state, for comparison with the viewer's decoder.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -54,7 +54,7 @@ static int write_topology(const char *folder, const cau_stream_def *def, const t
 	return failed;
 }
 
-// What the C decoder holds: epoch, sequence, tick, then every array, all little-endian.
+// Writes the state of the C decoder: epoch, sequence, tick, then every array, all little-endian.
 static int write_state(const char *folder, int number, const cau_frame_decoder *decoder)
 {
 	const cau_stream_state *state = cau_frame_decoder_state(decoder);

@@ -15,7 +15,7 @@ double clock_s(clockid_t clock)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Takes whole lines from standard input; false at its end.
+// Takes whole lines from standard input. Returns false at the end of the input.
 static bool take_lines(console *c, void (*obey)(void *user, const char *line), void *user)
 {
 	ssize_t got = read(STDIN_FILENO, c->kept + c->kept_bytes, LINE_BYTES - 1 - c->kept_bytes);

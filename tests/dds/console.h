@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the test's programs have in common: they are told by lines on standard input and tell, one
-// JSON object a line, on standard output.
+// Common functions of the test programs. A program reads commands as lines from standard input, and
+// writes events as JSON objects, one a line, to standard output.
 #pragma once
 
 #include <stdbool.h>
@@ -14,8 +14,8 @@ typedef struct console {
 	size_t kept_bytes;
 } console;
 
-// Waits for standard input for at most `seconds`, then hands each whole line to `obey`. False at
-// the input's end.
+// Waits for standard input, `seconds` at most, then passes each whole line to `obey`. Returns false
+// at the end of the input.
 bool console_listen(console *c, double seconds, void (*obey)(void *user, const char *line),
                     void *user);
 

@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A robot controller for the tests: a plain Cyclone DDS program that knows the IDL and nothing else
-// of the server.
+// A robot controller for the tests: a plain Cyclone DDS program that knows only the IDL and nothing
+// else of the server.
 //
-//     controller DOMAIN SESSION TOOL native|ros|sensor|loose|mistyped DEADLINE_MS    (0: declares
-//     none)
+//     controller DOMAIN SESSION TOOL native|ros|sensor|loose|mistyped DEADLINE_MS
 //
-// ros and on are ROS 2's topics: sensor writes poses with best effort, as its sensor data is; loose
-// writes the level of energy so too; mistyped writes poses to the topic of energy.
+// DEADLINE_MS 0 declares no deadline. All modes except native use ROS 2's topics. sensor writes
+// poses with best effort, like ROS 2's sensor data. loose also writes the level of energy with best
+// effort. mistyped writes poses to the topic of energy.
 //
-// It writes 100 times a second. Lines on standard input tell it what:
-//     aim X Y Z      m: goes there at 0.2 m/s        energy 0|1       the level it writes
-//     grasp 0|1      the level it writes             write on|off     silent, but alive
-//     once WHAT      one bad sample: nan infinite back huge stale leap session; or a good one:
-//                    lift, 1 mm higher
-//     flood COUNT    so many NaN samples at once     storm RATE       so many bad samples a second
-//     strangers COUNT  so many samples, each of another made-up tool or session
+// It writes 100 times a second. Lines on standard input control it:
+//     aim X Y Z      goes to this position (m) at 0.2 m/s
+//     energy 0|1     level of energy that it writes
+//     grasp 0|1      level of grasp that it writes
+//     write on|off   off: silent, but alive
+//     once WHAT      one bad sample: nan infinite back huge stale leap session;
+//                    or a good one: lift, 1 mm higher
+//     flood COUNT    this number of NaN samples at once
+//     storm RATE     this number of bad samples a second
+//     strangers COUNT  this number of samples, each of another made-up tool or session
 //     state          prints the newest tool state, soon
-// and by way of ros:
-//     ticks COUNT    the limit that it writes with the level
-//     command WORD   a state_command                  jaw RAD          a jaw/servo_jp
-//     crtk           prints the operating state, the jaw and the pose as ROS 2's topics tell them
-// On standard output it tells, one JSON object a line: matched, silent, strangers (all are
-// written), state, changed, crtk.
+// These need ROS 2's topics:
+//     ticks COUNT    limit that it writes with the level of energy
+//     command WORD   a state_command
+//     jaw RAD        a jaw/servo_jp
+//     crtk           prints the operating state, the jaw and the pose from ROS 2's topics
+// It writes events as JSON objects, one a line, to standard output: matched, silent, strangers (all
+// are written), state, changed, crtk.
 #include <dds/dds.h>
 #include <math.h>
 #include <stdio.h>
@@ -40,12 +44,12 @@
 #define SPEED_M_S 0.2
 #define LIFT_M 0.001
 
-enum { STRANGERS_SHARE = 500 }; // of one period
+enum { STRANGERS_SHARE = 500 }; // number of strangers in one period
 
 typedef struct controller {
 	char session[NAME_BYTES], tool[NAME_BYTES];
 	bool ros, sensor, loose, mistyped, writing, energy, grasp, has_state, matched, state_asked;
-	int32_t ticks; // with the level; 0: none
+	int32_t ticks; // written with the level of energy; 0 for none
 	uint64_t sequence;
 	double position_m[3], aim_m[3];
 	double last_write_s;
@@ -55,17 +59,17 @@ typedef struct controller {
 	cautery_ToolGrasp holding;
 	cautery_ToolPower power;
 	cautery_ToolForce felt;
-	bool sets;                      // set_w is to be written
-	double set_w;                   // of its generator
-	cautery_ToolInstrument becomes; // to be written, if it names an instrument
-	crtk crtk;                      // ros
+	bool sets;                      // set_w must be written
+	double set_w;                   // power setting of the tool's generator
+	cautery_ToolInstrument becomes; // must be written if it names an instrument
+	crtk crtk;                      // only with ROS 2's topics
 	bool crtk_asked;
-	double storm_hz; // 0: writes good samples if any
+	double storm_hz; // bad samples a second; 0 writes good samples
 	uint64_t stormed;
-	long strangers, made_up; // to be written yet; written so far
+	long strangers, made_up; // strangers still to write; strangers written
 } controller;
 
-// ---- the wire
+// ---- topics
 static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_descriptor_t *type,
                                bool best_effort)
 {
@@ -127,7 +131,8 @@ static void open_setting(controller *c)
 	dds_delete_qos(qos);
 }
 
-// Once the daemon reads it. Power is set, the other members are as they were last reported.
+// Writes the setting when the daemon's reader has matched. Only the power changes; other members
+// keep the last reported values.
 static void write_setting(controller *c)
 {
 	if (!c->sets || !*c->power.tool || !is_matched(c->setting))
@@ -142,7 +147,7 @@ static void write_setting(controller *c)
 	c->sets = false;
 }
 
-// Once the daemon reads it.
+// Writes the instrument when the daemon's reader has matched.
 static void write_instrument(controller *c)
 {
 	dds_qos_t *qos = reliable_qos(1);
@@ -246,7 +251,7 @@ static void write_once(controller *c, const char *what)
 		write_native(c, &sample);
 }
 
-// A millisecond's share of a storm.
+// Writes the storm's bad samples of one millisecond.
 static void write_storm(controller *c)
 {
 	static const char *const kinds[] = {"nan", "huge", "session"};
@@ -254,7 +259,7 @@ static void write_storm(controller *c)
 		write_once(c, kinds[c->stormed++ % 3]);
 }
 
-// A share of the strangers; what the writer has no room for waits.
+// Writes some of the strangers. If the writer's queue is full, the rest waits.
 static void write_strangers(controller *c)
 {
 	for (int left = STRANGERS_SHARE; left > 0 && c->strangers > 0; left--) {
@@ -272,7 +277,7 @@ static void write_strangers(controller *c)
 	}
 }
 
-// ---- telling and being told
+// ---- events and commands
 static void tell_state(const controller *c, const char *event)
 {
 	const cautery_ToolState *s = &c->state;

@@ -3,10 +3,10 @@
 //
 //     crowd DOMAIN SESSION COUNT LEASE_MS TOOL...
 //
-// Writer i is for the tool i modulo the number of tools. Lines on standard input:
+// Writer i is for tool i modulo the number of tools. Lines on standard input:
 //     write good|bad|off   each writer writes 20 times a second: commands in order, or with NaN
-// On standard output it tells, one JSON object a line: matched (all are), written (a whole round
-// is).
+// It writes events as JSON objects, one a line, to standard output: matched (all writers), written
+// (each writer has written once more).
 #include <dds/dds.h>
 #include <math.h>
 #include <stdio.h>
@@ -55,7 +55,7 @@ static void write_round(crowd *c)
 		snprintf(sample.session, sizeof sample.session, "%s", c->session);
 		snprintf(sample.tool, sizeof sample.tool, "%s", c->tools[i % c->tool_count]);
 		dds_return_t code = dds_write(c->writers[i], &sample);
-		if (code != DDS_RETCODE_TIMEOUT) // the daemon is busy
+		if (code != DDS_RETCODE_TIMEOUT) // a timeout means that the daemon is busy
 			checked(code);
 	}
 	printf("{\"event\":\"written\"}\n");

@@ -66,7 +66,7 @@ bool crtk_matched(const crtk *c)
 	       command.current_count > 0 && c->states > 0 && c->poses > 0;
 }
 
-// Those of jaw/... that the daemon has at its end.
+// Counts the jaw topics that the daemon has at its end.
 static int count_jaw_topics(const crtk *c)
 {
 	dds_publication_matched_status_t asks;

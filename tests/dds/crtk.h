@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The controller's side of CRTK's states and of the jaw.
+// The controller's side of CRTK's states and of the jaw topics.
 #pragma once
 
 #include <dds/dds.h>
@@ -10,16 +10,16 @@ typedef struct crtk {
 		asked_jaw_reader, force_reader, raw_force_reader;
 	char state[16];
 	bool homed, busy;
-	int states, poses;   // samples that came
-	double z_n, raw_z_n; // of measured_cf and raw/measured_cf
+	int states, poses;   // numbers of received samples
+	double z_n, raw_z_n; // forces from measured_cf and raw/measured_cf
 	double jaw_rad, asked_jaw_rad, jaw_nm, position_m[3],
-		asked_m[3]; // the last two of measured_cp and setpoint_cp
+		asked_m[3]; // position_m from measured_cp, asked_m from setpoint_cp
 } crtk;
 
-// A topic of ROS 2: rt/SESSION/TOOL/NAME, each `-` a `_`.
+// Creates a ROS 2 topic: rt/SESSION/TOOL/NAME, with each `-` replaced by `_`.
 dds_entity_t ros_topic(dds_entity_t participant, const char *session, const char *tool,
                        const char *name, const dds_topic_descriptor_t *type);
-// ROS 2's default; `latched` as CRTK's clients ask for operating_state.
+// Returns ROS 2's default QoS; `latched` is the QoS of CRTK's clients for operating_state.
 dds_qos_t *ros_qos(bool latched);
 
 void crtk_open(crtk *c, dds_entity_t participant, const char *session, const char *tool);

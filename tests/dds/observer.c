@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A reader of one session for the tests: its status and its frames, decoded as
-// protocol/idl/README.md says, with the codec of the protocol and nothing of the server.
+// A reader of one session for the tests: its status and its frames. It decodes frames as
+// protocol/idl/README.md says, with the protocol's codec and nothing of the server.
 //
 //     observer DOMAIN SESSION
 //
-// The line `state` on standard input asks what it holds now.
-// On standard output it tells, one JSON object a line: status (every one), gone, state.
+// The line `state` on standard input requests the present state. It writes events as JSON objects,
+// one a line, to standard output: status (each one), gone, state.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ enum { HELD_MOST = 256, TAKEN_MOST = 32 };
 typedef struct held {
 	uint64_t epoch, base;
 	size_t byte_count;
-	void *bytes; // NULL: free
+	void *bytes; // NULL if the entry is free
 } held;
 
 typedef struct observer {
@@ -31,11 +31,11 @@ typedef struct observer {
 	dds_entity_t participant, status_reader, topology_reader, key_reader, delta_reader;
 	cau_stream_def def;
 	void *storage;
-	cau_frame_decoder *decoder; // NULL: no frame has come
-	held held[HELD_MOST];       // deltas that came before the state they build on
+	cau_frame_decoder *decoder; // NULL before the first frame
+	held held[HELD_MOST];       // deltas that arrived before their base state
 	uint32_t topology_hash;
 	int statuses, topologies, keys, deltas, refused, foreign;
-	bool state_asked; // told at the end of the period
+	bool state_asked; // printed at the end of the period
 } observer;
 
 // ---- decoding
@@ -59,7 +59,7 @@ static cau_stream_def definition(const cautery_Frame *frame)
 	return def;
 }
 
-// A decoder for the stream that the frame is of; another stream gets a new one.
+// Makes a decoder for the frame's stream, if it is another stream than before.
 static void follow_stream(observer *o, const cautery_Frame *frame)
 {
 	cau_error error = {0};
@@ -92,7 +92,7 @@ static void hold(observer *o, const cautery_Frame *frame)
 		memcpy(slot->bytes, frame->bytes._buffer, frame->bytes._length);
 }
 
-// Applies the deltas that were held back and fit now.
+// Applies the held deltas that fit now.
 static void catch_up(observer *o)
 {
 	for (;;) {
@@ -122,7 +122,7 @@ static void take_delta(observer *o, const cautery_Frame *frame)
 	const cau_stream_state *state = cau_frame_decoder_state(o->decoder);
 	o->deltas++;
 	if (state->synced && state->epoch == frame->epoch && frame->base_sequence < state->sequence)
-		return; // the key frame was newer
+		return; // the state is newer already
 	hold(o, frame);
 	catch_up(o);
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks for sessions over DDS, for the tests.
+// Requests sessions over DDS, for the tests.
 //
-//     requester DOMAIN DAEMONS     (matched, once it has found so many)
+//     requester DOMAIN DAEMONS    prints matched when it has found this number of daemons
 //
 // Lines on standard input:
 //     request NUMBER OPERATION [MEMBER=VALUE...]   OPERATION as in the IDL; members of text, tick,
 //                                                  paused; driver=writer: the writer below
-//     writer SESSION     opens a writer of cautery/tool_command there
-//     move TOOL X Y Z    writes one command with it
-// On standard output it tells, one JSON object a line: matched, reply (its own only).
+//     writer SESSION  opens a writer of cautery/tool_command there
+//     move TOOL X Y Z writes one command with it
+// It writes events as JSON objects, one a line, to standard output: matched, reply (only to its own
+// requests).
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,12 +21,12 @@
 #define PERIOD_S 0.01
 
 enum { KEPT = 256 };
-enum { MATCH_PATIENCE_S = 60 }; // a sanitized daemon on a busy machine
+enum { MATCH_PATIENCE_S = 60 }; // long enough for a sanitized daemon on a busy machine
 
 typedef struct requester {
 	dds_entity_t participant, writer, reader, command;
 	dds_guid_t guid;
-	char session[NAME_BYTES]; // of the command writer
+	char session[NAME_BYTES]; // session of the command writer
 	uint64_t sequence;
 	uint32_t daemons;
 	bool matched;
@@ -115,7 +116,7 @@ static void obey(void *user, const char *line)
 		move(user, words + 5);
 }
 
-// The text as it may stand in a JSON string of a test.
+// Returns the text with quotes and backslashes replaced, for a JSON string of a test.
 static const char *quoted(const char *text, char room[LINE_BYTES])
 {
 	snprintf(room, LINE_BYTES, "%s", text);

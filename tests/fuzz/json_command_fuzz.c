@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scripts: every command that is read can be written, and reading that gives the same command.
+// Fuzz target for scripts. Every accepted command can be written, and reading the text gives the
+// same command.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A proxy's list of labels: what is read is one, and what is not says why.
+// Fuzz target for a proxy's list of labels. An accepted list is valid; a refused one has a reason.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene that is read can be written, and reading that gives the same scene.
+// Fuzz target for scenes. An accepted scene can be written, and reading the text gives the same
+// scene.
 #include <stdlib.h>
 #include <string.h>
 

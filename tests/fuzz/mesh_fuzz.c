@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as a mesh file, whose format is found from the bytes. What is read and cleaned must
-// keep the promises that everything after it relies on.
+// Fuzz target for mesh files; the format is detected from the bytes. A mesh that was read and
+// cleaned must have the properties that later code relies on.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +48,7 @@ static void check_tables(const cau_mesh *mesh)
 	cau_edge_table edges;
 	cau_face_table faces;
 	cau_error error = {0};
-	// Regions stand in for layers: any numbers will do.
+	// Uses regions as layers, because any numbers will do.
 	demand(!cau_edge_table_make(&primitives, mesh->triangle_region, &edges, &error));
 	for (int32_t t = 0; t < mesh->triangle_count; t++)
 		demand(cau_edge_table_find(&edges, mesh->triangle[3 * t], mesh->triangle[3 * t + 1]) ==
@@ -59,7 +59,7 @@ static void check_tables(const cau_mesh *mesh)
 	cau_face_table_finish(&faces);
 }
 
-// The report accounts for every element.
+// Checks that the report counts every element.
 static void check_report(const cau_mesh *mesh, const cau_mesh_report *report)
 {
 	char text[CAU_MESH_TEXT_BYTES];

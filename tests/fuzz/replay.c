@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a fuzz target without libFuzzer: over every file of the folders given as arguments, the
-// empty input, every seed cut short and with flipped bits, and a fixed pseudo-random set.
+// Runs a fuzz target without libFuzzer. The inputs are all files of the folders in the arguments,
+// the empty input, every seed cut short and with flipped bits, and a fixed pseudo-random set.
 #include "fuzz/fuzz_target.h"
 
 #include <dirent.h>
@@ -15,7 +15,7 @@ enum {
 	LARGEST_RANDOM_BYTES = 512,
 };
 
-// xorshift64: the same inputs in every run
+// xorshift64, so that every run has the same inputs
 static uint64_t next_random(uint64_t *state)
 {
 	*state ^= *state << 13;
@@ -24,7 +24,8 @@ static uint64_t next_random(uint64_t *state)
 	return *state;
 }
 
-// The parser sees an allocation of exactly `bytes`, so that a sanitizer notices one byte too many.
+// Runs the parser on an allocation of exactly `bytes`, so that a sanitizer detects an access one
+// byte beyond.
 static bool run_exact(const uint8_t *data, size_t bytes)
 {
 	uint8_t *exact = calloc(bytes ? bytes : 1, 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames, topology and chunks: as they come, and with a header put right so that the sections are
-// reached. What a decoder accepts must keep its promises.
+// Fuzz target for frames, topology frames and chunks. Inputs are used unchanged, and with a
+// corrected header so that their sections are reached. Accepted input must leave the decoder in a
+// valid state.
 #include "fuzz/fuzz_target.h"
 
 #include <stdlib.h>

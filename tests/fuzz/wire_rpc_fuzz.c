@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON-RPC messages: read, then read as what they claim to be. A command that was accepted must be
-// written and read again to the same.
+// Fuzz target for JSON-RPC messages. A message is read, then its params or result are read by its
+// method. An accepted command must be the same after it is written and read again.
 #include "fuzz/fuzz_target.h"
 
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 enum { TEXT_BYTES_MAX = 1 << 16, ITEMS = 4 };
 
-// Room for the params or the result of any method; lists in it have no room for objects.
+// Memory for the params or the result of any method. Its lists have no capacity.
 static union {
 	cau_wire_session_description description;
 	cau_wire_session_create create;

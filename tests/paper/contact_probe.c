@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints what the validation page tells of tools that touch tissue, as CSV:
+// Prints CSV for the validation page about tools that touch tissue:
 //
 //     paper_contact_probe press RADIUS_MM CELL_MM POISSON HALF_MM PLACES SOLVED DEPTH_MM...
-//                         a ball pressed into a slab, a line a depth and place: PLACES along one
-//                         cell, the first off the mesh's lines; how its force changes within half
-//                         a second of rest, and how deep it is inside meanwhile; SOLVED 1: the
-//                         force of the same mesh's own solution beside the session's
+//                         A ball is pressed into a slab. There is a line for each depth and place.
+//                         PLACES are along one cell, the first off the mesh's lines. A line has the
+//                         range of the force in half a second of rest, and the depth inside. With
+//                         SOLVED 1 it also has the force of the same mesh's exact solution.
 //     paper_contact_probe cost RADIUS_MM DEPTH_MM SPEED_MM_S TICKS
-//                         a step of `fat` with a ball that is drawn through it and with one that
-//                         hangs above it, by turns of 20 ticks
+//                         The time of a step of `fat` with a ball that moves through it, and with a
+//                         ball above it. The two alternate every 20 ticks.
 #include <stdio.h>
 #include <time.h>
 
@@ -16,7 +16,8 @@
 
 // ---- press
 static const double thick_m = 16e-3;
-static const double even = 1.6; // cells are equal as far as so many radii of the deepest patch
+// cells are equal within this many radii of the largest contact patch
+static const double even = 1.6;
 
 static double vertex_depth_m(const indent_stand *stand)
 {
@@ -30,7 +31,7 @@ static double vertex_depth_m(const indent_stand *stand)
 	return stand->of.radius_m - nearest;
 }
 
-// What is seen of a ball that stands where it is.
+// What is measured while a ball does not move.
 typedef struct watched {
 	double least_n, most_n, vertex_depth_m, face_depth_m;
 } watched;
@@ -57,7 +58,8 @@ static void print_press(indent_stand *stand, double share, bool solved)
 	indent_press(stand, x, y, of->depth_m);
 	watched seen = watch(stand);
 	const cau_tool_state *ball = stage_tool(stand->session, "ball");
-	double depth_m = of->radius_m - ball->pose.position_m[2]; // it yields a little
+	// the actual depth is a little smaller than the commanded one
+	double depth_m = of->radius_m - ball->pose.position_m[2];
 	double hertz_n = cau_indented_by_hertz(indent_young_modulus_pa, of->poisson_ratio, of->radius_m,
 	                                       depth_m, of->thick_m);
 	printf("%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d\n", depth_m, share,
@@ -66,7 +68,7 @@ static void print_press(indent_stand *stand, double share, bool solved)
 	       seen.face_depth_m, (int)stage_frame(stand->session).statistics.contacts_left_out);
 }
 
-// `text`: RADIUS_MM and what follows it.
+// Runs `press`. `text` is RADIUS_MM and the arguments after it.
 static void press(int count, char **text)
 {
 	double radius_m = 1e-3 * strtod(text[0], NULL), cell_m = 1e-3 * strtod(text[1], NULL);
@@ -92,9 +94,9 @@ static void press(int count, char **text)
 }
 
 // ---- cost
-static const double run_m = 0.03;     // to and fro, this far to either side of the middle
-static const double aside_m = 0.6e-3; // off the mesh's lines
-static const double away_m = 0.05;    // of what hangs above
+static const double run_m = 0.03;     // half the length of the motion to and fro
+static const double aside_m = 0.6e-3; // distance from the mesh's lines
+static const double away_m = 0.05;    // height of the ball that does not touch
 static const double tick_s = 1.0 / 60;
 enum { WARM_UP_TICKS = 60, STRETCH_TICKS = 20, STEP_ITERATIONS = 10 };
 
@@ -109,7 +111,7 @@ static cau_session *open_fat(double radius_m)
 {
 	cau_scene_def *scene = stage_scene_named("fat");
 	scene->iterations = STEP_ITERATIONS;
-	scene->accuracy = 0; // as many in each step
+	scene->accuracy = 0; // each step has exactly STEP_ITERATIONS iterations
 	cau_tool_def *ball = &scene->tools[0];
 	ball->hot_radius_m = radius_m;
 	ball->tip_length_m = fmax(ball->tip_length_m, 2 * radius_m);
@@ -121,14 +123,14 @@ static cau_session *open_fat(double radius_m)
 	return session;
 }
 
-// There and back again, from the middle on.
+// Returns the position of a motion to and fro that starts in the middle.
 static double along_m(int tick, double speed_m_s)
 {
 	double way = fmod(tick * tick_s * speed_m_s + run_m, 4 * run_m);
 	return way < 2 * run_m ? way - run_m : 3 * run_m - way;
 }
 
-// Returns the processor's time (s) of a stretch of steps.
+// Returns the processor time (s) of STRETCH_TICKS steps.
 static double stretch_s(cau_session *session, int tick, double speed_m_s, double z_m, int *points)
 {
 	double sum_s = 0;
@@ -142,8 +144,9 @@ static double stretch_s(cau_session *session, int tick, double speed_m_s, double
 	return sum_s;
 }
 
-// Stretches by turns, so that each session finds in the caches what it left there, as one that is
-// alone on its thread, and both are measured in the same minute.
+// Alternates stretches of both sessions. Within a stretch a session finds its data in the caches,
+// like a session that is alone on its thread. Other load on the machine affects both sessions
+// alike.
 static void cost(double radius_m, double depth_m, double speed_m_s, int ticks)
 {
 	cau_session *in = open_fat(radius_m), *away = open_fat(radius_m);
@@ -155,7 +158,7 @@ static void cost(double radius_m, double depth_m, double speed_m_s, int ticks)
 		in_s += stretch_s(in, tick, speed_m_s, radius_m - depth_m, &points);
 		away_s += stretch_s(away, tick, speed_m_s, away_m, &none);
 	}
-	assert_int_equal(none, 0); // what hangs above touches nothing
+	assert_int_equal(none, 0); // the ball above must not touch the tissue
 	int measured = end - WARM_UP_TICKS;
 	printf("in_ms,away_ms,points\n%.9g,%.9g,%.9g\n", 1e3 * in_s / measured, 1e3 * away_s / measured,
 	       (double)points / measured);

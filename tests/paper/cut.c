@@ -5,16 +5,17 @@
 
 #include "measured.h"
 
-// The law of core/session/electrosurgery.c.
+// The constants of core/session/electrosurgery.c.
 static const double reach_m = 3e-3, spark_v = 200, spark_v_m = 3e6, spot_m = 1e-4;
 static const double residual_most = 1e-3;
-static const double margin_mm = 2; // of the sheet before the way and behind it
+// length of the sheet before the start and beyond the end of the motion
+static const double margin_mm = 2;
 enum { ITERATIONS = 60, HALVES = 2 };
 
 typedef struct cut_state {
 	const cut_def *def;
 	measured_cells cells;
-	int32_t along, wide, thick, margin; // cells
+	int32_t along, wide, thick, margin; // numbers of cells
 	cau_blade blade;
 	cut_found found;
 } cut_state;
@@ -49,8 +50,8 @@ static void open_cut(cut_state *cut, const cut_def *def, cau_bioheat_material ti
 	                         .cooling_w_k = def->upper_w_k / HALVES};
 }
 
-// Cells that sparks reach, and of those the ones that metal touches. An arc's spot is shared by all
-// that it reaches.
+// Finds the cells that sparks reach, and among them the cells that metal touches. All cells that an
+// arc reaches share its spot.
 static void find_contacts(cut_state *cut, double at_m)
 {
 	cau_bioheat *bioheat = &cut->cells.bioheat;
@@ -114,7 +115,8 @@ static void step(cut_state *cut, bool energy, double at_m, double step_s)
 		vaporise(cut);
 }
 
-// Of one line of cells away from the middle: the cut's border, and from there how far it is dead.
+// Measures one line of cells outwards from the middle: the border of the cut, and the dead tissue
+// beyond it.
 static void measure_line(cut_state *cut, int32_t x, int32_t z, double *damage)
 {
 	const cau_bioheat *bioheat = &cut->cells.bioheat;

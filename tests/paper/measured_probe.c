@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints what an exposure does, as CSV of one line (measured.h has the names of all numbers):
+// Prints the results of an exposure as one line of CSV (measured.h has the names of all numbers):
 //
 //     paper_measured_probe jaws TISSUE NAME=NUMBER...    a cross-section of jaws
 //     paper_measured_probe cut TISSUE NAME=NUMBER...     an electrode drawn through a sheet
@@ -37,7 +37,7 @@ static cau_bioheat_material tissue_named(const char *name)
 	usage("no such tissue: ", name);
 }
 
-// Fills `number` by NAME=NUMBER; each name once.
+// Fills `number` from the arguments NAME=NUMBER. Each name must occur once.
 static void read_numbers(int count, char **text, const char *const *name, int names, double *number)
 {
 	for (int k = 0; k < names; k++)
@@ -71,7 +71,7 @@ static void print_numbers(const char *const *name, int names, const double *numb
 }
 
 #define NAME(name) #name,
-// All members are doubles, in the order of the table.
+// All members are doubles in the order of the table, so a union gives access by index.
 #define RUN(kind, TABLE, RESULTS)                                                                  \
 	static void run_##kind(int count, char **text, cau_bioheat_material tissue)                    \
 	{                                                                                              \

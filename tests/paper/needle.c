@@ -6,16 +6,16 @@
 #include "measured.h"
 
 static const double pi = 3.14159265358979323846;
-static const double reach_m = 0.025; // of the current around the electrode
+static const double reach_m = 0.025; // range of the current around the electrode
 static const double residual_most = 1e-4;
 enum { ITERATIONS = 200, HALVES = 2 };
 
 typedef struct needle_state {
 	const needle_def *def;
 	measured_cells cells;
-	int32_t out, up, active; // cells
-	double angle;            // of the wedge
-	double share;            // of the whole
+	int32_t out, up, active; // numbers of cells
+	double angle;            // angle of the wedge
+	double share;            // share of the whole organ that the wedge represents
 	cau_blade blade;
 	needle_found found;
 } needle_state;
@@ -30,8 +30,9 @@ static int32_t find(const needle_state *needle, int32_t x, int32_t z)
 	return cau_cells_find(&needle->cells.bioheat.cells, (int32_t[]){x, 0, z});
 }
 
-// A face between two rings is as large as the ring between their middles, but cells.h takes the
-// emptier one. The pull-back makes up for it: of both its mean is 1 + h / (2 r), within h^4.
+// A face between two rings is as large as the ring between their middles, but cells.h uses the area
+// of the emptier ring. The pull-back corrects this: the mean of both cells is 1 + h / (2 r), up to
+// h^4.
 static void widen(needle_state *needle, int32_t cell, int32_t x)
 {
 	double ratio = needle->cells.bioheat.cells.side_m / radius_of(needle, x);
@@ -52,7 +53,7 @@ static void open_needle(needle_state *needle, const needle_def *def, cau_bioheat
 	for (int32_t x = 0; x < needle->out; x++)
 		for (int32_t z = 0; z < needle->up; z++)
 			widen(needle, measured_add(&needle->cells, x, 0, z, radius_of(needle, x) / most_m), x);
-	// So large that water keeps its temperature.
+	// The capacity is so large that the water keeps its temperature.
 	needle->blade = (cau_blade){.temperature_c = def->water_c, .heat_capacity_j_k = 1e9};
 	cau_bioheat *bioheat = &needle->cells.bioheat;
 	cau_current *current = &needle->cells.current;
@@ -97,7 +98,7 @@ static void step(needle_state *needle, bool energy, double step_s)
 		needle->found.peak_c = fmax(needle->found.peak_c, bioheat->temperature[i]);
 }
 
-// Between the middles of two cells by a straight line.
+// Returns the thermometer's temperature by linear interpolation between the middles of two cells.
 static double at_thermometer(const needle_state *needle)
 {
 	double at = needle->def->from_mm / needle->def->cell_mm - 0.5;

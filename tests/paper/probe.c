@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints what the validation page draws and no other program tells, as CSV, a line a tick or a
-// vertex:
+// Prints CSV for drawings of the validation page that no other program provides. There is one line
+// for each tick or vertex:
 //
-//     paper_probe heat STEP_MM NODES  temperature about a hot ball of 3 mm, by time and distance
-//     paper_probe flight ACCURACY     a free block thrown and set spinning: what it keeps
-//     paper_probe swing STEPS_PER_S   a block that swings from its end: where its energy goes
+//     paper_probe heat STEP_MM NODES  temperature around a hot ball of 3 mm, by time and distance
+//     paper_probe flight ACCURACY     conserved quantities of a free block that flies and spins
+//     paper_probe swing STEPS_PER_S   energies of a block that swings from its end
 //
-// The scenes are made here, in code, so that they stay what they are whatever the shipped ones
-// become.
+// The scenes are made in this program, so that changes to the shipped scenes do not affect them.
 #include <stdio.h>
 
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// ---- heat: a strip of vertices through the ball's middle, all held, looked at from both ends
+// ---- heat: a strip of vertices through the ball's middle, all held
 static const double ball_m = 3e-3, strip_m = 0.02, lattice_m = 2.5e-4;
 
 static void print_temperatures(const cau_session *session, const cau_session_info *info)
@@ -32,8 +31,8 @@ static void heat(double grid_step_m, int32_t grid_cells)
 	int32_t along = (int32_t)(2 * strip_m / lattice_m + 0.5);
 	cau_sheet_material *strip =
 		stage_add_sheet(scene, "strip", 2 * strip_m, 4 * lattice_m, along, 4)->sheet;
-	strip->heat.absorption_per_s = 0; // it takes nothing, so it stays whole
-	// All but one end, which has nowhere to go either.
+	strip->heat.absorption_per_s = 0; // the strip absorbs no energy, so it stays whole
+	// Pins all vertices but one end, which cannot move either.
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){strip_m - lattice_m / 2, 1, 1});
 	cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0);
 	ball->hot_radius_m = ball_m;
@@ -53,7 +52,7 @@ static void heat(double grid_step_m, int32_t grid_cells)
 	free(scene);
 }
 
-// ---- flight: nothing holds the block, no weight; momentum, angular momentum, energy
+// ---- flight: a free block without weight; prints momentum, angular momentum and energy
 static const cau_vec3 thrown_m_s = {0.1, 0.05, -0.02}, spin_rad_s = {8, 4.8, 3.6};
 
 typedef struct motion {
@@ -101,7 +100,7 @@ static double lost(cau_vec3 now, cau_vec3 before)
 	return cau_length(cau_sub(now, before)) / cau_length(before);
 }
 
-// `accuracy` of a step; 0: a hundred iterations each.
+// Runs `flight`. If `accuracy` is 0, each step has a hundred iterations.
 static void flight(double accuracy)
 {
 	enum { TICKS = 600 };
@@ -128,7 +127,7 @@ static void flight(double accuracy)
 	free(scene);
 }
 
-// ---- swing: let go level, held at one end; kinetic, elastic and potential energy
+// ---- swing: released in a level position, held at one end; kinetic, elastic and potential energy
 
 static double raised_j(const cau_session *session, double gravity_m_s2)
 {
@@ -145,7 +144,8 @@ static void swing(int steps_per_s)
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
 	cau_layer_def *block =
 		stage_add_slab(scene, "block", (double[]){0.08, 0.02, 0.02}, (int32_t[]){16, 4, 4});
-	block->fat->young_modulus_pa = 2e4; // it sinks by a third of its length
+	// with this modulus the block sinks by a third of its length
+	block->fat->young_modulus_pa = 2e4;
 	block->fat->poisson_ratio = 0.3;
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){-0.0399, 1, 1});
 	cau_default_gravity(scene->gravity_m_s2);

@@ -7,7 +7,7 @@
 
 enum { UPPER, LOWER, JAWS };
 enum { ITERATIONS = 200 };
-static const double reach_m = 5e-3; // of the current around the electrodes
+static const double reach_m = 5e-3; // range of the current around the electrodes
 static const double residual_most = 1e-5;
 static const double spark_v = 200;
 
@@ -18,11 +18,11 @@ static const double gas_j_molk = 8.314462618, zero_k = 273.15;
 typedef struct section_state {
 	const section_def *def;
 	measured_cells cells;
-	int32_t across, inside, outside, beside; // cells: half of a jaw's width, and tissue
-	int32_t below;                           // the first layer between the jaws
-	double share;                            // of all power and metal, that of the half slice
+	int32_t across, inside, outside, beside; // numbers of cells: half of a jaw's width, and tissue
+	int32_t below;                           // index of the lowest layer between the jaws
+	double share;                            // share of all power and metal that the half slice has
 	cau_blade blade[JAWS];
-	double *fusion; // (cells)
+	double *fusion; // (cells) damage of collagen
 	double least_ohm;
 	bool closed;
 	section_found found;
@@ -52,7 +52,7 @@ static void open_section(section_state *section, const section_def *def,
 	section->inside = cells_of(def, def->inside_mm);
 	section->outside = cells_of(def, def->outside_mm);
 	section->beside = cells_of(def, def->beside_mm);
-	// A wire lies on the tissue; jaws have as much of it above as below.
+	// A wire lies on the tissue. Jaws have the same thickness of tissue above and below.
 	section->below = def->far > 0 ? section->outside - section->inside
 	                              : (section->outside - section->inside) / 2;
 	section->share = def->cell_mm / def->length_mm / 2;
@@ -91,7 +91,7 @@ static void touch(section_state *section, int32_t x, int32_t z, int jaw)
 	cau_bioheat *bioheat = &section->cells.bioheat;
 	cau_current *current = &section->cells.current;
 	int32_t cell = find(section, x, z);
-	double over = 2 * bioheat->cells.side_m; // a side's area over half of a cell
+	double over = 2 * bioheat->cells.side_m; // area of a cell's side over half a cell
 	bioheat->contact[bioheat->contact_count++] =
 		(cau_contact_cell){.blade = jaw, .cell = cell, .over_length_m = over};
 	current->electrode[current->electrode_count++] = (cau_electrode_cell){
@@ -175,7 +175,7 @@ static bool has_parted(const section_state *section)
 	return true;
 }
 
-// Energy for as long, or until its rule ends it.
+// Turns energy on for `seconds`, or until a rule ends it.
 static void energize(section_state *section, double seconds)
 {
 	const section_def *def = section->def;
@@ -205,7 +205,7 @@ static void wait(section_state *section, double seconds)
 	}
 }
 
-// Until no more tissue dies.
+// Cools until no more tissue dies.
 static void cool(section_state *section)
 {
 	double left = section->def->cool_s;
@@ -216,7 +216,8 @@ static void cool(section_state *section)
 	}
 }
 
-// From now on the blade is in gas: T - gas falls with exp(-cooling t / capacity).
+// Returns the time until the blade has cooled to to_c. The blade is in gas, so T - gas falls with
+// exp(-cooling t / capacity).
 static double seconds_to(const section_state *section, double to_c)
 {
 	const cau_blade *blade = &section->blade[UPPER];
@@ -242,7 +243,8 @@ static double deepest_mm(const section_state *section)
 	return deepest * section->def->cell_mm;
 }
 
-// A seal is as good as the coldest part of the wall, at its best place (core/vessel/vessels.c).
+// Returns the fusion of the seal. It is that of the coldest part of the wall, at the best place
+// along the jaws (core/vessel/vessels.c).
 static double best_fusion(const section_state *section)
 {
 	double best = 0;

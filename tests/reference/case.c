@@ -6,7 +6,7 @@
 
 enum { MOST_ROWS = 1000000 };
 
-// A file being read and where to report trouble.
+// A file that is being read, and the error to fill.
 typedef struct reader {
 	FILE *file;
 	cau_error *error;
@@ -17,7 +17,7 @@ static cau_status bad(const reader *in, const char *section)
 	return cau_fail(in->error, CAU_BAD_SYNTAX, section, "not as README.md describes it");
 }
 
-// The next word must be `name`.
+// Reads the next word, which must be `name`.
 static cau_status read_name(const reader *in, const char *name)
 {
 	char word[64];
@@ -34,7 +34,7 @@ static cau_status read_doubles(const reader *in, const char *section, double *ou
 	return CAU_OK;
 }
 
-// `name` and `count` numbers.
+// Reads the word `name` and then `count` numbers.
 static cau_status read_field(const reader *in, const char *name, double *out, int count)
 {
 	cau_status status = read_name(in, name);
@@ -50,8 +50,8 @@ static cau_status read_text(const reader *in, const char *name, char out[CAU_NAM
 	return fscanf(in->file, "%48s", out) == 1 ? CAU_OK : bad(in, name);
 }
 
-// `name` and its number of rows; allocates `columns` integers and `reals` numbers a row where
-// asked.
+// Reads `name` and the number of lines of a section. If wanted, allocates `columns` integers and
+// `reals` numbers for each line.
 static cau_status open_section(const reader *in, const char *name, int32_t *rows, int columns,
                                int32_t **indices, int reals, double **numbers)
 {
@@ -60,7 +60,8 @@ static cau_status open_section(const reader *in, const char *name, int32_t *rows
 		return status;
 	if (fscanf(in->file, "%d", rows) != 1 || *rows < 0 || *rows > MOST_ROWS)
 		return bad(in, name);
-	size_t room = (size_t)*rows + 1; // an empty section is not a failed allocation
+	// + 1, because a section without lines is not a failed allocation
+	size_t room = (size_t)*rows + 1;
 	if (columns && !(*indices = calloc(room * (size_t)columns, sizeof **indices)))
 		return cau_fail(in->error, CAU_NO_MEMORY, name, "%d rows", *rows);
 	if (reals && !(*numbers = calloc(room * (size_t)reals, sizeof **numbers)))
@@ -68,7 +69,7 @@ static cau_status open_section(const reader *in, const char *name, int32_t *rows
 	return CAU_OK;
 }
 
-// A section of rows, each with `columns` vertices and then `reals` numbers.
+// Reads a section. Each line has `columns` vertices and then `reals` numbers.
 static cau_status read_section(const reader *in, const char *name, int32_t vertex_count,
                                int32_t *rows, int columns, int32_t **indices, int reals,
                                double **numbers)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A finite-element reference case: mesh, material, supports and the equilibrium to compare with.
-// Format and definitions: README.md beside this file.
+// A finite-element reference case: mesh, material, supports, and the equilibrium to compare with.
+// README.md in this folder has the format and definitions.
 #pragma once
 
 #include <stdint.h>
@@ -15,14 +15,14 @@ typedef struct cau_reference_case {
 	double poisson_ratio;
 	double density_kg_m3;
 	double gravity_m_s2[3];
-	double sphere_center_m[3]; // at its last place
-	double sphere_radius_m;    // 0: no sphere
-	double residual;           // of the reference itself, relative
-	double measure;            // N or m: block pull, tip deflection, indentation force
-	double measure_converged;  // the same on a converged mesh
-	double reaction_n[3];      // of the fixed vertices on the body, summed; likewise the next two
-	double hold_n[3];          // of the prescribed vertices
-	double contact_n[3];       // of the sphere
+	double sphere_center_m[3]; // middle of the sphere in its last position
+	double sphere_radius_m;    // 0 for no sphere
+	double residual;           // relative residual of the reference solution
+	double measure;            // N or m: block pull, tip deflection or indentation force
+	double measure_converged;  // value of `measure` on a converged mesh
+	double reaction_n[3];      // sum of the forces of the fixed vertices on the body
+	double hold_n[3];          // sum of the forces of the prescribed vertices
+	double contact_n[3];       // sum of the forces of the sphere
 	int32_t vertex_count;
 	int32_t tetrahedron_count;
 	int32_t fixed_count;
@@ -33,15 +33,15 @@ typedef struct cau_reference_case {
 	int32_t *fixed;          // vertices, (fixed_count)
 	int32_t *prescribed;     // vertices, (prescribed_count)
 	double *prescribed_move; // m, (prescribed_count x 3)
-	int32_t *contact;        // vertices on the sphere, (contact_count)
-	double *contact_force_n; // normal force of the sphere on each, (contact_count)
+	int32_t *contact;        // vertices that touch the sphere, (contact_count)
+	double *contact_force_n; // normal force of the sphere on each contact vertex, (contact_count)
 	double *displacement;    // m, (vertex_count x 3): the solution
 } cau_reference_case;
 
-// Reads a case file. The caller finishes *reference, on failure too.
-// Errors: CAU_IO, CAU_BAD_SYNTAX naming the section, CAU_BAD_VALUE for a vertex out of range.
+// Reads a case file. The caller finishes *reference, also after a failure. Errors: CAU_IO,
+// CAU_BAD_SYNTAX naming the section, CAU_BAD_VALUE for a vertex out of range.
 cau_status cau_reference_case_read(const char *path, cau_reference_case *reference,
                                    cau_error *error);
-// Vertices at z = 0, in `vertex` (vertex_count of room); returns how many.
+// Lists the vertices at z = 0 in `vertex`, which has vertex_count entries. Returns their number.
 int32_t cau_reference_case_top(const cau_reference_case *reference, int32_t *vertex);
-void cau_reference_case_finish(cau_reference_case *reference); // a zeroed one is fine
+void cau_reference_case_finish(cau_reference_case *reference); // accepts a zeroed one

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The committed cases load, and are what they claim: equilibria of their mesh under a hand-written
-// stress, with their supports, their contacts and their sums.
+// The committed cases can be read and are correct: each is an equilibrium of its mesh under a
+// separately written stress, with its supports, contacts and sums.
 #include "reference/case.h"
 
 #include <math.h>
@@ -15,10 +15,10 @@
 
 #include "reference/stress.h"
 
-// The files hold nine digits: displacements are off by 5e-10 of their size, and forces by as much
-// of the elements' stiffness times that, which is below this part of the supports' forces.
+// The files have nine digits, so displacements have errors of 5e-10 of their size. The errors of
+// forces are the elements' stiffness times that, which is below this share of the supports' forces.
 static const double FORCE_TOLERANCE = 1e-6;
-// Of the sphere's radius: nine digits again.
+// Relative to the sphere's radius, because the files have nine digits.
 static const double GAP_TOLERANCE = 1e-8;
 
 static const char *const NAMES[] = {
@@ -48,7 +48,7 @@ static double inverse(double a[3][3], double out[3][3])
 	return determinant;
 }
 
-// What holds tetrahedron t, added to `force`; returns its volume.
+// Adds the forces that hold tetrahedron t to `force`. Returns its volume.
 static double add_tetrahedron(const cau_reference_case *c, int32_t t, double *force)
 {
 	const int32_t *v = c->tetrahedron + 4 * (ptrdiff_t)t;
@@ -81,7 +81,7 @@ static double add_tetrahedron(const cau_reference_case *c, int32_t t, double *fo
 	return volume;
 }
 
-// Forces (N, (vertex_count x 3)) that hold the body where it is.
+// Returns the forces (N, (vertex_count x 3)) that hold the body in its present state.
 static double *holding_forces(const cau_reference_case *c)
 {
 	double *force = calloc((size_t)c->vertex_count * 3, sizeof *force);
@@ -96,7 +96,7 @@ static double norm(const double v[3])
 	return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-// Adds up the forces at `vertices`, clears them, and returns the sum of their sizes.
+// Sums the forces at `vertices` into `sum` and clears them. Returns the sum of their sizes.
 static double take(double *force, const int32_t *vertices, int32_t count, double sum[3])
 {
 	double size = 0;
@@ -117,7 +117,7 @@ static void assert_same_force(const double a[3], const double b[3], double toler
 	assert_true(norm(difference) < tolerance);
 }
 
-// Every contact force is along the sphere's normal, pushes, and is the one the file names.
+// Checks that every contact force pushes along the sphere's normal and has the value in the file.
 static void check_contacts(const cau_reference_case *c, const double *force, double tolerance)
 {
 	for (int32_t i = 0; i < c->contact_count; ++i) {
@@ -132,7 +132,8 @@ static void check_contacts(const cau_reference_case *c, const double *force, dou
 	}
 }
 
-// Largest force (N) left on a vertex without support, once the supports have taken theirs.
+// Returns the largest force (N) on a vertex without support, after the supports' forces are
+// removed.
 static double unbalanced(const cau_reference_case *c, double *support_force)
 {
 	double *force = holding_forces(c), sum[3] = {0}, largest = 0;
@@ -203,7 +204,7 @@ static void disturb(cau_reference_case *c)
 		   largest = 0;
 	assert_non_null(force);
 	for (int32_t v = 0; v < c->vertex_count; ++v) {
-		force[3 * (ptrdiff_t)v] = 1; // marks what no support takes
+		force[3 * (ptrdiff_t)v] = 1; // marks the vertices without support
 		largest = fmax(largest, norm(c->displacement + 3 * (ptrdiff_t)v));
 	}
 	take(force, c->fixed, c->fixed_count, unused);
@@ -217,7 +218,8 @@ static void disturb(cau_reference_case *c)
 	free(force);
 }
 
-// The check above notices one vertex that is off by what the comparison with the solver allows.
+// Moving one vertex by the tolerance of the comparison with the solver already breaks the
+// equilibrium.
 static void test_a_wrong_answer_is_no_equilibrium(void **state)
 {
 	(void)state;
@@ -248,7 +250,7 @@ static void test_no_vertex_is_inside_the_sphere(void **state)
 		touching -= c.contact_count;
 		cau_reference_case_finish(&c);
 	}
-	assert_int_equal(touching, 0); // those that touch are those that the files list
+	assert_int_equal(touching, 0); // all touching vertices are in the file's list
 }
 
 // ---- refusals -----------------------------------------------------------------------------------

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each iteration linearises what the points may not do, n . d >= -gap, and solves for the increment
-// d by the Hessian's factor and the points' own dense system: the reactions are those of a linear
-// complementarity problem in H^-1, found by an active set of their own. The ball's curvature is
-// part of the Hessian (that of the Lagrangian), so it converges quadratically.
+// Newton's method for the indented body. Each iteration linearises the constraints of the points, n
+// . d >= -gap. It solves for the increment d with the factor of the Hessian and a dense system of
+// the points. The reactions are the solution of a linear complementarity problem in H^-1, found by
+// an active set. The Hessian is that of the Lagrangian, which includes the ball's curvature, so the
+// iteration converges quadratically.
 #include "reference/indented.h"
 
 #include <cholmod.h>
@@ -15,14 +16,15 @@
 #include "reference/touching.h"
 
 enum { MOST_POINTS = 1500, MOST_ITERATIONS = 60, MOST_CHANGES = 100 };
-static const double converged = 1e-8; // of the ball's force; a gap, of its radius
+// residual relative to the ball's force; gap relative to its radius
+static const double converged = 1e-8;
 
 typedef struct solver {
 	const cau_indented_body *body;
 	const cau_indenting_ball *ball;
 	double *position;
 	double *gradient; // N, (n x 3)
-	int32_t *unknown; // (n): of its x; -1: fixed
+	int32_t *unknown; // (n): index of its x among the unknowns, or -1 if fixed
 	int32_t unknown_count;
 	cau_touching_point *point;
 	int point_count;
@@ -51,7 +53,8 @@ static void minus(const double a[3], const double b[3], double out[3])
 
 // ---- elements
 
-// Gradients (1/m) of the four corners' shapes; returns the volume (m^3).
+// Computes the gradients (1/m) of the shape functions of the four corners. Returns the volume
+// (m^3).
 static double shapes(const cau_indented_body *body, const int32_t v[4], double shape[4][3])
 {
 	double edge[3][3];
@@ -80,21 +83,21 @@ static void deformation(const double *position, const int32_t v[4], double shape
 		}
 }
 
-typedef struct tangent { // what dP is made of (Pa), and F
+typedef struct tangent { // F, and the coefficients of dP (Pa)
 	bool stvk;
-	double plain, outer, volume, bulge; // of stvk mu and lambda are plain and volume
+	double plain, outer, volume, bulge; // for stvk, mu is `plain` and lambda is `volume`
 	double f[3][3], cofactor[3][3];
-	double second[3][3]; // Piola-Kirchhoff's, of stvk
+	double second[3][3]; // second Piola-Kirchhoff stress, for stvk
 } tangent;
 
-// Rows of the cofactor are cross products of F's other two rows.
+// The rows of the cofactor matrix are cross products of the two other rows of F.
 static void cofactor_of(double f[3][3], double out[3][3])
 {
 	for (int i = 0; i < 3; i++)
 		cross(f[(i + 1) % 3], f[(i + 2) % 3], out[i]);
 }
 
-// 2 mu E + lambda tr E, with E = (F^T F - I) / 2.
+// The stress is 2 mu E + lambda tr E, with E = (F^T F - I) / 2.
 static tangent stvk_tangent_of(const cau_indented_body *body, double f[3][3])
 {
 	double nu = body->poisson_ratio, mu = body->young_modulus_pa / (2 * (1 + nu));
@@ -138,7 +141,7 @@ static void stvk_change_of_stress(const tangent *t, int i, const double row[3], 
 		}
 }
 
-// dP of dF, which has the row `i` alone.
+// Computes dP for a dF whose only nonzero row is `i`.
 static void change_of_stress(const tangent *t, int i, const double row[3], double out[3][3])
 {
 	if (t->stvk) {
@@ -146,7 +149,7 @@ static void change_of_stress(const tangent *t, int i, const double row[3], doubl
 		return;
 	}
 	double along = dot(t->f[i], row), grown = dot(t->cofactor[i], row), turned[2][3];
-	cross(t->f[(i + 2) % 3], row, turned[0]); // of the cofactor's rows i + 1 and i + 2
+	cross(t->f[(i + 2) % 3], row, turned[0]); // changes of the cofactor's rows i + 1 and i + 2
 	cross(row, t->f[(i + 1) % 3], turned[1]);
 	for (int r = 0; r < 3; r++)
 		for (int c = 0; c < 3; c++)
@@ -160,7 +163,7 @@ static void change_of_stress(const tangent *t, int i, const double row[3], doubl
 
 static void add_entry(solver *s, int32_t row, int32_t column, double value)
 {
-	if (row < column) // CHOLMOD reads the lower half
+	if (row < column) // CHOLMOD reads only the lower half
 		return;
 	size_t at = s->entries->nnz++;
 	((int *)s->entries->i)[at] = row;
@@ -191,7 +194,8 @@ static void add_element(solver *s, const int32_t v[4])
 
 // ---- points
 
-// How the normals turn, of the Lagrangian's Hessian: what pushes lets a point slide off the ball.
+// Adds the part of the Lagrangian's Hessian that comes from the turning normals: a pushing point
+// can slide off the ball.
 static void add_curvature(solver *s, const cau_touching_point *p)
 {
 	double bend[3][3];
@@ -228,7 +232,8 @@ static bool factorise(solver *s)
 	return s->common.status == CHOLMOD_OK && s->factor->minor == s->factor->n;
 }
 
-// What is left on the vertices, and by how much points are inside, or push from outside.
+// Measures the largest unbalanced force on a vertex and the largest violation of the points'
+// constraints.
 static void measure(const solver *s, cau_indented *out)
 {
 	size_t n = 3 * (size_t)s->body->vertex_count;
@@ -253,7 +258,7 @@ static void measure(const solver *s, cau_indented *out)
 	free(left);
 }
 
-// x of the symmetric positive definite system of those that push; A is destroyed.
+// Solves the symmetric positive definite system of the pushing points for x. A is destroyed.
 static bool solve_dense(double *a, double *x, int n)
 {
 	for (int j = 0; j < n; j++) {
@@ -281,8 +286,8 @@ static bool solve_dense(double *a, double *x, int n)
 	return true;
 }
 
-// Reactions >= 0 and gaps S r + b >= 0, of which one is zero for each point. Who pulls is let go,
-// who is inside is taken.
+// Finds reactions r >= 0 and gaps S r + b >= 0 of which one is zero at each point. Each round
+// releases points that pull and adds points that are inside.
 static bool find_reactions(cau_touching_point *list, int n, const double *s, const double *b)
 {
 	size_t many = (size_t)n;
@@ -324,7 +329,7 @@ static bool find_reactions(cau_touching_point *list, int n, const double *s, con
 	return right;
 }
 
-// The points' normals as columns, and behind them minus the gradient.
+// Returns the points' normals as columns, followed by minus the gradient.
 static cholmod_dense *right_sides(solver *s)
 {
 	size_t rows = (size_t)s->unknown_count;
@@ -351,7 +356,8 @@ static double dot_of(const double *a, const double *b, size_t n)
 	return sum;
 }
 
-// Moves what is free by what the linearised problem says; its reactions are the points'.
+// Moves the free vertices by the solution of the linearised problem, and stores its reactions in
+// the points.
 static bool move(solver *s)
 {
 	size_t rows = (size_t)s->unknown_count, n = (size_t)s->point_count;
@@ -422,7 +428,9 @@ bool cau_indented_solve(const cau_indented_body *body, const cau_indenting_ball 
 		if (done || out->iterations == MOST_ITERATIONS)
 			break;
 		right = factorise(&s);
-		if (!right) { // far from the solution what pushes may outweigh the tissue
+		// Far from the solution the curvature of pushing points may make the Hessian indefinite. It
+		// is left out then.
+		if (!right) {
 			assemble(&s, false);
 			right = factorise(&s);
 		}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The solution of an indented body, against the finite-element package's; the correction for thin
-// layers, against the numbers that its paper prints.
+// Compares the solution of an indented body with the finite-element package, and the correction for
+// thin layers with the numbers in its paper.
 // clang-format off
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,14 +17,15 @@
 #include "reference/case.h"
 #include "reference/indented.h"
 
-static const double same = 1e-5; // of the force: digits of the files
+static const double same = 1e-5; // relative to the force: the digits of the files
 
-// The ball comes down in stages: at once it would turn elements inside out.
+// Lowers the ball in stages, because a single stage would invert elements.
 static void solve(const cau_reference_case *reference, const cau_indented_body *body,
                   cau_indented *out)
 {
-	enum { STAGES = 8, FEW = 6 }; // Newton's: its Hessian is right
-	int slow = 0;                 // stages in which it takes more to find which vertices push
+	// FEW: largest number of iterations that Newton's method needs with a correct Hessian
+	enum { STAGES = 8, FEW = 6 };
+	int slow = 0; // stages with more iterations, which find the pushing vertices
 	size_t bytes = 3 * (size_t)body->vertex_count * sizeof(double);
 	double *position = malloc(bytes);
 	assert_non_null(position);
@@ -90,7 +91,8 @@ static void it_is_the_finite_element_packages(void **state)
 	compare("indentation_stvk_nu30");
 }
 
-// Eq. 12 of the paper: 16/9 E sqrt(R) d^(3/2) (1 + 1.133 x + 1.283 x^2 + 0.769 x^3 +- 0.0975 x^4).
+// Checks eq. 12 of the paper: 16/9 E sqrt(R) d^(3/2) (1 + 1.133 x + 1.283 x^2 + 0.769 x^3 +- 0.0975
+// x^4).
 static void hertz_is_as_printed(void **state)
 {
 	(void)state;
@@ -99,7 +101,8 @@ static void hertz_is_as_printed(void **state)
 	double factor = 1 + 1.133 * x + 1.283 * x * x + 0.769 * x * x * x;
 	double found = cau_indented_by_hertz(5000, 0.5, radius_m, depth_m, thick_m) /
 	               (16.0 / 9 * 5000 * sqrt(radius_m) * pow(depth_m, 1.5));
-	assert_true(fabs(found - factor) < fourth + 5e-4); // the sign, and its three digits
+	// the sign may differ, and the number has three digits
+	assert_true(fabs(found - factor) < fourth + 5e-4);
 	double far = cau_indented_by_hertz(5000, 0.3, radius_m, depth_m, 1e3);
 	double hertz = 4.0 / 3 * 5000 / (1 - 0.09) * sqrt(radius_m) * pow(depth_m, 1.5);
 	assert_true(fabs(far / hertz - 1) < 1e-4);

@@ -3,7 +3,7 @@
 
 #include "cautery/scene.h"
 
-// dJ/dF
+// Computes dJ/dF, the cofactor matrix of F.
 static void cofactor(double f[3][3], double out[3][3])
 {
 	for (int i = 0; i < 3; ++i)
@@ -20,7 +20,7 @@ double cau_reference_determinant(double f[3][3])
 	return f[0][0] * c[0][0] + f[0][1] * c[0][1] + f[0][2] * c[0][2];
 }
 
-// P = F (2 mu E + lambda tr(E) I), E = (F^T F - I) / 2
+// Computes P = F (2 mu E + lambda tr(E) I) with E = (F^T F - I) / 2.
 static void stress_stvk(double mu, double lambda, double f[3][3], double stress[3][3])
 {
 	double strain[3][3], trace = 0;
@@ -39,7 +39,8 @@ static void stress_stvk(double mu, double lambda, double f[3][3], double stress[
 		}
 }
 
-// P = m (1 - 1 / (I_C + 1)) F + l (J - alpha) dJ/dF, m = 4 mu / 3, l = lambda + 5 mu / 6
+// Computes P = m (1 - 1 / (I_C + 1)) F + l (J - alpha) dJ/dF with m = 4 mu / 3, l = lambda + 5 mu /
+// 6.
 static void stress_neohookean(double mu, double lambda, double f[3][3], double stress[3][3])
 {
 	double m = 4.0 / 3.0 * mu, l = lambda + 5.0 / 6.0 * mu, alpha = 1 + m / l - m / (4 * l);

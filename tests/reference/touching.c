@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double near = 0.01; // of the radius: points that may come to push
+// share of the radius; points within this distance may come to push
+static const double near = 0.01;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -30,9 +31,9 @@ static const double *corner(const double *position, const cau_touching_point *p,
 	return position + 3 * (size_t)p->vertex[k];
 }
 
-// ---- where it is nearest
+// ---- nearest points
 
-// On the line of two corners. False: beyond one of them, or at it.
+// Finds the nearest point on the line of two corners. Returns false if it is at or beyond a corner.
 static bool find_on_edge(const double *position, const double middle[3], cau_touching_point *p)
 {
 	double edge[3], to[3];
@@ -48,14 +49,15 @@ static bool find_on_edge(const double *position, const double middle[3], cau_tou
 	return share > 0 && share < 1;
 }
 
-// On the plane of three corners. False: beyond one of its sides, or on it.
+// Finds the nearest point on the plane of three corners. Returns false if it is on or beyond a
+// side.
 static bool find_on_face(const double *position, const double middle[3], cau_touching_point *p)
 {
 	double side[3][3], across[3], to[3];
 	for (int k = 0; k < 3; k++)
 		minus(corner(position, p, (k + 2) % 3), corner(position, p, (k + 1) % 3), side[k]);
 	cross(side[1], side[2], across);
-	double square = dot(across, across); // of twice the area
+	double square = dot(across, across); // square of twice the area
 	bool inside = true;
 	for (int k = 0; k < 3; k++) {
 		cross(across, side[k], p->slope[k]);
@@ -92,7 +94,8 @@ static void order(cau_touching_point *p)
 			}
 }
 
-// Of a face: on it, or else on that of its edges which is nearest; false where a vertex is.
+// Finds the nearest point of a face: inside the face, or else on its nearest edge. Returns false if
+// a vertex is nearest.
 static bool find_nearest(const cau_indenting_ball *ball, const double *position,
                          const int32_t face[3], cau_touching_point *out)
 {
@@ -168,15 +171,16 @@ int cau_touching_find(const cau_indented_body *body, const cau_indenting_ball *b
 	return l.count;
 }
 
-// ---- how it bends
+// ---- curvature of the distance
 
-// Where the point may slide, its distance is that from a line or a plane, which turns as a corner
-// moves along the normal: by the distance's lever, the point slides that way. Across that, it is
-// carried along and its direction from the middle turns.
+// Computes the second derivative of the distance. Where the point can slide, its distance is that
+// to a line or a plane. The line or plane turns when a corner moves along the normal, and the point
+// slides in proportion to the distance. In the other directions the point moves along with the
+// corner, and its direction from the middle turns.
 void cau_touching_bend(const cau_touching_point *p, int a, int b, double bend[3][3])
 {
 	const double *n = p->normal, *ga = p->slope[a], *gb = p->slope[b];
-	double along[3] = {0, 0, 0}; // the edge's direction
+	double along[3] = {0, 0, 0}; // direction of the edge
 	if (p->corners == 2) {
 		double length = sqrt(dot(p->slope[0], p->slope[0]));
 		for (int c = 0; c < 3; c++)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The closed form of one element stretched along one axis with its sides free: F = diag(s, l, l).
+// The closed form of one element that is stretched along one axis with free sides: F = diag(s, l,
+// l).
 #pragma once
 
 #include <stdint.h>
@@ -12,11 +13,12 @@ typedef struct cau_reference_uniaxial {
 	double poisson_ratio;
 	double stretch;         // s
 	double lateral_stretch; // l
-	double stress_pa;       // first Piola-Kirchhoff, along the axis; the lateral one is zero
+	// first Piola-Kirchhoff stress along the axis; the lateral stress is zero
+	double stress_pa;
 } cau_reference_uniaxial;
 
-// Reads uniaxial.txt into at most `capacity` rows.
-// Errors: CAU_IO, CAU_BAD_SYNTAX naming the row, CAU_LIMIT if there are more rows.
+// Reads uniaxial.txt into at most `capacity` entries of `rows`. Errors: CAU_IO, CAU_BAD_SYNTAX
+// naming the line, CAU_LIMIT if there are more lines.
 cau_status cau_reference_uniaxial_read(const char *path, int32_t capacity,
                                        cau_reference_uniaxial *rows, int32_t *row_count,
                                        cau_error *error);

@@ -13,7 +13,7 @@
 
 enum { CAPACITY = 64 };
 
-// Double rounding of stresses up to E, with room for the cancellation in J - alpha.
+// Double rounding of stresses up to E, with a margin for the cancellation in J - alpha.
 static const double STRESS_TOLERANCE = 1e-12;
 
 static void test_rows_are_the_closed_form(void **state)

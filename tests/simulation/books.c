@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Steps of a thousandth: far above rounding, and 4096 of them within what a scene may have.
+// Steps of 0.001 m/s^2 are far above rounding, and 4096 of them are within the range of a scene.
 #define FIRST_M_S2 10.
 #define STEP_M_S2 1e-3
 

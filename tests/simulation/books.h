@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the simulation knows of a session from outside: who may have energy on, and what was
-// acknowledged. Commands that set gravity stand for all commands: each sets a number of its own, so
-// the state shows which was the newest.
+// What the simulation knows of a session from outside: which clients may have energy on, and which
+// commands were acknowledged. Commands that set gravity represent all commands. Each sets a number
+// of its own, so the state shows which was the newest.
 #pragma once
 
 #include "simulation/world.h"
@@ -9,28 +9,30 @@
 typedef enum energy {
 	ENERGY_ALLOWED,
 	ENERGY_CUT,    // no enable counts
-	ENERGY_SILENT, // one would, but its client was silent for too long
+	ENERGY_SILENT, // an enable counts, but its client was silent for too long
 } energy;
 
 typedef struct session_book {
 	bool made, restarted;               // restarted: its state is still to be compared
-	bool full;                          // its store takes nothing
-	int64_t enabled_ns[TOOLS][CLIENTS]; // arrival of an enable that no cut has voided; 0: none
-	bool in_ticks[CLIENTS];             // silence of a client in lock-step is not of the clock
-	bool by_ticks[TOOLS][CLIENTS];      // the enable came with a request of lock-step
-	int ticks_left[CLIENTS];            // with energy, that requests of lock-step allow
-	int applied[GRAVITIES_MOST];        // place in the order of taking effect; 0: never
+	bool full;                          // its store refuses writes
+	int64_t enabled_ns[TOOLS][CLIENTS]; // arrival of an enable that no cut has voided, or 0
+	// the client drives in lock-step, where the clock does not measure its silence
+	bool in_ticks[CLIENTS];
+	bool by_ticks[TOOLS][CLIENTS]; // the enable came with a lock-step request
+	int ticks_left[CLIENTS];       // ticks with energy that lock-step requests still allow
+	// number in the order of taking effect, or 0 if it never took effect
+	int applied[GRAVITIES_MOST];
 	bool acknowledged[GRAVITIES_MOST];
-	int last_applied;            // places given
-	int floor;                   // place of the newest that was acknowledged on this line
-	int line_from;               // what was applied up to here may be gone by a rewind
-	bool leaving;                // a rewind is under way
-	int last_of_client[CLIENTS]; // number of the last that took effect
+	int last_applied;            // largest number given in that order
+	int floor;                   // number of the newest acknowledged command of the present branch
+	int line_from;               // a rewind may remove the effect of commands up to this number
+	bool leaving;                // a rewind is in progress
+	int last_of_client[CLIENTS]; // number of the last command that took effect
 } session_book;
 
 extern session_book sim_books[SESSIONS];
 
-// Expensive requests of each client that a daemon did since its start.
+// The expensive requests of each client since a daemon's start.
 typedef struct quota_book {
 	int64_t from_ns;
 	int done[CLIENTS];
@@ -38,20 +40,20 @@ typedef struct quota_book {
 
 extern quota_book sim_quotas[DISK_MACHINES];
 
-// gravity.set with a number: the command's text, and back from the state.
+// Converts a command's number to a gravity, and a state's gravity back to the number.
 double books_gravity(int number);
-int books_number(double gravity); // 0: another one
+int books_number(double gravity); // 0 if it is no such gravity
 
 energy promises_energy(int session, int tool, int64_t at_ns);
-// The client whose ticks in lock-step alone allow the tool's energy; -1: there is another reason,
-// or none.
+// Returns the client whose lock-step ticks are the only reason for the tool's energy. Returns -1 if
+// there is another reason, or none.
 int promises_by_ticks(int session, int tool, int64_t at_ns);
 
-// A rewind was asked for; it has come to its end, one way or the other.
+// A rewind was requested (leaves), and it has ended with or without success (arrives).
 void books_line_leaves(session_book *book);
 void books_line_arrives(session_book *book);
 void books_acknowledge(session_book *book, int number);
-// The daemon gives the core an order that it does now, not one that it replays.
+// The daemon gives the core a new order, not a replayed one.
 void books_apply(session_book *book, int number);
-// The state that a session has after a restart.
+// Checks the state that a session has after a restart.
 void books_compare(session_book *book, int place, int number);

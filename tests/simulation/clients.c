@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulated clients: connections, requests, heartbeats.
+// The simulated clients: their connections, requests and heartbeats.
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -23,12 +23,12 @@ static sim_random random_delays;
 static int64_t latency_most_ns;
 static bool have_tokens;
 
-// As the file `tokens` says.
+// The same as in the daemons' file `tokens`.
 static const struct {
 	const char *token;
-	bool looks;  // and does nothing
-	int session; // the only one; -1: all
-	int quota;   // 0: none
+	bool looks;  // the role is view
+	int session; // the only session allowed; -1 for all
+	int quota;   // expensive requests a minute; 0 for no quota
 } owners[CLIENTS] = {
 	{"the-token-of-client-0-and-the-courier", false, -1, 0},
 	{"the-token-of-client-1", false, -1, 0},
@@ -143,7 +143,7 @@ uint64_t clients_ask(int index, ask what, const char *method, int place, int too
 	return number;
 }
 
-// The newest request that changes something, as a client does after a lost connection.
+// Resends the newest request that changes something, as a client does after a lost connection.
 void clients_send_again(int index)
 {
 	sim_client *c = &sim_clients[index];
@@ -153,7 +153,7 @@ void clients_send_again(int index)
 	if (old->session >= 0 && old->life != sim_sessions[old->session].life)
 		return;
 	if (old->what == ASK_CREATE && old->machine != c->machine)
-		return; // another daemon would make another session
+		return; // another daemon would create another session
 	sim_request like = {.what = old->what,
 	                    .session = old->session,
 	                    .tool = old->tool,
@@ -189,7 +189,7 @@ bool clients_may(int client, ask what, int place)
 	if (!have_tokens || client >= CLIENTS)
 		return true;
 	bool reads = what == ASK_HELLO || what == ASK_JOIN || what == ASK_KEY_FRAME ||
-	             what == ASK_LIST || what == ASK_OTHER; // OTHER: some of them read
+	             what == ASK_LIST || what == ASK_OTHER; // some of the requests OTHER only read
 	bool there = place < 0 || owners[client].session < 0 || owners[client].session == place;
 	return (reads || !owners[client].looks) && there;
 }
@@ -241,7 +241,8 @@ void clients_show(int index, bool visible)
 	sim_clients[index].beat_ns = sim_now();
 }
 
-// Its clock is known by then: else nothing shows for how long its first message was on its way.
+// Delays the client's messages. The daemon must know the client's clock already. Otherwise nothing
+// shows how long its first message travelled.
 void clients_late(int index, int64_t ns)
 {
 	sim_client *c = &sim_clients[index];
@@ -260,7 +261,7 @@ void clients_read(int index, bool reads, int frames)
 }
 
 // ---- heartbeats
-// A member behind others; "": it has no clock.
+// Returns a member `client_time_us` to append to others, or "" if the client has no clock.
 static const char *clock_of(const sim_client *c, char text[CLOCK_BYTES])
 {
 	text[0] = 0;
@@ -294,7 +295,7 @@ void clients_beat(void)
 	}
 }
 
-// ---- what comes
+// ---- receiving
 bool clients_member(const char *text, const char *name, char *out, size_t capacity)
 {
 	char key[48];
@@ -374,16 +375,17 @@ static void on_frame(void *user, const unsigned char *bytes, size_t count)
 	streams_frame(c->index, bytes, count);
 }
 
-// Whether the message, or one before it, may have waited while its daemon was stopped. Then it
-// proves no life after it could have been read, and its clock cannot be the first.
+// True if the message, or an earlier one, may have waited while its daemon was stopped. Then it
+// proves no life after the time at which it could have been read, and its clock cannot be the
+// first.
 static bool waited(const sim_client *c, const sim_message *message)
 {
 	return message->due_ns < sim_stopped_until(c->machine);
 }
 
-// When the sender lived, at the latest, for all that the message can show. Without clocks it is the
-// time at which it could be read, with clocks that of its sending: of the daemon's reckoning at
-// most the longest usual delay later.
+// Records the latest time at which the sender was alive, as far as the message can show. Without a
+// clock it is the time at which the message could be read. With a clock it is the time of sending,
+// by the daemon's estimate: at most the longest usual delay later.
 static void hear(sim_client *c, const sim_message *message)
 {
 	bool clock = !message->binary && strstr(message->text, "\"client_time_us\"");

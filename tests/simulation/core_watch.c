@@ -14,32 +14,33 @@
 #define WRAPPED __attribute__((used))
 
 enum { CORES_MOST = 32, FIBERS_WATCHED = 128 };
-// The core may be on for so long after its driver's silence has to be noticed: a tick that was
-// under way, and a thread that stood still.
+// Longest time that energy may stay on after the driver's deadline: one tick under way, and one
+// stalled thread.
 #define STILL_ON_MOST_NS (40 * SIM_MS)
 
-// With three sessions of at most 4 ms a step even one worker has a quarter of its time left.
+// With three sessions of at most 4 ms a step, even a single worker is idle for a quarter of the
+// time.
 #define TICK_LATE_MOST_NS (300 * SIM_MS)
 
 typedef struct core_book {
-	const cau_session *core; // NULL: the place is free
+	const cau_session *core; // NULL if the entry is free
 	char id[CAU_NAME_BYTES];
-	int place, life, machine; // place: of the session; -1: none
-	const cau_logic *logic;   // of its session, once it is served
-	bool running;             // by the clock, when the worker decided last
-	int64_t began_ns;         // of its newest tick, or when it began to run
+	int place, life, machine; // place: index of the session, -1 if none
+	const cau_logic *logic;   // logic of the session, once it is served
+	bool running;             // it ran by the clock at the worker's last decision
+	int64_t began_ns;         // time of its newest tick, or when it began to run
 	bool served;              // the worker decides; false while the past is computed again
-	int64_t wrong_ns[TOOLS];  // since when it is on without a reason; 0: it is not
+	int64_t wrong_ns[TOOLS];  // time since which energy is on without a reason, or 0
 } core_book;
 
-// What the present fiber is at.
+// What the present fiber is doing.
 typedef struct at_work {
 	uint64_t fiber;
-	cau_hosted *deciding;     // within cau_decide_next
-	bool applying;            // an order, or the daemon's own commands
-	const cau_session *begun; // a tick of it was decided and not stepped yet
+	cau_hosted *deciding;     // inside cau_decide_next
+	bool applying;            // inside an order, or the daemon's own commands
+	const cau_session *begun; // a tick of this core was decided and not computed yet
 	energy allowed[TOOLS];
-	int by_ticks[TOOLS]; // client whose lock-step alone allows it; -1: none
+	int by_ticks[TOOLS]; // client whose lock-step alone allows energy, or -1
 } at_work;
 
 static struct {
@@ -72,7 +73,7 @@ static core_book *book_of(const cau_session *core)
 	return NULL;
 }
 
-// ---- the double's hooks
+// ---- hooks of the core's double
 static void on_made(const cau_session_def *def, const cau_session *core)
 {
 	core_book *book = book_of(NULL);
@@ -83,10 +84,10 @@ static void on_made(const cau_session_def *def, const cau_session *core)
 	if (book->place < 0)
 		return;
 	book->life = sim_sessions[book->place].life;
-	sim_books[book->place].full = false; // a new session begins with a store that takes it
+	sim_books[book->place].full = false; // a new session begins with a store that accepts writes
 }
 
-// Its name was not given anew.
+// True if its name was not given to a newer session.
 static bool is_present(const core_book *book)
 {
 	return book && book->place >= 0 && sim_sessions[book->place].life == book->life;
@@ -119,7 +120,7 @@ static const char *promise_of(int place, energy found)
 	                                : "energy_cut";
 }
 
-// A tick with energy in lock-step is one of those that its client's requests allow.
+// Counts a tick with energy against the ticks that the client's lock-step requests allow.
 static void charge_ticks(const core_book *book, unsigned clients)
 {
 	for (int c = 0; c < CLIENTS; c++)
@@ -129,7 +130,8 @@ static void charge_ticks(const core_book *book, unsigned clients)
 			         c);
 }
 
-// The clients whose lock-step alone allows its energy, as bits.
+// Checks a tool at the beginning of a tick. Returns the clients whose lock-step alone allows its
+// energy, as bits.
 static unsigned check_tool(const core_book *book, const cau_tool_state *tool, const at_work *work)
 {
 	unsigned by_ticks = 0;
@@ -186,7 +188,7 @@ void core_watch_killed(int machine)
 			watched.cores[i].core = NULL;
 }
 
-// ---- what a worker is at
+// ---- what a worker is doing
 void __real_cau_decide_next(cau_hosted *h, cau_action *action);
 void __wrap_cau_decide_next(cau_hosted *h, cau_action *action);
 WRAPPED void __wrap_cau_decide_next(cau_hosted *h, cau_action *action)
@@ -197,8 +199,8 @@ WRAPPED void __wrap_cau_decide_next(cau_hosted *h, cau_action *action)
 	work->deciding = NULL;
 }
 
-// The first decision after a restart is about the state that the store led to. A daemon that ends
-// gives up the sessions that it is building: these are not there yet, and nobody is served by them.
+// Compares the state at the first decision after a restart. A session that the daemon was still
+// building when it shut down is not compared, because no client was served by it.
 static void compare(const cau_hosted *h, const cau_logic *logic, int place)
 {
 	session_book *book = &sim_books[place];
@@ -229,7 +231,7 @@ static void note_decision(core_book *core, const cau_logic *logic, const cau_act
 		sim_fail("budget", "%d orders wait for %s, at most %d may", waits, core->id, most);
 }
 
-// What may be on is asked at the very moment at which the machine decides that a tick begins.
+// Asks which energy is allowed at the moment at which the logic decides to begin a tick.
 void __real_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
                            cau_effects *effects);
 void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
@@ -267,7 +269,7 @@ WRAPPED cau_outcome_kind __wrap_cau_hosted_apply(cau_hosted *h, cau_order *order
 	return outcome;
 }
 
-// ---- at any time
+// ---- checks at any time
 static void look_at(core_book *book, int64_t now_ns)
 {
 	cau_frame frame;
@@ -288,7 +290,8 @@ static void look_at(core_book *book, int64_t now_ns)
 		}
 }
 
-// The clock's pace: sessions that run by it begin a tick in time, whatever others do.
+// Checks the pace: a session that runs by the clock must begin each tick in time, whatever other
+// sessions do.
 static void check_pace(const core_book *book, int64_t now_ns)
 {
 	if (book->running && now_ns - book->began_ns > TICK_LATE_MOST_NS)
@@ -296,7 +299,8 @@ static void check_pace(const core_book *book, int64_t now_ns)
 		         1e-9 * (double)(now_ns - book->began_ns));
 }
 
-// One that a daemon gives up, or has ready for a move, is stepped by nobody.
+// True if some daemon computes this core. A session that a daemon gives up or prepares for a move
+// is not computed.
 static bool is_served(const core_book *book)
 {
 	return book->served && book->logic && !book->logic->ended &&

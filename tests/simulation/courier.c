@@ -11,11 +11,11 @@
 #include "simulation/promises.h"
 #include "simulation/world.h"
 
-#define PATIENCE_NS (10 * SIM_SECOND) // for one answer, or a daemon that is down
+#define PATIENCE_NS (10 * SIM_SECOND) // longest wait for one answer, or for a daemon that is down
 #define LOOK_NS SIM_MS
 
 enum {
-	SIDES = 2, // its connections: SOURCE, TARGET
+	SIDES = 2, // connections of the courier: SOURCE, TARGET
 	SOURCE = 0,
 	TARGET = 1,
 	PIECE_MOST = 5 << 20, // bytes: a piece has at most 4 MiB and one record
@@ -39,7 +39,7 @@ void courier_begin(void)
 	assert(courier.piece);
 }
 
-// ---- asking
+// ---- requests
 static bool connect_to(int side)
 {
 	int client = CLIENTS + side;
@@ -55,7 +55,8 @@ static bool connect_to(int side)
 	return false;
 }
 
-// The result's text; NULL: an error, no answer, or no connection.
+// Returns the text of the result. Returns NULL after an error, without an answer, or without a
+// connection.
 static const char *ask_side(int side, const char *method, const char *params)
 {
 	if (!connect_to(side))
@@ -159,7 +160,7 @@ static bool accept_proof(const char *decision)
 	char proof[72], more[96];
 	if (!clients_member(decision, "proof", proof, sizeof proof))
 		return false;
-	// From here on the target alone may serve it.
+	// From here on only the target may serve the session.
 	promises_moving(courier.place, courier.machine[TARGET]);
 	snprintf(more, sizeof more, ",\"proof\":\"%s\"", proof);
 	return ask_about(TARGET, "move.accept", more);
@@ -181,7 +182,7 @@ static bool walk(void)
 	return decision && accept_proof(decision);
 }
 
-// False: it is still open.
+// Ends a move that was not completed. Returns false while the outcome is open.
 static bool settle(void)
 {
 	char more[128], release[72];
@@ -189,7 +190,7 @@ static bool settle(void)
 	if (!moves)
 		return false;
 	if (!courier.move[0] || !strstr(moves, courier.move))
-		return true; // nothing of it is there, or it is over
+		return true; // the target has nothing of the move, or the move is over
 	const char *decision = ask_about(SOURCE, "move.cancel", "");
 	if (!decision)
 		return false;
@@ -207,7 +208,7 @@ static void *run(void *argument)
 	sim_set_name(sim_self(), "courier");
 	bool over = walk();
 	promises_counted.moves += over;
-	for (; !over; sim_sleep(SIM_SECOND / 2)) // as long as a disk is full, or a daemon away
+	for (; !over; sim_sleep(SIM_SECOND / 2)) // repeats while a disk is full or a daemon is down
 		over = settle();
 	sim_sessions[courier.place].moving = false;
 	courier.under_way = false;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A courier: takes a session from one daemon to the other (protocol/README.md, "Moving a session").
-// Where something fails it does what a later courier would: it asks the source for the outcome.
+// A courier that takes a session from one daemon to the other (protocol/README.md, "Moving a
+// session"). After a failure it does what a later courier would do: it asks the source for the
+// outcome.
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 
 void courier_begin(void);
-void courier_move(int session); // begins, if none is under way
+void courier_move(int session); // begins a move unless one is in progress
 bool courier_is_idle(void);
 void courier_chunk(int client, const unsigned char *bytes, size_t count);

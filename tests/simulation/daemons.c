@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemons, each on its machine: the daemon's own start and end, around the double of the core.
+// The daemons, each on its machine. They use the daemon's own start and end, with the double of the
+// core.
 #include <assert.h>
 #include <signal.h>
 #include <string.h>
@@ -13,7 +14,7 @@ typedef struct machine {
 	int boots;
 	bool end_wanted;
 	cau_config config;
-	cau_error error; // of a start that failed
+	cau_error error; // error of a failed start
 } machine;
 
 static machine machines[DISK_MACHINES];

@@ -12,13 +12,13 @@
 
 enum {
 	NAMES_MOST = 256,
-	INODES_MOST = 4096,   // a daemon that cannot start makes some at each attempt
-	FILE_MOST = 64 << 20, // bytes of addresses for each file; only what is written takes memory
+	INODES_MOST = 4096,   // a daemon that cannot start creates some at each attempt
+	FILE_MOST = 64 << 20, // address space of each file in bytes; only written pages take memory
 };
 
 typedef struct name {
 	char path[DISK_PATH_BYTES];
-	disk_inode *inode, *durable; // NULL: no file has it
+	disk_inode *inode, *durable; // NULL if no file has this name
 } name;
 
 static struct {
@@ -180,7 +180,8 @@ int disk_truncate(disk_inode *inode, size_t size)
 	return 0;
 }
 
-// What was written while it slept is durable only with the next one.
+// Makes a file durable. Bytes that are written during the sync become durable only with the next
+// sync.
 int disk_sync(disk_inode *inode)
 {
 	const disk_manner *manner = &disk.manners[inode->machine];
@@ -203,7 +204,7 @@ int disk_sync(disk_inode *inode)
 	return 0;
 }
 
-// ---- the machine's end
+// ---- death of a machine
 enum { ALL_LOST, ALL_KEPT, SOME_LOST, LOSSES };
 
 static bool is_kept(int loss)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The C library's calls about files, for paths of the simulated disk. Others go to the real ones:
-// scenes are read from where they are. See threads.c for how these come to be called.
+// Replaces the C library's file calls for paths of the simulated disk. Other paths use the real
+// calls: scenes are read from the real disk. threads.c explains how the replacement works.
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -18,13 +18,14 @@
 enum { DESCRIPTORS_MOST = 256, FIRST_DESCRIPTOR = 1 << 20 };
 
 typedef struct descriptor {
-	disk_inode *inode; // NULL: a folder
+	disk_inode *inode; // NULL for a folder
 	int machine;
 	bool used;
 } descriptor;
 
 static descriptor descriptors[DESCRIPTORS_MOST];
-static int boots[DISK_MACHINES]; // files of another start of the machine are other devices'
+// number of starts; files of each start of the machine have another device number
+static int boots[DISK_MACHINES];
 
 void sim_calls_kill(int machine)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SQLite's files on the simulated disk.
+// SQLite's VFS on the simulated disk.
 #include <assert.h>
 #include <errno.h>
 #include <sqlite3.h>
@@ -12,12 +12,12 @@
 typedef struct disk_handle {
 	sqlite3_file base;
 	disk_inode *inode;
-	struct disk_handle *next; // of the inode
+	struct disk_handle *next; // next handle of the inode
 	int lock;                 // SQLITE_LOCK_*
-	unsigned shares, owns;    // bits of the locks on the log's index
+	unsigned shares, owns;    // bits of its locks on the log's index
 	bool delete_on_close;
-	bool names_synced; // as SQLite's own VFS, the first sync of a file that it may have made syncs
-	                   // the folder
+	// the first sync of a file that may be new also syncs the folder, as in SQLite's own VFS
+	bool names_synced;
 	char path[DISK_PATH_BYTES];
 } disk_handle;
 
@@ -202,7 +202,7 @@ static int file_close(sqlite3_file *file)
 		at = &(*at)->next;
 	if (*at)
 		*at = h->next;
-	if (!h->inode->handles) // the last one: the next opens the log anew
+	if (!h->inode->handles) // last handle: the next connection opens the log from the beginning
 		shared_unmap(file, 1);
 	if (h->delete_on_close && h->path[0])
 		disk_unlink(h->path);
@@ -224,7 +224,7 @@ static int sector_bytes(sqlite3_file *file)
 static int characteristics(sqlite3_file *file)
 {
 	(void)file;
-	return SQLITE_IOCAP_POWERSAFE_OVERWRITE; // what SQLite's own VFS says of any disk
+	return SQLITE_IOCAP_POWERSAFE_OVERWRITE; // SQLite's own VFS reports this for any disk
 }
 
 static const sqlite3_io_methods methods = {
@@ -312,7 +312,8 @@ static int vfs_sleep(sqlite3_vfs *vfs, int us)
 static int vfs_time(sqlite3_vfs *vfs, sqlite3_int64 *ms)
 {
 	(void)vfs;
-	*ms = INT64_C(210866760000000) + INT64_C(1700000000000) + sim_now() / SIM_MS; // Julian days
+	// Julian day in ms
+	*ms = INT64_C(210866760000000) + INT64_C(1700000000000) + sim_now() / SIM_MS;
 	return SQLITE_OK;
 }
 
@@ -337,8 +338,8 @@ static sqlite3_vfs vfs = {
 	.xCurrentTimeInt64 = vfs_time,
 };
 
-// Its own locks are not needed: a fiber goes on only within the calls above, which SQLite makes
-// with no lock of its own held.
+// SQLite needs no locks of its own. Fibers are switched only within the calls above, and SQLite
+// holds no lock of its own during them.
 void disk_vfs_register(void)
 {
 	sqlite3_config(SQLITE_CONFIG_SINGLETHREAD);

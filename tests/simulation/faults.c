@@ -14,10 +14,10 @@
 #include "simulation/scheduler.h"
 #include "store/store.h"
 
-#define WRAPPED __attribute__((used)) // by the linker
+#define WRAPPED __attribute__((used)) // called by the linker's --wrap
 #define LATE_S 0.5
 
-enum { UNBOUNDED = 8 }; // a bound that is skipped counts as so many times the set one
+enum { UNBOUNDED = 8 }; // a disabled limit is this multiple of the configured limit
 
 sim_fault sim_planted;
 static sim_random choices;

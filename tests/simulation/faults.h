@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults that can be planted, one at a time, to see that the promises notice them. They are put
-// around the daemon's own functions by the linker, in this program alone.
+// Faults that can be planted, one at a time, to test that the promises detect them. The linker puts
+// them around the daemon's own functions, only in this program.
 #pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
 
-// word, promise that notices it, the seed that found it last, what is wrong. The search
-// begins with that seed, so it is short where the seed still finds the fault.
+// word, promise that detects it, the seed that found it last, what is wrong. The search begins with
+// that seed, so it is short if the seed still finds the fault.
 #define FAULT_TABLE(X)                                                                             \
 	X(watchdog_oversleeps, energy_silent, 14, "the watchdog looks half a second after it should")  \
 	X(worker_wake_lost, energy_cut, 49, "one in three wakes of a worker is lost")                  \
@@ -56,5 +56,5 @@ const char *faults_promise(sim_fault fault);
 const char *faults_meaning(sim_fault fault);
 int64_t faults_found_by(sim_fault fault);
 void faults_begin(uint64_t seed);
-// Whether this fault is planted and acts now: one time in so many.
+// True if this fault is planted and acts now: with a probability of one in `one_in`.
 bool faults_act(sim_fault fault, int64_t one_in);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole daemon in simulation: seeds, each a run of its own.
+// Runs seeds: each simulates the whole daemon.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 
 enum {
 	LONG_S = 3600,
-	FAULT_SEEDS = 100, // a fault is to be found by so many, of those that the suite runs
+	FAULT_SEEDS = 100, // number of seeds that the suite runs; one of them must find each fault
 };
 
 typedef struct asked {
@@ -96,7 +96,7 @@ static void print_totals(const totals *t)
 	       (unsigned long long)t->disk.failed);
 }
 
-// ---- a seed that failed
+// ---- a failed seed
 static void report(uint64_t seed, workload *work, run_result *result)
 {
 	printf("seed %llu breaks a promise: %s (%s)\n  %s\n", (unsigned long long)seed, result->promise,
@@ -131,7 +131,7 @@ static bool make_work(const asked *a, uint64_t seed, workload *work)
 	return shrink_choose(work, a->steps);
 }
 
-// What a run has come to: false if the others need not be run.
+// Takes the result of a run. Returns false if the other runs need not be started.
 static bool take(const asked *a, uint64_t seed, run_result *result, totals *t)
 {
 	static workload work;
@@ -190,10 +190,10 @@ static int replay(const asked *a)
 // ---- planted faults
 typedef struct hunt {
 	sim_fault fault;
-	char others[256]; // promises that were broken in its stead
+	char others[256]; // other promises that were broken instead
 } hunt;
 
-// Whether this seed breaks the promise that is named for the fault.
+// True if this seed breaks the promise that is named for the fault.
 static bool finds(hunt *h, uint64_t seed)
 {
 	static workload work;
@@ -213,8 +213,9 @@ static bool finds(hunt *h, uint64_t seed)
 	return false;
 }
 
-// Most faults break several promises, and some first one that is not named: seeds go on until one
-// breaks the one that is. They begin with the one that did so last, if it is of the suite's.
+// Searches for a seed that breaks the named promise. Most faults break several promises, and a run
+// ends at the first. The search begins with the seed that found the fault last, if the suite has
+// it.
 static bool find_fault(const asked *a, sim_fault fault)
 {
 	hunt h = {.fault = fault};

@@ -11,15 +11,15 @@
 #include "simulation/faults.h"
 #include "simulation/scheduler.h"
 
-#define TICK_NS (100 * SIM_MS)  // as the real one
-#define WAITED_NS (20 * SIM_MS) // the real one's WAITED_S
+#define TICK_NS (100 * SIM_MS)  // the same as in the real network
+#define WAITED_NS (20 * SIM_MS) // WAITED_S of the real network
 
 struct sim_link {
-	cau_connection connection; // first: the handlers' pointer is ours
+	cau_connection connection; // must be first: the handlers' pointer points to it
 	void *client;
 	int64_t open_ns;  // when its request arrives
-	int64_t empty_ns; // when nothing waited to be read last
-	int64_t due_ns;   // when the message at hand could have been read
+	int64_t empty_ns; // time when no message was waiting
+	int64_t due_ns;   // time at which the present message could have been read
 	bool opened, lost, wants_frame, reads;
 	int frames_a_round;
 	sim_message *first, *last;
@@ -35,7 +35,7 @@ struct cau_network {
 	cau_close_code ending_code;
 	uint64_t last_id;
 	cau_connection *connections;
-	sim_link *arriving; // whose request has not arrived
+	sim_link *arriving; // links whose request has not arrived
 	int64_t tick_ns;
 	cau_network_counts counts;
 };
@@ -153,7 +153,7 @@ static void admit(cau_network *network, sim_link *link)
 		c->next->previous = c;
 	network->connections = c;
 	link->opened = true;
-	link->empty_ns = link->open_ns; // nothing was sent before
+	link->empty_ns = link->open_ns; // no message was sent before the link opened
 	network->counts.accepted++;
 	bool opened = network->def.handler.opened(network->def.handler.user, c, "");
 	assert(opened);
@@ -217,7 +217,7 @@ static void write_frames(cau_network *network, sim_link *link)
 	}
 }
 
-// False: the connection has ended.
+// Serves a link. Returns false if the connection has ended.
 static bool serve_link(cau_network *network, sim_link *link, int64_t now_ns)
 {
 	cau_connection *c = &link->connection;
@@ -289,7 +289,7 @@ static void *live(void *argument)
 	return NULL;
 }
 
-// ---- what the daemon calls
+// ---- functions that the daemon calls
 cau_status cau_network_create(cau_network **made, const cau_network_def *def, cau_error *error)
 {
 	(void)error;
@@ -394,7 +394,7 @@ void cau_connection_send(cau_connection *c, cau_buffer *buffer)
 	*(c->output.last ? &c->output.last->next : &c->output.first) = buffer;
 	c->output.last = buffer;
 	c->output.bytes += buffer->byte_count;
-	link_of(c)->wants_frame = true; // a socket that takes replies is asked for frames, too
+	link_of(c)->wants_frame = true; // a socket that accepts replies is also asked for frames
 	if (c->output.bytes > CAU_CONTROL_BYTES_MAX)
 		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, NULL);
 }
@@ -416,7 +416,7 @@ void cau_connection_close_late(cau_connection *connection, cau_close_code code)
 	cau_connection_close(connection, code, NULL);
 }
 
-// ---- the machine's end
+// ---- death of a machine
 void sim_network_kill(int machine)
 {
 	cau_network *network = net.networks[machine];

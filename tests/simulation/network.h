@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulation's network: a double of server/transport_ws. Connections are queues of whole
-// messages with a delay. What a message says is delivered in order, and nothing after a cut.
+// The simulation's network: a double of server/transport_ws. A connection is a queue of whole
+// messages with a delay. Messages are delivered in order, and none is delivered after a cut.
 #pragma once
 
 #include <stdbool.h>
@@ -14,35 +14,36 @@ typedef struct sim_link sim_link;
 typedef struct sim_message {
 	struct sim_message *next;
 	int64_t sent_ns, due_ns;
-	uint64_t tag; // the client's own
+	uint64_t tag; // a number that the client chooses
 	bool binary;
 	size_t bytes;
 	char text[];
 } sim_message;
 
-// Callbacks of a client's end of a connection, on the network thread of the daemon. None is called
-// after `closed`.
+// Callbacks of the client's end of a connection. They run on the daemon's network thread. None is
+// called after `closed`.
 typedef struct sim_end {
-	void (*arriving)(void *client, const sim_message *message); // the daemon is about to read it
-	void (*arrived)(void *client, const sim_message *message);  // and has
+	// the daemon is about to read the message
+	void (*arriving)(void *client, const sim_message *message);
+	void (*arrived)(void *client, const sim_message *message); // the daemon has read the message
 	void (*text)(void *client, const char *text, size_t bytes);
 	void (*frame)(void *client, const unsigned char *bytes, size_t count);
-	void (*closed)(void *client, int code); // 0: lost
+	void (*closed)(void *client, int code); // 0 if the connection was lost
 } sim_end;
 
 void sim_network_begin(const sim_end *end);
-// Ends the machine's network and its connections, and calls `closed` of each client.
+// Kills the machine's network and its connections, and calls `closed` of each client.
 void sim_network_kill(int machine);
 
-// NULL: no daemon accepts connections on this machine.
+// Opens a connection. Returns NULL if no daemon accepts connections on this machine.
 sim_link *sim_link_open(int machine, void *client, int64_t delay_ns);
-// `text` is copied.
+// Sends a message. `text` is copied.
 void sim_link_send(sim_link *link, const void *text, size_t bytes, bool binary, uint64_t tag,
                    int64_t delay_ns);
-// The connection is lost: what is under way does not arrive. The client is told `closed` when the
-// daemon has noticed.
+// Cuts the connection: messages under way do not arrive. `closed` is called when the daemon has
+// noticed.
 void sim_link_cut(sim_link *link);
-// Whether its client takes what comes, and how many frames at most a round of the network.
+// Sets whether the client reads, and the largest number of frames in a round of the network.
 void sim_link_read(sim_link *link, bool reads, int frames);
-// Bytes of replies that wait for the client.
+// Returns the bytes of replies that wait for the client.
 size_t sim_link_waiting(const sim_link *link);

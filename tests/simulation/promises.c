@@ -8,15 +8,15 @@
 #include "simulation/books.h"
 #include "simulation/core_watch.h"
 
-#define DEADLINE_NS (250 * SIM_MS) // setting browser_deadline_s
+#define DEADLINE_NS (250 * SIM_MS) // the setting browser_deadline_s
 #define TICK_NS (SIM_SECOND / 60)
-// The clock was read before the lock was taken; a thread may have stood still in between.
+// The clock was read before the lock was taken, and a thread may have stalled in between.
 #define SLACK_NS (10 * SIM_MS)
-// A disk may fail for some seconds, and a daemon may be away from a session for as long.
+// A disk may fail for some seconds. A daemon may be without its session for as long.
 #define ANSWER_MOST_NS (8 * SIM_SECOND)
 #define LOOK_NS (5 * SIM_MS)
 
-enum { SILENT_TICKS = 15 }; // the deadline in lock-step
+enum { SILENT_TICKS = 15 }; // the deadline in lock-step, in ticks
 
 promise_counts promises_counted;
 session_book sim_books[SESSIONS];
@@ -25,7 +25,7 @@ quota_book sim_quotas[DISK_MACHINES];
 static struct {
 	sim_profile profile;
 	int64_t look_ns, calm_ns;
-	uint64_t checked; // requests below this number are answered or given up
+	uint64_t checked; // requests with a smaller number are answered or abandoned
 	int64_t calm_tick[SESSIONS];
 } own;
 
@@ -98,7 +98,7 @@ int promises_by_ticks(int place, int tool, int64_t at_ns)
 }
 
 // ---- requests
-// Whether it is about a session that the daemon which gets it has.
+// True if the request is about a session of the daemon that receives it.
 static bool meets_session(const sim_request *r)
 {
 	int gravity;
@@ -131,7 +131,7 @@ void promises_arriving(uint64_t number)
 		books_line_leaves(book);
 }
 
-// Off and pause act whatever the queue and the store say; not those that are sent again.
+// Off and pause act regardless of the queue and the store, except resent requests.
 void promises_arrived(uint64_t number)
 {
 	const sim_request *r = clients_request(number);
@@ -143,7 +143,8 @@ void promises_arrived(uint64_t number)
 		void_enables(r->session, -1, EVERY_CLIENT, r->arriving_ns);
 }
 
-// Refused before it was looked up: that says nothing about the first.
+// True if the daemon looked for a stored answer. Some refusals come before that, so they say
+// nothing about the first answer.
 static bool was_looked_up(const sim_request *r)
 {
 	static const char *const refusals[] = {"\"moved\"", "not_here",      "store_full",
@@ -154,7 +155,8 @@ static bool was_looked_up(const sim_request *r)
 	return true;
 }
 
-// The answers of a session that moves go with it, so the daemon that it left has none of them.
+// Checks that a resent request gets the first answer. The answers of a session move with it, so its
+// old daemon has none of them.
 static void check_same(const sim_request *r)
 {
 	if (sim_sessions[r->session].machine != r->machine || !was_looked_up(r))
@@ -176,8 +178,8 @@ static void check_refusal(const sim_request *r)
 		sim_fail("sound", "%s is answered with %s", r->method, r->result);
 }
 
-// An allowance holds what a minute may ask for, and fills evenly. What is answered from the store
-// costs as much as the first.
+// Checks a quota. It allows the requests of one minute and refills evenly. A request that is
+// answered from the store costs as much as the first.
 static void check_quota(const sim_request *r, int64_t now_ns)
 {
 	int most = clients_quota(r->client);
@@ -246,7 +248,7 @@ void promises_moving(int place, int target)
 	sim_books[place].full = false;
 }
 
-// What daemons say of their own accord that must not come about here.
+// Checks notifications that must not occur here.
 void promises_told(int client, const char *text)
 {
 	if (strstr(text, "\"session.faulted\""))
@@ -266,7 +268,7 @@ static bool is_due(const sim_request *r, int64_t now_ns)
 {
 	const sim_client *c = &sim_clients[r->client];
 	if (r->session >= 0 && sim_sessions[r->session].moving)
-		return false; // what is asked of it waits
+		return false; // requests about a moving session wait
 	int64_t since_ns = r->arriving_ns > c->reads_ns ? r->arriving_ns : c->reads_ns;
 	if (since_ns < sim_stopped_until(r->machine))
 		since_ns = sim_stopped_until(r->machine);
@@ -328,7 +330,7 @@ void promises_started(int machine)
 	promises_counted.restarts++;
 }
 
-// ---- the end
+// ---- end of a run
 void promises_calm(void)
 {
 	own.calm_ns = sim_now();
@@ -339,7 +341,7 @@ void promises_calm(void)
 	}
 }
 
-// Sessions that were made and not asked to go are there.
+// True for sessions that were created and not destroyed.
 static bool must_be_there(int place)
 {
 	return sim_books[place].made && sim_sessions[place].wanted && !sim_sessions[place].ephemeral;

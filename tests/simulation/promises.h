@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The promises of protocol/README.md, as what the simulation checks. It sees what clients send and
-// get, and what the double of the core is told; of the daemon's own books it believes nothing.
+// The promises of protocol/README.md, as the simulation checks them. The checks see what clients
+// send and receive, and what the double of the core receives. They do not trust the daemon's own
+// records.
 #pragma once
 
 #include <stdint.h>
@@ -32,26 +33,28 @@
 	X(crash, "the daemon does not crash")
 
 void promises_begin(const sim_profile *profile);
-const char *promises_meaning(const char *word); // NULL: no such promise
+const char *promises_meaning(const char *word); // NULL if there is no such promise
 
-// ---- what clients see (clients.c)
+// ---- seen by clients (clients.c)
 void promises_arriving(uint64_t number); // the daemon is about to read it
-void promises_arrived(uint64_t number);  // and has
+void promises_arrived(uint64_t number);  // the daemon has read it
 void promises_answered(uint64_t number);
-void promises_away(int client); // it looks away, or its connection has ended: the daemon knows
-// The source has decided: it is the target's from now on.
+// its page is hidden, or its connection has ended, and the daemon knows
+void promises_away(int client);
+// The source has decided: from now on the session belongs to the target.
 void promises_moving(int session, int target);
 void promises_told(int client, const char *text);
 
-void promises_store_takes(const char *id, bool takes); // the session has been told
+void promises_store_takes(const char *id, bool takes); // the daemon has notified the session
 
-// ---- what befalls daemons (daemons.c)
-void promises_killed(int machine); // or it has ended in order
+// ---- events of daemons (daemons.c)
+void promises_killed(int machine); // killed, or ended in order
 void promises_started(int machine);
 
-// ---- the end of a run
-void promises_calm(void);    // from now on everything works: all is to be answered, and in pace
-void promises_settled(void); // checks that
+// ---- end of a run
+// from now on everything works, so all requests must be answered in time
+void promises_calm(void);
+void promises_settled(void); // checks the state after promises_calm
 
 typedef struct promise_counts {
 	uint64_t ticks, lit_ticks, cuts_seen, answers, acknowledged, restarts, frames, replays, checks,

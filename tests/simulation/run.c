@@ -19,14 +19,15 @@
 #include "simulation/courier.h"
 #include "simulation/threads.h"
 
-// Processor time for one seed, which takes less than a second, and thirty with the address
-// sanitizer; and real time, for one that waits and computes nothing, or gets no processor.
+// Limits for one seed, which takes less than a second, and thirty with the address sanitizer.
+// CPU_MOST_S limits its processor time. REAL_MOST_S limits its real time, for a run that waits
+// without computing or gets no processor.
 #if defined(__SANITIZE_ADDRESS__)
 enum { CPU_MOST_S = 300, REAL_MOST_S = 1800 };
 #else
 enum { CPU_MOST_S = 20, REAL_MOST_S = 600 };
 #endif
-#define LOOK_NS (50 * SIM_MS) // between two looks of the operator at the daemons
+#define LOOK_NS (50 * SIM_MS) // interval at which the operator checks the daemons
 #define CALM_NS (4 * SIM_SECOND)
 #define UP_MOST_NS (60 * SIM_SECOND)
 #define BEGIN_NS (1000 * SIM_SECOND)
@@ -35,16 +36,16 @@ extern const sim_end sim_clients_end;
 
 static int result_pipe = -1;
 static run_result now;
-static int machines; // that have a daemon in this run
+static int machines; // number of machines with a daemon in this run
 
-double real_s(void) // time() and clock_gettime are the simulation's here
+double real_s(void) // time() and clock_gettime are simulated here
 {
 	struct timespec time;
 	timespec_get(&time, TIME_UTC);
 	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-// ---- the seed's manner
+// ---- the seed's profile
 sim_profile sim_profile_of(uint64_t seed)
 {
 	sim_random r = sim_random_of(seed, 8);
@@ -66,7 +67,7 @@ sim_profile sim_profile_of(uint64_t seed)
 	return p;
 }
 
-// ---- the end of a run
+// ---- end of a run
 static void send_result(void)
 {
 	now.simulated_ns = sim_now() - BEGIN_NS;
@@ -103,7 +104,7 @@ static void keep_daemons_up(void)
 			daemons_start(m);
 }
 
-// Heartbeats, and an operator who starts what has ended.
+// Lets time pass, with heartbeats. The operator restarts daemons that have ended.
 static void pass_until(int64_t until_ns)
 {
 	for (int64_t now_ns = sim_now(); now_ns < until_ns; now_ns = sim_now()) {
@@ -144,8 +145,8 @@ static void heal(void)
 	}
 }
 
-// What is the case at the end of every run: all works again, is answered, and outlives the loss of
-// power of every machine.
+// Checks at the end of every run: everything works again, all requests are answered, and the state
+// survives a loss of power on every machine.
 static void settle(void)
 {
 	heal();
@@ -162,7 +163,7 @@ static void settle(void)
 static void do_run(uint64_t seed, const workload *work)
 {
 	sim_profile profile = sim_profile_of(seed);
-	mallopt(M_MMAP_THRESHOLD, 1 << 30); // memory that was given back is used again at once
+	mallopt(M_MMAP_THRESHOLD, 1 << 30); // freed memory is reused at once
 	mallopt(M_TRIM_THRESHOLD, 1 << 30);
 	mallopt(M_TOP_PAD, 16 << 20);
 	sim_failed = on_failed;
@@ -226,7 +227,7 @@ static void crashed(int status, run_result *result)
 		         (unsigned)status);
 }
 
-// Its result is there, or it has ended, or its time is over.
+// Waits for the run's result, its end, or its time limit.
 static void take_result(const run_child *child, run_result *result)
 {
 	size_t got = 0;
@@ -243,7 +244,7 @@ static void take_result(const run_child *child, run_result *result)
 	}
 	int status = 0;
 	if (got < sizeof *result)
-		kill(child->process, SIGKILL); // it hangs, or has ended
+		kill(child->process, SIGKILL); // the run hangs, or has ended
 	waitpid(child->process, &status, 0);
 	close(child->from);
 	if (got < sizeof *result)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of seeds, each in a process of its own, so that what a kill leaves in memory goes with it.
+// Runs seeds, each in a process of its own, so that memory leaked by a kill is freed with the
+// process.
 #pragma once
 
 #include "simulation/faults.h"
@@ -16,21 +17,21 @@ typedef struct run_result {
 	int requests;
 } run_result;
 
-enum { RUNS_MOST = 256 }; // at once
+enum { RUNS_MOST = 256 }; // largest number of runs at the same time
 
 typedef struct run_child {
 	uint64_t seed;
-	int process, from; // from: the pipe that brings its result
-	double most_s;     // of real time; then it hangs
+	int process, from; // from: the pipe with the result
+	double most_s;     // limit of real time, after which the run counts as hanging
 } run_child;
 
 double real_s(void);
 
-// Begins a run in a process of its own. Each child is to be given to run_end.
+// Begins a run in a process of its own. Each child must be passed to run_end.
 void run_begin(uint64_t seed, const workload *work, run_child *child);
-// Waits until one of the children ends, and returns which.
+// Waits until one of the children ends, and returns its index.
 int run_end(const run_child *children, int count, run_result *result);
-// Both of them.
+// Begins a run and waits for its end.
 void run_seed(uint64_t seed, const workload *work, run_result *result);
-// In this process, which ends with the run if it breaks a promise: for a debugger.
+// Runs in this process, for a debugger. The process ends if the run breaks a promise.
 void run_here(uint64_t seed, const workload *work);

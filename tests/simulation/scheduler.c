@@ -16,12 +16,13 @@
 #endif
 
 enum {
-	FIBERS_MOST = 96,      // two daemons of 16 threads, twice while one ends, and the world's own
-	STACK_BYTES = 1 << 20, // touched as far as it is used; the sanitizer's frames are the largest
+	// two daemons of 16 threads, twice while one ends, and the simulation's own
+	FIBERS_MOST = 96,
+	STACK_BYTES = 1 << 20, // only used pages take memory; the sanitizer's frames are the largest
 	GUARD_BYTES = 4096,
 	MACHINES_MOST = 2,
 	NAME_BYTES = 16,
-	CLOCK_READ_NS = 50, // so that no loop that looks at the clock runs for ever
+	CLOCK_READ_NS = 50, // so that a loop that waits for the clock always ends
 };
 
 typedef enum fiber_state { FREE, READY, WAITING, ENDED } fiber_state;
@@ -31,23 +32,23 @@ typedef struct fiber {
 	fiber_state state;
 	int machine;
 	char name[NAME_BYTES];
-	ucontext_t context; // where it begins
-	jmp_buf place;      // where it goes on
+	ucontext_t context; // context of the fiber's start
+	jmp_buf place;      // where it continues
 	bool begun;
 	void *stack;
 	const void *waits_for;
 	int64_t until_ns;
 	bool timed_out;
-	bool nobodys; // who ends is not waited for
+	bool nobodys; // detached: no fiber joins it
 	void *(*run)(void *);
 	void *argument, *result;
 	int64_t processor_ns;
-	void *fake_stack; // the address sanitizer's
+	void *fake_stack; // stack of the address sanitizer
 } fiber;
 
 static struct {
 	fiber fibers[FIBERS_MOST];
-	int used; // places that were ever taken
+	int used; // number of entries that were ever used
 	fiber *present;
 	int ready_count, ready[FIBERS_MOST];
 	uint64_t last_id, trace, switches;
@@ -56,7 +57,7 @@ static struct {
 	sim_random random;
 	sim_roughness roughness;
 	void (*watch)(int64_t);
-	void *spare[FIBERS_MOST]; // stacks of fibers that have ended
+	void *spare[FIBERS_MOST]; // stacks of ended fibers
 	int spare_count;
 } sim;
 
@@ -95,7 +96,7 @@ bool sim_chance(sim_random *random, int64_t one_in)
 static struct {
 	const void *bottom;
 	size_t bytes;
-} world_stack; // the program's own
+} world_stack; // stack of the program itself
 #endif
 
 static void begin_switch(fiber *from, const fiber *to)
@@ -115,7 +116,7 @@ static void end_switch(const fiber *here)
 	const void *bottom;
 	size_t bytes;
 	__sanitizer_finish_switch_fiber(here->fake_stack, &bottom, &bytes);
-	if (!world_stack.bytes) // the first one to go on does so behind the world
+	if (!world_stack.bytes) // the first fiber that continues comes from the world's stack
 		world_stack.bottom = bottom, world_stack.bytes = bytes;
 #else
 	(void)here;
@@ -123,13 +124,14 @@ static void end_switch(const fiber *here)
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-// The sanitizer takes longjmp for the end of calls, so it gets contexts.
+// The sanitizer takes longjmp for the end of calls, so fibers use contexts here.
 static void change_stacks(fiber *from, fiber *next)
 {
 	swapcontext(&from->context, &next->context);
 }
 #else
-// swapcontext asks the kernel for the signal mask each time. This does so once for each fiber.
+// swapcontext calls the kernel for the signal mask each time. This code does so once for each
+// fiber.
 static void change_stacks(fiber *from, fiber *next)
 {
 	if (_setjmp(from->place))
@@ -154,7 +156,7 @@ static void go_to(fiber *next)
 	end_switch(sim.present);
 }
 
-// When it can go on: not before its machine can.
+// Returns the time at which the fiber can continue, but not before its machine can.
 static int64_t due_of(const fiber *f)
 {
 	int64_t due_ns = f->state == WAITING ? f->until_ns : sim.now_ns;
@@ -162,7 +164,7 @@ static int64_t due_of(const fiber *f)
 	return due_ns > stopped_ns ? due_ns : stopped_ns;
 }
 
-// Those whose time has come are ready; the earliest time of the others.
+// Marks the fibers whose time has come as ready. Returns the earliest time of the others.
 static int64_t wake_due(void)
 {
 	int64_t earliest = SIM_NEVER;
@@ -198,7 +200,7 @@ static void schedule(void)
 	go_to(&sim.fibers[sim.ready[which]]);
 }
 
-// ---- life
+// ---- life of a fiber
 static void live(void)
 {
 	fiber *f = sim.present;
@@ -207,7 +209,7 @@ static void live(void)
 	f->state = ENDED;
 	sim_wake_all(f);
 	schedule();
-	abort(); // nobody goes back to a fiber that has ended
+	abort(); // an ended fiber never continues
 }
 
 static void give_back(fiber *f)
@@ -314,7 +316,7 @@ void sim_begin(uint64_t seed, const sim_roughness *roughness)
 	memset(&sim, 0, sizeof sim);
 	sim.random = sim_random_of(seed, 1);
 	sim.roughness = *roughness;
-	sim.now_ns = 1000 * SIM_SECOND; // as on a machine that has been on for a while
+	sim.now_ns = 1000 * SIM_SECOND; // as on a machine that has been running for a while
 	sim.trace = seed;
 	sim.used = 1;
 	sim.present = &sim.fibers[0];
@@ -323,7 +325,7 @@ void sim_begin(uint64_t seed, const sim_roughness *roughness)
 	sim_set_name(sim.present->id, "world");
 }
 
-// ---- what fibers ask
+// ---- functions that fibers call
 int64_t sim_now(void)
 {
 	sim.now_ns += CLOCK_READ_NS;
@@ -445,7 +447,7 @@ uint64_t sim_switches(void)
 	return sim.switches;
 }
 
-// ---- words
+// ---- messages
 void sim_fail(const char *promise, const char *format, ...)
 {
 	char text[1024];

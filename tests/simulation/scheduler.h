@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulation's threads and clock. Threads of the code under test are fibers of one real thread.
-// One runs at a time. At each call of a lock, a condition or the clock another may go on, as the
-// seed says. When all wait, the clock goes to the earliest time that one of them waits for.
+// The simulation's threads and clock. Threads of the code under test are fibers of one real thread,
+// and one fiber runs at a time. At each call of a lock, a condition or the clock the seed decides
+// which fiber continues. When all fibers wait, the clock advances to the earliest time that one of
+// them waits for.
 #pragma once
 
 #include <stdbool.h>
@@ -11,69 +12,72 @@
 #define SIM_MS INT64_C(1000000)        // ns
 #define SIM_NEVER INT64_MAX
 
-enum { SIM_WORLD = -1 }; // the machine of fibers that belong to no daemon
+enum { SIM_WORLD = -1 }; // machine of the fibers that belong to no daemon
 
 // ---- random numbers, from the seed
 typedef struct sim_random {
 	uint64_t state;
 } sim_random;
 
-sim_random sim_random_of(uint64_t seed, uint64_t purpose); // one stream for each purpose
+sim_random sim_random_of(uint64_t seed, uint64_t purpose); // each purpose has its own sequence
 uint64_t sim_draw(sim_random *random);
-int64_t sim_between(sim_random *random, int64_t least, int64_t most); // both included
-bool sim_chance(sim_random *random, int64_t one_in);                  // false where one_in is 0
+int64_t sim_between(sim_random *random, int64_t least, int64_t most); // both limits included
+bool sim_chance(sim_random *random, int64_t one_in);                  // false if one_in is 0
 
 // ---- fibers
-// How rough the machine is; 0: never.
+// How rough the machine is. A value of 0 means never.
 typedef struct sim_roughness {
-	int64_t switch_one_in;     // calls after which another thread goes on
-	int64_t stall_one_in;      // calls after which a thread of a daemon stands still
-	int64_t stall_most_ns;     // for so long
-	int64_t wake_early_one_in; // waits on a condition that end without a reason
+	int64_t switch_one_in;     // one in this many calls switches to another thread
+	int64_t stall_one_in;      // one in this many calls stalls a daemon's thread
+	int64_t stall_most_ns;     // longest stall
+	int64_t wake_early_one_in; // one in this many waits on a condition ends without a reason
 } sim_roughness;
 
 void sim_begin(uint64_t seed, const sim_roughness *roughness);
 int64_t sim_now(void); // ns of the monotonic clock
-// Fibers that are made from now on by the present one belong to this machine.
+// Fibers that the present fiber starts from now on belong to this machine.
 void sim_enter_machine(int machine);
-int sim_machine(void); // of the present fiber
-// All fibers of a machine end where they are, as threads do at `kill -9`. Not from one of them.
+int sim_machine(void); // machine of the present fiber
+// Ends all fibers of a machine at once, as `kill -9` does. The caller must be a fiber of another
+// machine.
 void sim_kill_machine(int machine);
-// No fiber of the machine goes on before this time, as at SIGSTOP.
+// No fiber of the machine continues before this time, as after SIGSTOP.
 void sim_stop_machine(int machine, int64_t until_ns);
-int64_t sim_stopped_until(int machine); // the end of its last stop; 0: there was none
-uint64_t sim_self(void);                // number of the present fiber, from 1, never used again
+int64_t sim_stopped_until(int machine); // end of the machine's last stop, or 0
+// number of the present fiber, counted from 1 and never reused
+uint64_t sim_self(void);
 bool sim_is_alive(uint64_t fiber);
-void sim_set_name(uint64_t fiber, const char *name); // the first 15 bytes
+void sim_set_name(uint64_t fiber, const char *name); // keeps the first 15 bytes
 const char *sim_name(void);
 
 uint64_t sim_start(void *(*run)(void *argument), void *argument);
 void *sim_join(uint64_t fiber);
-void sim_let_go(uint64_t fiber); // nobody will join it
-// Another fiber may go on here.
+void sim_let_go(uint64_t fiber); // detaches the fiber
+// Another fiber may continue here.
 void sim_point(void);
-// Waits for sim_wake_* with this address, or until the time. False: the time has come.
+// Waits for sim_wake_* with this address, or until the time. Returns false if the time has come.
 bool sim_wait(const void *address, int64_t until_ns);
 void sim_wake_one(const void *address);
 void sim_wake_all(const void *address);
-// The time to which a wait on a condition goes: now and then before it is due.
+// Returns the time at which a wait on a condition ends: now and then before it is due.
 int64_t sim_wakes_early(int64_t until_ns);
 void sim_sleep(int64_t ns);
-// Computes for so long: as sim_sleep, and the fiber's processor time advances.
+// Computes for `ns`: like sim_sleep, and the fiber's processor time advances.
 void sim_work(int64_t ns);
 int64_t sim_processor_ns(void);
 
-// Called whenever the clock goes on, before it does, with the time that it goes to.
+// `watch` is called before each advance of the clock, with the new time.
 void sim_on_advance(void (*watch)(int64_t to_ns));
-// Every call below counts; two runs of one seed have the same numbers.
-uint64_t sim_trace(void);      // a hash of which fiber went on when
-void sim_note(uint64_t value); // goes into it
+// Two runs of one seed make the same calls and have the same trace.
+uint64_t sim_trace(void);      // a hash of the order in which fibers continued
+void sim_note(uint64_t value); // adds a value to the trace
 uint64_t sim_switches(void);
 
-// ---- what went wrong: ends the run
-// `promise` is a word of promises.h; the rest says what was seen.
+// ---- failures, which end the run
+// `promise` is a word of promises.h. The rest describes what was seen.
 __attribute__((format(printf, 2, 3), noreturn)) void sim_fail(const char *promise,
                                                               const char *format, ...);
-__attribute__((format(printf, 1, 2))) void sim_say(const char *format, ...); // with --verbose
+// prints only with --verbose
+__attribute__((format(printf, 1, 2))) void sim_say(const char *format, ...);
 extern bool sim_verbose;
-extern void (*sim_failed)(const char *promise, const char *text); // does not return
+extern void (*sim_failed)(const char *promise, const char *text); // must not return

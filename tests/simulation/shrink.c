@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_S 30. // of real time
+#define MOST_S 30. // real time in s
 
 static bool still_fails(uint64_t seed, const workload *work, run_result *result)
 {
@@ -17,7 +17,7 @@ static bool still_fails(uint64_t seed, const workload *work, run_result *result)
 	return same;
 }
 
-// Leaves out `count` steps from `first` on; back they come if the failure needs one of them.
+// Leaves out `count` steps from `first`. Restores them if the failure needs one of them.
 static bool leave_out(uint64_t seed, workload *work, int first, int count, run_result *result)
 {
 	workload tried = *work;

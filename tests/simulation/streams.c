@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clients make of frames, with the decoder that every client in C has; and what there was to
-// be seen, as the core's double showed it when the frame was made.
+// Decodes clients' frames with the decoder of all C clients. Compares them with the states that the
+// core's double had when the frames were made.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,23 +13,23 @@
 #include "simulation/world.h"
 
 #define WRAPPED __attribute__((used))
-#define ACK_NS (100 * SIM_MS) // as the protocol says
+#define ACK_NS (100 * SIM_MS) // interval of acknowledgements, as the protocol says
 
 enum {
-	SEEN = 1024,       // states of a session, which are kept for frames that come late
-	SENT = 256,        // frames of a stream that may be unacknowledged
-	FRAME_MOST = 4096, // bytes: no frame of nine vertices is longer
+	SEEN = 1024,       // states of a session that are kept for late frames
+	SENT = 256,        // largest number of unacknowledged frames of a stream
+	FRAME_MOST = 4096, // bytes; frames of nine vertices are shorter
 };
 
 typedef struct stream {
-	uint32_t number; // of the session, on its daemon
+	uint32_t number; // the session's number on its daemon
 	int place;
 	cau_stream_def def;
 	cau_frame_decoder *decoder;
 	void *storage;
 	uint64_t tick, epoch;
-	bool lost;         // it asked for a key frame, and waits for that
-	bool acknowledged; // once at least
+	bool lost;         // it waits for a requested key frame
+	bool acknowledged; // acknowledged at least once
 	size_t in_flight;
 	struct {
 		uint64_t sequence;
@@ -42,8 +42,8 @@ typedef struct stream {
 typedef struct seen_state {
 	bool used;
 	uint64_t tick;
-	double height_m; // of the first vertex
-	unsigned lit;    // a bit a tool
+	double height_m; // height of the first vertex
+	unsigned lit;    // energy on, one bit a tool
 } seen_state;
 
 static struct {
@@ -58,7 +58,7 @@ void streams_begin(const sim_profile *profile)
 	seen.in_flight_most = (size_t)profile->subscriber_bytes;
 }
 
-// ---- what there was
+// ---- states of the core
 static unsigned lit_bit(const char *tool, bool energized)
 {
 	for (int t = 0; t < TOOLS; t++)
@@ -83,7 +83,7 @@ WRAPPED void __wrap_cau_frames_publish(cau_hosted *h, double now_s)
 	__real_cau_frames_publish(h, now_s);
 }
 
-// One of the states of that tick, which may have come about several times, by rewinds.
+// Compares the frame with the states of its tick. There may be several of them after rewinds.
 static void compare(const stream *s, int client)
 {
 	double position[3 * 9];
@@ -170,7 +170,7 @@ void streams_forget(int client)
 	}
 }
 
-// A client asks for a key frame because it lost step: it knows nothing any more.
+// A client that asks for a key frame has lost its state, so it gets a new decoder.
 void streams_key_asked(int client, int place)
 {
 	stream *s = sim_clients[client].streams[place];
@@ -193,7 +193,7 @@ static stream *find(int client, uint32_t number)
 	return NULL;
 }
 
-// Every frame that a client gets applies, since none is lost on the way.
+// Decodes a frame. Every received frame must apply, because no frame is lost on the way.
 static void decode(stream *s, int client, const cau_frame_header *header,
                    const unsigned char *bytes, size_t count)
 {
@@ -208,7 +208,7 @@ static void decode(stream *s, int client, const cau_frame_header *header,
 		sim_fail("stream", "client %d gets tick %llu after %llu of one epoch", client,
 		         (unsigned long long)header->tick, (unsigned long long)s->tick);
 	for (int i = 0; header->epoch != s->epoch && i < SENT; i++)
-		s->sent[i].sequence = 0; // whoever acknowledges the new epoch has these, too
+		s->sent[i].sequence = 0; // acknowledging the new epoch acknowledges these frames, too
 	s->epoch = header->epoch;
 	s->tick = header->tick;
 	compare(s, client);
@@ -262,7 +262,7 @@ void streams_acknowledge(void)
 		}
 }
 
-// The daemon is about to read it.
+// Called when the daemon is about to read the acknowledgement.
 void streams_ack_arriving(int client, const char *text)
 {
 	char id[NAME_MOST] = "";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Threads, locks, conditions and clocks of the code under test. The linker puts these in the place
-// of the C library's (--wrap), in this program alone.
+// Threads, locks, conditions and clocks of the code under test. The linker replaces the C library's
+// functions by these (--wrap), only in this program.
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
@@ -17,7 +17,7 @@
 #include "simulation/scheduler.h"
 #include "simulation/threads.h"
 
-#define WRAPPED __attribute__((used)) // by the linker
+#define WRAPPED __attribute__((used)) // called by the linker's --wrap
 
 static sim_random system_random;
 
@@ -61,9 +61,9 @@ WRAPPED pthread_t __wrap_pthread_self(void)
 }
 
 // ---- locks
-// In the memory of the C library's mutex, whose static initialiser is all zeros.
+// Uses the memory of the C library's mutex, whose static initialiser is all zeros.
 typedef struct sim_mutex {
-	uint64_t owner; // a fiber; 0: free. A fiber of a killed machine holds no lock
+	uint64_t owner; // a fiber, or 0 if free; a fiber of a killed machine holds no lock
 } sim_mutex;
 _Static_assert(sizeof(sim_mutex) <= sizeof(pthread_mutex_t), "it fits");
 
@@ -141,7 +141,7 @@ WRAPPED int __wrap_pthread_cond_destroy(pthread_cond_t *condition)
 	return 0;
 }
 
-// POSIX lets a wait end without a reason; so does this one, now and then.
+// POSIX lets a wait end without a reason. So does this function now and then.
 static int wait_on(pthread_cond_t *condition, pthread_mutex_t *mutex, int64_t until_ns)
 {
 	let_go((sim_mutex *)mutex);
@@ -156,7 +156,7 @@ WRAPPED int __wrap_pthread_cond_wait(pthread_cond_t *condition, pthread_mutex_t 
 	return wait_on(condition, mutex, SIM_NEVER);
 }
 
-// Every timed wait of the daemon is on the monotonic clock.
+// All timed waits of the daemon use the monotonic clock.
 WRAPPED int __wrap_pthread_cond_timedwait(pthread_cond_t *condition, pthread_mutex_t *mutex,
                                           const struct timespec *until)
 {
@@ -182,7 +182,7 @@ int __wrap_nanosleep(const struct timespec *wanted, struct timespec *left);
 time_t __wrap_time(time_t *now);
 int __wrap_sigtimedwait(const sigset_t *signals, siginfo_t *info, const struct timespec *patience);
 
-#define WALL_OFFSET_S 1700000000 // 1970 to the begin of the simulation
+#define WALL_OFFSET_S 1700000000 // seconds from 1970 to the start of the simulation
 
 WRAPPED int __wrap_clock_gettime(clockid_t clock, struct timespec *now)
 {
@@ -209,7 +209,7 @@ WRAPPED time_t __wrap_time(time_t *now)
 	return seconds;
 }
 
-// No signal ever comes: the daemon's end is a call.
+// No signal ever comes, because the simulation ends a daemon by a call.
 WRAPPED int __wrap_sigtimedwait(const sigset_t *signals, siginfo_t *info,
                                 const struct timespec *patience)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the wrapped calls of the system take from the seed.
+// Seeds the random numbers of the wrapped system calls.
 #pragma once
 
 #include <stdint.h>

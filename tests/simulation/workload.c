@@ -11,17 +11,18 @@
 #include "simulation/courier.h"
 #include "simulation/promises.h"
 
-enum { EPHEMERAL = 5 }; // of six creations
+// the value of c, 0 to 5, that makes STEP_CREATE create an ephemeral session
+enum { EPHEMERAL = 5 };
 #define TENTH_NS (SIM_SECOND / 10)
 
-static int gravities; // numbers given
+static int gravities; // number of gravities used so far
 
-// ---- making
+// ---- making a workload
 typedef struct maker {
 	workload *work;
 	sim_random random;
 	int64_t at_ns;
-	bool moves; // sessions move between two machines in this run
+	bool moves; // in this run sessions move between two machines
 	int machines;
 } maker;
 
@@ -41,7 +42,7 @@ static void pass(maker *m, int64_t most_ms)
 	m->at_ns += sim_between(&m->random, 0, most_ms * 1000) * 1000;
 }
 
-// Somebody drives a tool, energy on, and something befalls it.
+// A client drives a tool with energy on, and then something happens to it.
 static void drive(maker *m)
 {
 	int client = pick(m, CLIENTS), session = pick(m, SESSIONS), tool = pick(m, TOOLS);
@@ -68,7 +69,7 @@ static void drive(maker *m)
 	pass(m, 300);
 }
 
-// Somebody has a paused session in lock-step, with energy on.
+// A client advances a paused session in lock-step, with energy on.
 static void drive_by_ticks(maker *m)
 {
 	int client = pick(m, CLIENTS), session = pick(m, SESSIONS), tool = pick(m, TOOLS);
@@ -83,7 +84,7 @@ static void drive_by_ticks(maker *m)
 	}
 }
 
-// Something was acknowledged a moment ago, and a machine loses power.
+// A machine loses power shortly after commands were acknowledged.
 static void lose_power(maker *m)
 {
 	int session = pick(m, SESSIONS);
@@ -99,7 +100,7 @@ static void befall(maker *m)
 {
 	static const struct {
 		step_kind kind;
-		int weight, a, b, c; // a, b, c: least value beyond 0, see `of`
+		int weight, a, b, c; // a, b, c: the argument is below this; 0 means no such argument
 	} kinds[] = {
 		{STEP_CUT, 6, CLIENTS, 0, 0},
 		{STEP_HIDE, 6, CLIENTS, 0, 0},
@@ -204,7 +205,7 @@ void workload_print(const workload *work)
 	}
 }
 
-// ---- doing
+// ---- performing the steps
 void workload_begin(void)
 {
 	gravities = 0;
@@ -215,7 +216,7 @@ static bool exists(const work_step *s)
 	return sim_sessions[s->b].wanted;
 }
 
-// Whether the client may ask for a session at this place. Its book begins.
+// Begins the record of a new session. Returns false if the client may not create it.
 static bool begin_session(int client, int place, char name[NAME_MOST])
 {
 	sim_session *made = &sim_sessions[place];
@@ -265,7 +266,7 @@ static void destroy(const work_step *s)
 	sim_sessions[s->b].wanted = sim_sessions[s->b].made = false;
 }
 
-// `ticks`: 0: at once.
+// Sets gravity after `ticks` ticks, or at once if 0.
 static void set_gravity(int client, int place, int ticks)
 {
 	char params[96], at_tick[32] = "";
@@ -339,7 +340,7 @@ static void move_tool(const work_step *s)
 	clients_notify(s->a, "tool.move", params);
 }
 
-// Asks about a tick of the session's past.
+// Requests something about a past tick of the session.
 static void ask_past(const work_step *s, ask what, const char *method, bool changes)
 {
 	char params[64];
@@ -372,7 +373,7 @@ static void set_speed(const work_step *s)
 	clients_ask(s->a, ASK_OTHER, "session.speed", s->b, -1, true, params);
 }
 
-// Steps that are one request each, whose params are a tool at most.
+// Steps that are one request each, with at most a tool as params.
 static const struct {
 	step_kind kind;
 	ask what;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clients, operators and disks do in a run: a list of steps, made from the seed alone. A step
-// that makes no sense when its time has come does nothing, so any of them may be left out.
+// What clients, operators and disks do in a run: a list of steps, made only from the seed. A step
+// that makes no sense at its time does nothing, so any step may be left out.
 #pragma once
 
 #include "simulation/world.h"
@@ -9,55 +9,56 @@ enum { STEPS_MOST = 512 };
 
 // code, word: the step's arguments a, b, c
 #define STEP_TABLE(X)                                                                              \
-	X(CONNECT, "connect")     /* client, machine */                                                \
-	X(CUT, "cut")             /* client: its connection is lost */                                 \
-	X(HIDE, "hide")           /* client: its page is hidden */                                     \
-	X(SHOW, "show")           /* sim_client */                                                     \
-	X(SILENT, "silent")       /* client: no heartbeats */                                          \
-	X(BEAT, "beat")           /* client: again */                                                  \
-	X(LATE, "late")           /* client, tenths of a second: what it sends arrives after them */   \
-	X(STOP_READING, "unread") /* client takes nothing */                                           \
-	X(READ, "read")           /* client, frames a round */                                         \
-	X(CREATE, "create")       /* client, session, 1: paused, of 6; 5: ephemeral */                 \
-	X(DESTROY, "destroy")     /* client, sim_session */                                            \
-	X(FORK, "fork")           /* client, session, the session that it makes */                     \
-	X(FORK_PAST, "fork_past") /* the same, from the middle of its ticks */                         \
+	X(CONNECT, "connect") /* client, machine */                                                    \
+	X(CUT, "cut")         /* client: its connection is lost */                                     \
+	X(HIDE, "hide")       /* client: its page is hidden */                                         \
+	X(SHOW, "show")       /* client: its page is visible */                                        \
+	X(SILENT, "silent")   /* client: sends no heartbeats */                                        \
+	X(BEAT, "beat")       /* client: sends heartbeats again */                                     \
+	X(LATE, "late")       /* client, tenths of a second: its messages are delayed until then */    \
+	X(STOP_READING, "unread") /* client: reads nothing */                                          \
+	X(READ, "read")           /* client, largest number of frames a round */                       \
+	X(CREATE, "create")       /* client, session, 0 to 5: 1 is paused, 5 is ephemeral */           \
+	X(DESTROY, "destroy")     /* client, session */                                                \
+	X(FORK, "fork")           /* client, session, index of the new session */                      \
+	X(FORK_PAST, "fork_past") /* as fork, from the middle of the session's ticks */                \
 	X(TAKE, "take")           /* client, session, tool */                                          \
 	X(ON, "on")               /* client, session, tool */                                          \
-	X(ON_LATER, "on_later")   /* client, session, after how many ticks, with a tool of TOOLS */    \
-	X(OFF, "off")             /* client, session, tool */                                          \
-	X(HAND_OVER, "hand_over") /* client, session, tool */                                          \
-	X(MOVE, "move")           /* client, session, tool */                                          \
-	X(GRAVITY, "gravity")     /* client, sim_session */                                            \
-	X(BURST, "burst")         /* client, session, how many gravities at once */                    \
-	X(GRAVITY_LATER, "gravity_later") /* client, session, after how many ticks */                  \
-	X(CANCEL, "cancel")               /* client, session: what waits for later ticks */            \
-	X(PAUSE, "pause")                 /* client, sim_session */                                    \
-	X(RESUME, "resume")               /* client, sim_session */                                    \
+	X(ON_LATER,                                                                                    \
+	  "on_later") /* client, session, ticks of delay; their remainder by TOOLS is the tool */      \
+	X(OFF, "off") /* client, session, tool */                                                      \
+	X(HAND_OVER, "hand_over")         /* client, session, tool */                                  \
+	X(MOVE, "move")                   /* client, session, tool */                                  \
+	X(GRAVITY, "gravity")             /* client, session */                                        \
+	X(BURST, "burst")                 /* client, session, number of gravities sent at once */      \
+	X(GRAVITY_LATER, "gravity_later") /* client, session, ticks of delay */                        \
+	X(CANCEL, "cancel")               /* client, session: removes commands for later ticks */      \
+	X(PAUSE, "pause")                 /* client, session */                                        \
+	X(RESUME, "resume")               /* client, session */                                        \
 	X(STEP, "step")                   /* client, session, ticks */                                 \
-	X(ADVANCE, "advance")   /* client, session, twice the ticks and a tool of TOOLS: energy on */  \
-	X(REWIND, "rewind")     /* client, session, hundredths of its ticks */                         \
-	X(RESET, "reset")       /* client, sim_session */                                              \
-	X(SNAPSHOT, "snapshot") /* client, session, name */                                            \
-	X(RESTORE, "restore")   /* client, session, name */                                            \
-	X(PAST, "past")         /* client, session, hundredths of its ticks: it is looked at */        \
-	X(SPEED, "speed")       /* client, session, halves of the clock's, less one */                 \
-	X(HOLD, "hold")         /* client, session, tool */                                            \
-	X(REMOVE, "remove")     /* client, session: its last tool */                                   \
-	X(ADD, "add")           /* client, session: that tool again */                                 \
-	X(AGAIN, "again")       /* client sends its newest change again */                             \
-	X(JOIN, "join")         /* client, sim_session */                                              \
-	X(KEY_FRAME, "key_frame")  /* client, sim_session */                                           \
-	X(MOVE_SESSION, "migrate") /* session: to the other machine */                                 \
+	X(ADVANCE, "advance")     /* client, session, c: 1 + c/2 ticks, energy on of tool c % TOOLS */ \
+	X(REWIND, "rewind")       /* client, session, tick in hundredths of its ticks */               \
+	X(RESET, "reset")         /* client, session */                                                \
+	X(SNAPSHOT, "snapshot")   /* client, session, name */                                          \
+	X(RESTORE, "restore")     /* client, session, name */                                          \
+	X(PAST, "past")           /* client, session, hundredths of its ticks: views that tick */      \
+	X(SPEED, "speed")         /* client, session, c: (c + 1) / 2 times the pace of the clock */    \
+	X(HOLD, "hold")           /* client, session, tool */                                          \
+	X(REMOVE, "remove")       /* client, session: removes the last tool */                         \
+	X(ADD, "add")             /* client, session: adds the last tool again */                      \
+	X(AGAIN, "again")         /* client: resends its newest change */                              \
+	X(JOIN, "join")           /* client, session */                                                \
+	X(KEY_FRAME, "key_frame") /* client, session */                                                \
+	X(MOVE_SESSION, "migrate") /* session: moves to the other machine */                           \
 	X(KILL, "kill")            /* machine: kill -9 */                                              \
-	X(POWER, "power")          /* machine: power is lost */                                        \
-	X(RESTART, "restart")      /* machine: SIGTERM, and a start */                                 \
+	X(POWER, "power")          /* machine: loses power */                                          \
+	X(RESTART, "restart")      /* machine: SIGTERM, then a start */                                \
 	X(STOP, "stop")            /* machine, tenths of a second: SIGSTOP, then SIGCONT */            \
-	X(FULL, "full")            /* machine: its disk takes no more */                               \
-	X(ROOM, "room")            /* machine: it does again */                                        \
-	X(SLOW_DISK, "slow_disk")  /* machine, ms of a sync */                                         \
-	X(BAD_DISK, "bad_disk")    /* machine: one in c writes or syncs fails */                       \
-	X(GOOD_DISK, "good_disk")  /* machine: fast and without errors */
+	X(FULL, "full")            /* machine: its disk is full */                                     \
+	X(ROOM, "room")            /* machine: its disk has space again */                             \
+	X(SLOW_DISK, "slow_disk")  /* machine, duration of a sync in ms */                             \
+	X(BAD_DISK, "bad_disk")    /* machine, -, c: one in c writes or syncs fails */                 \
+	X(GOOD_DISK, "good_disk")  /* machine: its disk is fast and without errors */
 typedef enum step_kind {
 #define X(code, word) STEP_##code,
 	STEP_TABLE(X)
@@ -66,14 +67,14 @@ typedef enum step_kind {
 } step_kind;
 
 typedef struct work_step {
-	int64_t at_ns; // after the begin
+	int64_t at_ns; // since the start
 	step_kind kind;
 	int a, b, c;
 	bool left_out;
 } work_step;
 
 typedef struct workload {
-	int machines; // that have a daemon
+	int machines; // number of machines with a daemon
 	int count;
 	work_step steps[STEPS_MOST];
 } workload;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the parts of the simulation share: clients, their requests, sessions, daemons.
+// Shared by all parts of the simulation: clients, their requests, sessions and daemons.
 #pragma once
 
 #include <stdbool.h>
@@ -12,9 +12,9 @@
 
 enum {
 	CLIENTS = 4,
-	COURIERS = 2, // connections of the courier, clients behind the others
+	COURIERS = 2, // connections of the courier, which are the clients after the others
 	SESSIONS = 3,
-	TOOLS = 2, // of the scene
+	TOOLS = 2, // tools of the scene
 	REQUESTS_MOST = 1 << 14,
 	GRAVITIES_MOST = 4096,
 	NAME_MOST = 49,
@@ -23,15 +23,15 @@ enum {
 
 extern const char *const sim_tools[TOOLS];
 
-// ---- how a run is: all from the seed
+// ---- profile of a run, made from the seed
 typedef struct sim_profile {
-	int64_t length_ns; // of the workload
+	int64_t length_ns; // duration of the workload
 	int workers;
-	int64_t step_least_ns, step_most_ns; // what a step of the core takes
-	int64_t latency_most_ns;             // of a message
+	int64_t step_least_ns, step_most_ns; // duration of a step of the core
+	int64_t latency_most_ns;             // longest delay of a message
 	int64_t queue_commands, subscriber_bytes, store_bytes;
 	double checkpoint_s;
-	bool tokens; // clients have tokens: not all of them may do all
+	bool tokens; // clients have tokens with different rights
 	sim_roughness roughness;
 } sim_profile;
 
@@ -58,44 +58,45 @@ typedef enum ask {
 	ASK_JOIN,
 	ASK_KEY_FRAME,
 	ASK_LIST,
-	ASK_MOVING, // of a move
+	ASK_MOVING, // requests of a move
 	ASK_OTHER,
 } ask;
 
 typedef struct sim_request {
 	ask what;
-	int client, session, tool; // session, tool: -1: none
-	int life;                  // of the session's name
-	int64_t sequence;          // client_sequence; 0: none
-	int gravity;               // GRAVITY: which
-	int ticks;                 // ADVANCE: asked for
-	uint64_t first;            // number of the request that this one is sent again for; 0: none
-	int connection, machine;   // connection: of its client, counted
+	int client, session, tool; // -1 if there is none
+	int life;                  // number of the session with this name
+	int64_t sequence;          // client_sequence, or 0
+	int gravity;               // GRAVITY: number of the gravity
+	int ticks;                 // ADVANCE: number of ticks
+	uint64_t first;            // number of the original of a resent request, or 0
+	int connection, machine;   // connection: counts the client's connections
 	int64_t sent_ns, arriving_ns, answered_ns;
-	bool later; // it waits for a tick, so its answer may wait as long as its session is paused
-	bool met;   // its session was there when it arrived
+	bool later; // it waits for a tick, so its answer may wait while its session is paused
+	bool met;   // its session existed when it arrived
 	bool arrived, answered, ok, unstored;
-	char *method, *params; // to send it again
-	char *result;          // text of it
+	char *method, *params; // copies for resending
+	char *result;          // text of the result
 } sim_request;
 
 typedef struct sim_client {
 	int index;
 	char client_id[16], resume[65];
-	sim_link *link; // NULL: not connected
+	sim_link *link; // NULL if not connected
 	int machine;
-	int connection; // counts
+	int connection; // counts connections
 	bool greeted, beats, visible;
-	uint32_t number; // as the daemon knows it
+	uint32_t number; // the daemon's number of the client
 	int64_t sequence, beat_ns;
-	bool clocked;           // its heartbeats say when they were sent
-	bool clock_counts;      // and the daemon knows the clock
-	int64_t clock_ahead_ns; // of the daemons'
-	int64_t late_until_ns;  // its messages wait on their way until then
-	int64_t heard_ns;       // its newest sign of life: sent by then, for all that a daemon can know
-	bool reads;             // takes what comes
-	int64_t reads_ns;       // since when
-	uint64_t newest;        // request that changes something, to be sent again; 0: none
+	bool clocked;           // its heartbeats have the time of sending
+	bool clock_counts;      // the daemon knows its clock
+	int64_t clock_ahead_ns; // relative to the daemons' clock
+	int64_t late_until_ns;  // its messages are held back until then
+	// latest time at which the client was alive, as far as a daemon can know
+	int64_t heard_ns;
+	bool reads;       // it reads its messages
+	int64_t reads_ns; // when it began to read
+	uint64_t newest;  // newest request that changes something, for resending; 0 if none
 	struct stream *streams[SESSIONS];
 } sim_client;
 
@@ -106,55 +107,56 @@ extern int sim_request_count;
 void clients_begin(uint64_t seed, const sim_profile *profile);
 void clients_connect(int client, int machine);
 void clients_cut(int client);
-// Whether its token allows that, in this session (-1: none).
+// True if the client's token allows this request in this session (-1 for none).
 bool clients_may(int client, ask what, int session);
-int clients_quota(int client); // expensive requests a minute that its token allows; 0: no bound
-void clients_beat(void);       // sends what heartbeats are due
+int clients_quota(int client); // expensive requests a minute that its token allows; 0 for no limit
+void clients_beat(void);       // sends the heartbeats that are due
 int64_t clients_beat_due(void);
 void clients_show(int client, bool visible);
-void clients_late(int client, int64_t ns); // its messages wait on their way
+void clients_late(int client, int64_t ns); // holds its messages back
 void clients_read(int client, bool reads, int frames);
-// The number of the request; 0: the client has no connection. `params` is without session and
-// client_sequence, and may be "".
+// Sends a request and returns its number, or 0 if the client has no connection. `params` has no
+// session and no client_sequence, and may be "".
 uint64_t clients_ask(int client, ask what, const char *method, int session, int tool, bool changes,
                      const char *params);
 void clients_notify(int client, const char *method, const char *params);
 void clients_send_again(int client);
-// Text between `"name":"` and the next quote, or what follows `"name":`; the first in the text.
+// Copies the text between `"name":"` and the next quote, or the value after `"name":`, from its
+// first occurrence in the text.
 bool clients_member(const char *text, const char *name, char *out, size_t capacity);
 sim_request *clients_request(uint64_t number);
 
-// ---- sessions, by their place
+// ---- sessions, by index
 typedef struct sim_session {
-	int life;       // how often a session of this name was created
-	int machine;    // where it should be
+	int life;       // number of times that a session of this name was created
+	int machine;    // machine that should have it
 	bool made;      // its creation was answered
-	bool wanted;    // it was asked for and not destroyed
-	bool moving;    // a courier is at it
-	bool ephemeral; // it is not on the disk, and goes with its maker
+	bool wanted;    // it was created and not destroyed
+	bool moving;    // a courier moves it
+	bool ephemeral; // it is not on the disk, and ends with its creator
 } sim_session;
 
 extern sim_session sim_sessions[SESSIONS];
 void sim_session_name(int session, char name[NAME_MOST]);
 void sim_session_id(int session, int machine, char id[NAME_MOST]);
-int sim_session_of(const char *id); // of the present lives; -1: none
+int sim_session_of(const char *id); // index of a present session, or -1 if there is none
 
 // ---- daemons
 void daemons_begin(const sim_profile *profile);
-void daemons_start(int machine);            // soon
-void daemons_end(int machine);              // drains; soon
-void daemons_kill(int machine, bool power); // at once
+void daemons_start(int machine);            // starts soon
+void daemons_end(int machine);              // drains soon
+void daemons_kill(int machine, bool power); // kills at once
 bool daemons_up(int machine);
 bool daemons_down(int machine);
-const char *daemons_trouble(int machine); // why its last start failed
+const char *daemons_trouble(int machine); // reason of the last failed start
 int daemons_boots(int machine);
 const char *daemons_label(int machine);
 
 // ---- streams
 void streams_begin(const sim_profile *profile);
-void streams_acknowledge(void); // what is due
+void streams_acknowledge(void); // sends the due acknowledgements
 void streams_ack_arriving(int client, const char *text);
 void streams_joined(int client, int session, const char *result);
 void streams_frame(int client, const unsigned char *bytes, size_t count);
-void streams_key_asked(int client, int session); // the daemon is about to read it
+void streams_key_asked(int client, int session); // the daemon is about to read the request
 void streams_forget(int client);

@@ -20,9 +20,9 @@
 //         }
 //     }
 //
-// All calls of client.h take what client::get and loop::get return; what is here is what most
-// programs need. Rules about threads and callbacks are those of client.h. A loop must outlive its
-// clients.
+// This header has what most programs need. All functions of client.h accept the pointers that
+// client::get and loop::get return. The rules of client.h for threads and callbacks apply. A loop
+// must outlive its clients.
 #pragma once
 
 #include <memory>
@@ -34,7 +34,7 @@
 namespace cautery
 {
 
-// A failed call. what() is the reason; `told` has place and status, too.
+// A failed call. what() is the reason. `told` also has the place and the status.
 class error : public std::runtime_error
 {
   public:
@@ -51,7 +51,7 @@ inline void check(cau_status status, cau_error &why)
 	throw error(why);
 }
 
-// Copies a text into an array of a message; too long a one is an error.
+// Copies a text into an array of a message. A text that is too long is an error.
 template <std::size_t bytes> void put(char (&to)[bytes], const std::string &text)
 {
 	cau_error why = {};
@@ -104,7 +104,7 @@ class client
 		cau_error why = {};
 		check(cau_client_call(owned.get(), method, params, result, &why), why);
 	}
-	// Sends a command and waits; "" where the URL names the session.
+	// Sends a command and waits for the result. `session` is "" if the URL names the session.
 	cau_wire_command_result command(const std::string &session, const cau_command &what)
 	{
 		cau_error why = {};
@@ -114,7 +114,8 @@ class client
 		      why);
 		return result;
 	}
-	// Asks for frames and waits for the first key frame. The stream lives as long as the client.
+	// Asks for frames and waits for the first key frame. The stream is valid as long as the client
+	// exists.
 	const cau_client_stream &join(const std::string &session)
 	{
 		cau_error why = {};
@@ -125,7 +126,8 @@ class client
 		check(cau_client_join(owned.get(), &params, &stream, &why), why);
 		return *stream;
 	}
-	// Sends what is queued and closes. Its destructor drops the connection.
+	// Sends the queued messages and closes the connection. Without this call the destructor drops
+	// the connection.
 	void close() { cau_client_close(owned.get()); }
 	cau_client *get() const { return owned.get(); }
 

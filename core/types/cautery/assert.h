@@ -29,13 +29,13 @@
 extern "C" {
 #endif
 
-// Writes "FILE:LINE: FUNCTION: CONDITION does not hold: " and the words to stderr, in one write,
+// Writes "FILE:LINE: FUNCTION: CONDITION does not hold: " and the message to stderr, in one write,
 // and aborts. Any thread may call it.
 __attribute__((noreturn, cold, format(printf, 5, 6))) void
 cau_assert_failed(const char *condition, const char *file, int line, const char *function,
                   const char *format, ...);
 
-// CAU_ASSERT(condition, format, ...): the words say what was the case, with the numbers.
+// CAU_ASSERT(condition, format, ...): the message states the actual values.
 #ifdef CAU_ASSERTIONS
 #define CAU_ASSERT(condition, ...)                                                                 \
 	((condition) ? (void)0                                                                         \
@@ -44,13 +44,13 @@ cau_assert_failed(const char *condition, const char *file, int line, const char 
 #define CAU_ASSERT(condition, ...) ((void)(0 && (condition)))
 #endif
 
-// 1 where 0 <= index < count.
+// Returns 1 if 0 <= index < count, otherwise 0.
 static inline int cau_is_index(int64_t index, int64_t count)
 {
 	return index >= 0 && index < count;
 }
 
-// 0 <= index < count, for integers of any kind.
+// Asserts that 0 <= index < count, for integers of any type.
 #define CAU_ASSERT_INDEX(index, count)                                                             \
 	CAU_ASSERT(cau_is_index((int64_t)(index), (int64_t)(count)), "number %lld of %lld",            \
 	           (long long)(index), (long long)(count))
@@ -58,9 +58,10 @@ static inline int cau_is_index(int64_t index, int64_t count)
 // ---- safety rules -------------------------------------------------------------------------------
 
 // Rules about energy, tools and the bounds of frames are checked in every build. A broken rule is a
-// mistake of this program too, but a daemon with other sessions must not end for it. So a broken
-// rule abandons the thread's present work and returns to the guard around it. The guard's owner
-// makes its state safe and reports. The functions in between must own no lock, memory or file.
+// mistake of this program too, but a daemon with other sessions must not end because of it. So a
+// broken rule abandons the thread's present work and returns to the guard around it. The guard's
+// owner makes its state safe and reports. The functions in between must own no lock, memory or
+// file.
 //
 //     static int take(const int *order, int count)
 //     {
@@ -78,19 +79,20 @@ static inline int cau_is_index(int64_t index, int64_t count)
 //         return taken;
 //     }
 
-enum { CAU_RULE_REASON_BYTES = 320 }; // of the reason, with its zero
+enum { CAU_RULE_REASON_BYTES = 320 }; // size of the reason, with its terminating zero
 
-// Where a broken rule returns to. Storage of the owner, for as long as it is entered.
+// The point to which a broken rule returns. The owner provides the storage from cau_rule_enter to
+// cau_rule_leave.
 typedef struct cau_rule_guard {
 	jmp_buf place;                // the owner calls setjmp(guard.place) right after cau_rule_enter
 	struct cau_rule_guard *outer; // the guard around it; private
-	char reason[CAU_RULE_REASON_BYTES]; // the broken rule, its place, and the words
+	char reason[CAU_RULE_REASON_BYTES]; // the broken rule, its file and line, and the message
 } cau_rule_guard;
 
-// Makes `guard` the calling thread's innermost one. cau_rule_leave must follow in the same
+// Makes `guard` the innermost guard of the calling thread. cau_rule_leave must follow in the same
 // function.
 void cau_rule_enter(cau_rule_guard *guard);
-// Makes the guard around `guard` the innermost one again. `guard` must be the innermost.
+// Makes the guard around `guard` the innermost one again. `guard` must be the innermost guard.
 void cau_rule_leave(cau_rule_guard *guard);
 
 // Fills the reason of the thread's innermost guard and returns to its setjmp, which returns 1. A
@@ -99,11 +101,11 @@ __attribute__((noreturn, cold, format(printf, 5, 6))) void
 cau_rule_broken(const char *condition, const char *file, int line, const char *function,
                 const char *format, ...);
 
-// CAU_RULE(condition, format, ...): the words say what was the case, with the numbers.
+// CAU_RULE(condition, format, ...): the message states the actual values.
 #define CAU_RULE(condition, ...)                                                                   \
 	((condition) ? (void)0 : cau_rule_broken(#condition, __FILE__, __LINE__, __func__, __VA_ARGS__))
 
-// 0 <= index < count, for integers of any kind.
+// Checks the rule 0 <= index < count, for integers of any type.
 #define CAU_RULE_INDEX(index, count)                                                               \
 	CAU_RULE(cau_is_index((int64_t)(index), (int64_t)(count)), "number %lld of %lld",              \
 	         (long long)(index), (long long)(count))

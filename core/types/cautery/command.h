@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Typed commands to a session: what a driver or an operator can ask of a tissue. Shared by core
-// (which applies them at tick borders) and protocol (which reads and writes them as JSON).
+// Typed commands to a session, from a driver or an operator. Core applies them at tick borders;
+// protocol reads and writes them as JSON.
 //
 //     #include "cautery/command.h"
 //     #include "cautery/defaults.h"
@@ -17,7 +17,7 @@
 
 #include "cautery/scene.h"
 
-// code, JSON name. Stores keep the number of an entry, so new entries come last.
+// The entries: code, JSON name. Stores keep the number of an entry, so new entries come last.
 #define CAU_COMMAND_TABLE(X)                                                                       \
 	X(TOOL_ADD, "tool.add")                                                                        \
 	X(TOOL_REMOVE, "tool.remove")                                                                  \
@@ -43,10 +43,10 @@ typedef enum cau_command_kind {
 
 // One command. Only the members named beside a kind are read.
 typedef struct cau_command {
-	int kind;                  // CAU_COMMAND_*
-	uint64_t tick;             // applied at the first tick border at or after this; 0: the next one
-	uint64_t sequence;         // the driver's own count; reported back as last applied
-	char tool[CAU_NAME_BYTES]; // all TOOL_* but TOOL_ADD
+	int kind;          // CAU_COMMAND_*
+	uint64_t tick;     // applied at the first tick border at or after this; 0: the next one
+	uint64_t sequence; // the driver's own number of the command; reported back once it is applied
+	char tool[CAU_NAME_BYTES]; // for all TOOL_* except TOOL_ADD
 	union {
 		cau_tool_def definition; // TOOL_ADD, TOOL_CONFIGURE (its pose is ignored)
 		struct {
@@ -55,20 +55,21 @@ typedef struct cau_command {
 		} move;            // TOOL_MOVE
 		struct {
 			int32_t energized; // TOOL_ENERGIZE
-			int32_t ticks;     // of an enable: energy is off again after so many; 0: no limit
+			// for an enable: number of ticks after which energy goes off; 0: no limit
+			int32_t ticks;
 		};
 		cau_selection selection; // PIN, UNPIN
 		struct {
-			char layer[CAU_NAME_BYTES]; // which layer
-			int32_t kind;               // CAU_LAYER_*: which of the three follows
-			cau_sheet_material sheet;   // FASCIA, MEMBRANE
-			cau_fat_material fat;       // FAT
-			cau_link_material link;     // LINKS
-		} material;             // SET_MATERIAL: replaces the layer's material of that region
-		double gravity_m_s2[3]; // SET_GRAVITY
+			char layer[CAU_NAME_BYTES]; // name of the layer
+			int32_t kind; // CAU_LAYER_*: decides which of the next three members is read
+			cau_sheet_material sheet; // FASCIA, MEMBRANE
+			cau_fat_material fat;     // FAT
+			cau_link_material link;   // LINKS
+		} material;                   // SET_MATERIAL: replaces the layer's material for this region
+		double gravity_m_s2[3];       // SET_GRAVITY
 		struct {
 			cau_selection selection;
-			double force_n[3]; // on each chosen vertex, until set again; zero ends it
+			double force_n[3]; // force on each chosen vertex until the next SET_FORCE; zero ends it
 		} force;               // SET_FORCE
-	} as;                      // by kind
+	} as;                      // the member that belongs to `kind`
 } cau_command;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Definitions with every member at its default. Scalars come from the tables of scene.h; what
-// stands beside the tables (vectors, choices, what differs by kind of tissue) stands here and
-// nowhere else. Shared by core and protocol, hence inline.
+// Sets every member of a definition to its default. The defaults of scalars are in the tables of
+// scene.h. All other defaults are here: vectors, choices, and values that depend on the kind of
+// tissue. Core and protocol share these functions, so they are inline.
 //
 //     #include "cautery/defaults.h"
 //
-//     // A hook of 2 mm that stands a centimetre above the tissue.
+//     // A hook of 2 mm a centimetre above the tissue.
 //     static cau_tool_def small_hook(void)
 //     {
 //         cau_tool_def tool;
@@ -27,7 +27,7 @@ extern "C" {
 
 #define CAU_SET_DEFAULT(field, default_, least, most, unit, meaning) def->field = (default_);
 
-// Gravity along -z, m/s^2.
+// Sets gravity to 9.81 m/s^2 along -z.
 static inline void cau_default_gravity(double gravity_m_s2[3])
 {
 	gravity_m_s2[0] = 0.0;
@@ -35,21 +35,23 @@ static inline void cau_default_gravity(double gravity_m_s2[3])
 	gravity_m_s2[2] = -9.81;
 }
 
-// Identity rotation, the tip 5 cm above the origin.
+// Sets the identity rotation, with the tip 5 cm above the origin.
 static inline void cau_default_pose(cau_pose *def)
 {
 	*def = (cau_pose){.position_m = {0.0, 0.0, 0.05}, .rotation = {1.0, 0.0, 0.0, 0.0}};
 }
 
-// Vertices on the rim of any layer; a box, a sphere or a point must be given its place.
+// Sets a selection of this kind in any layer. The caller must set the position and size of a box, a
+// sphere or a point.
 static inline void cau_default_selection(cau_selection *def, int kind)
 {
 	memset(def, 0, sizeof *def);
 	def->kind = kind;
 }
 
-// Temperature (degC) at which tissue of a kind of layer parts: fascia like peritoneum, membrane
-// like mesentery, fat like liver (measured ignition temperatures, section 6.2); links are fascia.
+// Returns the temperature (degC) at which the tissue of a kind of layer parts: fascia like
+// peritoneum, membrane like mesentery, fat like liver (measured ignition temperatures, section
+// 6.2). Links have the value of fascia.
 static inline double cau_default_ignition_c(int layer_kind)
 {
 	switch (layer_kind) {
@@ -62,14 +64,14 @@ static inline double cau_default_ignition_c(int layer_kind)
 	}
 }
 
-// Every member at its default for this kind of layer.
+// Sets every member to its default for this kind of layer.
 static inline void cau_default_heat_material(cau_heat_material *def, int layer_kind)
 {
 	CAU_HEAT_TABLE(CAU_SET_DEFAULT)
 	def->ignition_c = cau_default_ignition_c(layer_kind);
 }
 
-// A target at the rest shape, and no shrinkage. `layer_kind`: CAU_LAYER_FASCIA or MEMBRANE.
+// Sets a target at the rest shape, without shrinkage. `layer_kind`: CAU_LAYER_FASCIA or MEMBRANE.
 static inline void cau_default_sheet_material(cau_sheet_material *def, int layer_kind)
 {
 	memset(def, 0, sizeof *def);
@@ -85,7 +87,7 @@ static inline void cau_default_sheet_material(cau_sheet_material *def, int layer
 	cau_default_heat_material(&def->heat, layer_kind);
 }
 
-// Stable neo-Hookean fat without limits, shrinkage and plasticity.
+// Sets stable neo-Hookean fat without limits, shrinkage and plasticity.
 static inline void cau_default_fat_material(cau_fat_material *def)
 {
 	memset(def, 0, sizeof *def);
@@ -102,7 +104,7 @@ static inline void cau_default_fat_material(cau_fat_material *def)
 	cau_default_heat_material(&def->heat, CAU_LAYER_FAT);
 }
 
-// Every member at its default.
+// Sets every member to its default.
 static inline void cau_default_link_material(cau_link_material *def)
 {
 	memset(def, 0, sizeof *def);
@@ -110,7 +112,7 @@ static inline void cau_default_link_material(cau_link_material *def)
 	cau_default_heat_material(&def->heat, CAU_LAYER_LINKS);
 }
 
-// One material of the layer's kind of tissue; names empty.
+// Sets a layer with one material of its kind of tissue, and empty names.
 static inline void cau_default_layer_def(cau_layer_def *def, int kind)
 {
 	memset(def, 0, sizeof *def);
@@ -127,7 +129,7 @@ static inline void cau_default_layer_def(cau_layer_def *def, int kind)
 		cau_default_sheet_material(&def->sheet[0], kind);
 }
 
-// A generated sheet of 100 x 100 mm; the slab's third extent is 10 mm.
+// Sets a generated sheet of 100 x 100 mm. The third extent, for a slab, is 10 mm.
 static inline void cau_default_mesh_def(cau_mesh_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -141,7 +143,7 @@ static inline void cau_default_mesh_def(cau_mesh_def *def)
 	def->unit_m = 1.0;
 }
 
-// Every size at its default, at the default pose; the name empty. `shape`: CAU_TOOL_*.
+// Sets every size and the pose to its default, with an empty name. `shape`: CAU_TOOL_*.
 static inline void cau_default_tool_def(cau_tool_def *def, int shape)
 {
 	memset(def, 0, sizeof *def);
@@ -150,14 +152,14 @@ static inline void cau_default_tool_def(cau_tool_def *def, int shape)
 	cau_default_pose(&def->pose);
 }
 
-// Every size at its default; names empty, and no points.
+// Sets every size to its default, with empty names and no points.
 static inline void cau_default_vessel_def(cau_vessel_def *def)
 {
 	memset(def, 0, sizeof *def);
 	CAU_VESSEL_TABLE(CAU_SET_DEFAULT)
 }
 
-// Absent; 25 mm up in half a second where it is made present.
+// Sets an absent pull. If the caller makes it present, it moves 25 mm up in half a second.
 static inline void cau_default_pull_def(cau_pull_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -165,7 +167,7 @@ static inline void cau_default_pull_def(cau_pull_def *def)
 	def->duration_s = 0.5;
 }
 
-// Absent; 3 s of dwelling and 2 mm/s where it is made present.
+// Sets an absent cut. If the caller makes it present, it dwells for 3 s and moves at 2 mm/s.
 static inline void cau_default_cut_def(cau_cut_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -174,7 +176,7 @@ static inline void cau_default_cut_def(cau_cut_def *def)
 	def->speed_m_s = 0.002;
 }
 
-// No meshes, layers, pins or tools; pull and cut absent.
+// Sets a scene without meshes, layers, pins or tools. Pull and cut are absent.
 static inline void cau_default_scene_def(cau_scene_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -187,8 +189,8 @@ static inline void cau_default_scene_def(cau_scene_def *def)
 	cau_default_cut_def(&def->cut);
 }
 
-// A command at the next tick. SET_MATERIAL starts as a fascia's: its layer's kind decides, so
-// whoever fills it sets `kind` and the material of that kind.
+// Sets a command for the next tick. SET_MATERIAL starts with the kind of a fascia. The right kind
+// is that of the layer, so the caller must set `kind` and the material of that kind.
 static inline void cau_default_command(cau_command *def, int kind)
 {
 	memset(def, 0, sizeof *def);

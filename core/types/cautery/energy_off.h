@@ -10,7 +10,7 @@
 //     }
 #pragma once
 
-// code, wire name
+// The entries: code, wire name.
 #define CAU_ENERGY_OFF_TABLE(X)                                                                    \
 	X(NEVER_ENABLED, "never_enabled")                                                              \
 	X(COMMANDED, "commanded")                                                                      \

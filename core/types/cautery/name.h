@@ -20,10 +20,10 @@
 
 #define CAU_NAME_RULE "[a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes"
 
-// Whether a text is a name by CAU_NAME_RULE.
+// True if the text is a name by CAU_NAME_RULE.
 static inline bool cau_name_is_valid(const char *name)
 {
-	bool word = false; // the byte before ends a word
+	bool word = false; // the previous byte is a letter or a digit
 	for (size_t i = 0; name[i]; i++) {
 		bool letter = name[i] >= 'a' && name[i] <= 'z';
 		bool digit = name[i] >= '0' && name[i] <= '9';

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene: the plain data from which a session is made. Shared by core (which checks and builds it)
-// and protocol (which reads and writes it as JSON). SI units; temperatures in degrees Celsius.
+// A scene: the plain data from which a session is made. Core checks and builds a scene; protocol
+// reads and writes it as JSON. Units are SI; temperatures are in degrees Celsius.
 //
-// Every scalar parameter stands once, in a table X(field, default, least, most, unit, meaning).
+// Every scalar parameter is defined once, in a table X(field, default, least, most, unit, meaning).
 // The tables make the struct fields, the defaults, the range checks, the JSON fields (JSON name =
-// field name) and the documentation. Lengths, vectors and choices stand beside them.
+// field name) and the documentation. Lengths, vectors and choices are defined outside the tables.
 //
 //     #include "cautery/defaults.h"
 //     #include "cautery/scene.h"
@@ -28,30 +28,33 @@
 #include <stdint.h>
 
 enum {
-	CAU_NAME_BYTES = 49,        // [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes and a zero
-	CAU_TEXT_BYTES = 256,       // of a description or a file name, with its zero
-	CAU_MAX_MESHES = 8,         // of a scene
-	CAU_MAX_LAYERS = 12,        // of a scene
-	CAU_MAX_MATERIALS = 16,     // of one layer: the default and its regions
-	CAU_MAX_PINS = 16,          // choices of pinned vertices of a scene
-	CAU_MAX_TOOLS = 8,          // of a session
-	CAU_MAX_VESSELS = 8,        // of a scene
-	CAU_MAX_VESSEL_POINTS = 32, // of the line of one vessel
+	CAU_NAME_BYTES = 49,  // bytes of a name: [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48, and a zero
+	CAU_TEXT_BYTES = 256, // bytes of a description or a file name, with its zero
+	CAU_MAX_MESHES = 8,   // most meshes of a scene
+	CAU_MAX_LAYERS = 12,  // most layers of a scene
+	CAU_MAX_MATERIALS = 16,     // most materials of one layer: the default and those of its regions
+	CAU_MAX_PINS = 16,          // most selections of pinned vertices of a scene
+	CAU_MAX_TOOLS = 8,          // most tools of a session
+	CAU_MAX_VESSELS = 8,        // most vessels of a scene
+	CAU_MAX_VESSEL_POINTS = 32, // most points of the line of one vessel
 };
 
 #define CAU_FIELD(field, default_, least, most, unit, meaning) double field;
 
-// ---- ranges of vectors, of scripts and of forces; those of scalars are in the tables below ----
-// The parameter tables of protocol/json document these ranges, and the core enforces them.
-#define CAU_UNIT_TOLERANCE 1e-3 // of the length of a unit quaternion, on every way in
-#define CAU_PLACE_MOST_M 100.0  // absolute value of each coordinate of a place or a displacement
+// ---- ranges of vectors, scripts and forces; the tables below have the ranges of scalars
+// ---------- The parameter tables of protocol/json document these ranges, and the core enforces
+// them.
+#define CAU_UNIT_TOLERANCE 1e-3 // largest error of the length of a unit quaternion, for every input
+// largest absolute value of each coordinate of a position or a displacement
+#define CAU_PLACE_MOST_M 100.0
 #define CAU_GRAVITY_MOST_M_S2 100.0
-#define CAU_FORCE_MOST_N 1000.0 // absolute value of each component of an outer force on one vertex
+// largest absolute value of each component of an outer force on one vertex
+#define CAU_FORCE_MOST_N 1000.0
 #define CAU_FIBRE_MOST 1e6
-#define CAU_TARGET_MOST 100.0 // absolute value of each entry of a target
+#define CAU_TARGET_MOST 100.0 // largest absolute value of each entry of a target
 #define CAU_STRAIN_LEAST (-0.99)
 #define CAU_STRAIN_MOST 100.0
-#define CAU_SHRINK_LEAST 0.01 // squared stretch
+#define CAU_SHRINK_LEAST 0.01 // a squared stretch, as is CAU_SHRINK_MOST
 #define CAU_SHRINK_MOST 4.0
 #define CAU_MESH_UNIT_LEAST_M 1e-9
 #define CAU_MESH_UNIT_MOST_M 1000.0
@@ -89,14 +92,14 @@ enum {
 	X(SINGLE, "single")                                                                            \
 	X(DOUBLE, "double")
 #define CAU_INTEGRATOR_TABLE(X)                                                                    \
-	X(EULER, "euler")   /* implicit Euler (eq. 1-4): one solve a tick; damps by the step */        \
-	X(SDIRK2, "sdirk2") /* of second order (Alexander 1977): two solves a tick */
+	X(EULER, "euler")   /* implicit Euler (eq. 1-4): one solve a tick; long steps damp more */     \
+	X(SDIRK2, "sdirk2") /* second order (Alexander 1977): two solves a tick */
 #define CAU_ENERGY_TABLE(X)                                                                        \
-	X(PAPER, "paper")   /* a hot part has a temperature; tissue parts by its dose (section 6.2) */ \
+	X(PAPER, "paper")   /* a hot part has a temperature; exposure parts tissue (section 6.2) */    \
 	X(TISSUE, "tissue") /* a generator gives power; tissue parts where its water has boiled off */
 #define CAU_PARTING_TABLE(X)                                                                       \
-	X(EDGES, "edges")       /* the paper's rule: an edge, and with it all that share it */         \
-	X(ELEMENTS, "elements") /* each triangle and tetrahedron by the dose at its middle */
+	X(EDGES, "edges")       /* the paper's rule: an edge and all elements that share it */         \
+	X(ELEMENTS, "elements") /* each triangle and tetrahedron, by the exposure at its middle */
 
 // ---- meshes ---------------------------------------------------------------------------------
 #define CAU_MESH_SOURCE_TABLE(X)                                                                   \
@@ -106,28 +109,29 @@ enum {
 	X(FILE, "file")       /* a mesh file: core/mesh/README.md */                                   \
 	X(BYTES, "bytes")     /* an uploaded file, in memory */
 
-// One mesh of a scene: generated, or read.
+// One mesh of a scene, generated or read from a file.
 typedef struct cau_mesh_def {
-	char name[CAU_NAME_BYTES]; // by which layers name it
+	char name[CAU_NAME_BYTES]; // name by which layers refer to the mesh
 	int source;                // CAU_MESH_*
-	double size_m[3];          // generated meshes; centred on the origin in x and y, top at z = 0
-	int32_t cells[3];          // generated meshes
-	double texture_turn_rad;   // generated sheets: turns the UV axes against the mesh's axes
-	char file[CAU_TEXT_BYTES]; // FILE: relative to the scene file. BYTES: name, for its ending
-	double unit_m;             // metres in one unit of the file (0.001 for millimetres)
-	double translate_m[3];     // applied after the unit
-	int32_t strict;            // read meshes: refuse what would have to be mended
-	const void *bytes;         // BYTES: borrowed until the session is created
-	size_t byte_count;         // of `bytes`
+	double size_m[3]; // generated meshes: extents, centred on the origin in x and y, top at z = 0
+	int32_t cells[3]; // generated meshes: number of cells along each axis
+	double texture_turn_rad; // generated sheets: rotation of the UV axes against the mesh's axes
+	// FILE: path relative to the scene file. BYTES: name, whose ending gives the format
+	char file[CAU_TEXT_BYTES];
+	double unit_m;         // length of one unit of the file, m (0.001 for millimetres)
+	double translate_m[3]; // translation, applied after the unit
+	int32_t strict;        // read meshes: 1: refuse a mesh that would have to be mended
+	const void *bytes;     // BYTES: borrowed until the session is created
+	size_t byte_count;     // size of `bytes`
 } cau_mesh_def;
 
 // ---- materials ------------------------------------------------------------------------------
 
-// The laws of fat, one entry each: code, word in JSON, largest Poisson's ratio, whether its stress
-// is the gradient of an energy, whether it keeps a rotation from evaluation to evaluation, a and b
-// of the Lame parameters lambda + a mu and b mu that it is evaluated with (0 and 1: those of small
-// strain), and what it is. The stress of the law `word` is word_stress in
-// core/constraint/fat_energy.h.
+// The laws of fat. The columns are: code; word in JSON; largest Poisson's ratio; whether the stress
+// is the gradient of an energy; whether the law keeps a rotation between evaluations; a; b;
+// description. The law is evaluated with the Lame parameters lambda + a mu and b mu. With a = 0 and
+// b = 1 they are those of small strain. The function `word`_stress in core/constraint/fat_energy.h
+// computes the stress of the law `word`.
 #define CAU_MODEL_TABLE(X)                                                                         \
 	X(NEOHOOKEAN, neohookean, 0.45, true, false, 5.0 / 6.0, 4.0 / 3.0,                             \
 	  "stable neo-Hookean (Smith et al. 2018); inverted tetrahedra recover")                       \
@@ -145,7 +149,7 @@ typedef struct cau_mesh_def {
 	X(CLOSED_FORM, "closed_form") /* P = Q T^(1/2) */                                              \
 	X(LINEARISED, "linearised")   /* eq. 13 in F */
 
-// Common to all tissue: how heat parts it (section 6.2, 6.3), and what it takes to tear it.
+// Properties of all tissue: how heat parts it (section 6.2, 6.3), and the energy of a tear.
 #define CAU_HEAT_TABLE(X)                                                                          \
 	X(ignition_c, 172.0, 1.0, 2000.0, "degC",                                                      \
 	  "tissue parts when exposure times absorption_per_s exceeds this")                            \
@@ -191,35 +195,38 @@ typedef struct cau_heat_material {
 
 // The material of a fascia or a membrane, or of one region of it.
 typedef struct cau_sheet_material {
-	int32_t region; // of the mesh file; ignored for the layer's first material, its default
+	// region of the mesh file; ignored for the layer's first material, which is its default
+	int32_t region;
 	CAU_SHEET_TABLE(CAU_FIELD)
-	int limit;              // CAU_LIMIT_*
-	int projection;         // CAU_PROJECTION_*
-	double target[3];       // TARGET: t_00, t_11, t_01: squared stretches; T positive definite
-	double strain_min[2];   // RANGE: engineering strain sqrt(k_aa) - 1 along u and v
-	double strain_max[2];   // RANGE: the upper ends
+	int limit;        // CAU_LIMIT_*
+	int projection;   // CAU_PROJECTION_*
+	double target[3]; // TARGET: t_00, t_11, t_01: squared stretches; T positive definite
+	// RANGE: lower ends of the engineering strains sqrt(k_aa) - 1 along u and v
+	double strain_min[2];
+	double strain_max[2];   // RANGE: upper ends of these strains
 	double shrink[2];       // S_x, S_y of eq. 21: squared stretches
-	cau_heat_material heat; // how heat parts it
+	cau_heat_material heat; // how heat parts the tissue
 } cau_sheet_material;
 
 // The material of fat, or of one region of it.
 typedef struct cau_fat_material {
-	int32_t region; // of the mesh file; ignored for the layer's first material
+	// region of the mesh file; ignored for the layer's first material, which is its default
+	int32_t region;
 	CAU_FAT_TABLE(CAU_FIELD)
-	int model;              // CAU_MODEL_*
-	int limit;              // CAU_LIMIT_*
-	int projection;         // CAU_PROJECTION_*
-	double target[6];       // t_00, t_11, t_22, t_01, t_02, t_12 in the material axes
-	double strain_min[3];   // RANGE: sqrt(k_aa) - 1 along the material axes
-	double strain_max[3];   // RANGE: the upper ends
-	double shrink[3];       // S_x, S_y, S_z of eq. 21: squared stretches
-	cau_heat_material heat; // how heat parts it
+	int model;            // CAU_MODEL_*
+	int limit;            // CAU_LIMIT_*
+	int projection;       // CAU_PROJECTION_*
+	double target[6];     // TARGET: t_00, t_11, t_22, t_01, t_02, t_12 in the material axes
+	double strain_min[3]; // RANGE: lower ends of the strains sqrt(k_aa) - 1 along the material axes
+	double strain_max[3]; // RANGE: upper ends of these strains
+	double shrink[3];     // S_x, S_y, S_z of eq. 21: squared stretches
+	cau_heat_material heat; // how heat parts the tissue
 } cau_fat_material;
 
 // The material of links: trusses between two layers.
 typedef struct cau_link_material {
 	CAU_LINK_TABLE(CAU_FIELD)
-	cau_heat_material heat; // how heat parts it
+	cau_heat_material heat; // how heat parts the tissue
 } cau_link_material;
 
 // ---- layers ---------------------------------------------------------------------------------
@@ -229,27 +236,27 @@ typedef struct cau_link_material {
 	X(FAT, "fat")           /* the tetrahedra of its mesh */                                       \
 	X(LINKS, "links")       /* trusses from each vertex of layer `of` to the nearest of `to` */
 
-// What heat and current find in a layer, with energy `tissue`. The numbers of each are in
-// core/bioheat/living_tissue.c.
+// The living tissue of a layer, for heat and current with energy `tissue`.
+// core/bioheat/living_tissue.c has the values of each entry.
 #define CAU_LIVING_TABLE(X)                                                                        \
-	X(CONNECTIVE, "connective") /* fascia, membranes and strands: muscle's numbers */              \
+	X(CONNECTIVE, "connective") /* fascia, membranes and strands: values of muscle */              \
 	X(FAT, "fat")                                                                                  \
 	X(LIVER, "liver")                                                                              \
 	X(MUSCLE, "muscle")
 
-// One layer of tissue: which part of which mesh it is, and what it is made of.
+// One layer of tissue: its part of a mesh, and its materials.
 typedef struct cau_layer_def {
-	char name[CAU_NAME_BYTES]; // of the layer
+	char name[CAU_NAME_BYTES]; // name of the layer
 	int kind;                  // CAU_LAYER_*
 	int tissue;                // CAU_LIVING_*
-	double perfusion;          // its blood flow, as a share of that of living tissue
-	double coagulated_tear;    // energy of a tear where it is coagulated, as a share of the fresh's
-	double viscosity_s;        // retardation time: viscosity over stiffness; none of links
-	char mesh[CAU_NAME_BYTES]; // FASCIA, FAT, MEMBRANE without `of`
-	char of[CAU_NAME_BYTES];   // MEMBRANE: a fat layer. LINKS: the upper layer
-	char to[CAU_NAME_BYTES];   // LINKS: the lower layer
-	double fibre[3];        // material direction where the mesh has no UV; fat: first material axis
-	int32_t material_count; // at least 1; materials[0] is the default
+	double perfusion;          // blood flow of the layer, relative to that of living tissue
+	double coagulated_tear;    // energy of a tear in coagulated tissue, relative to fresh tissue
+	double viscosity_s;        // retardation time: viscosity over stiffness; not used for LINKS
+	char mesh[CAU_NAME_BYTES]; // name of the mesh, for FASCIA, FAT, and MEMBRANE without `of`
+	char of[CAU_NAME_BYTES];   // MEMBRANE: name of a fat layer. LINKS: name of the upper layer
+	char to[CAU_NAME_BYTES];   // LINKS: name of the lower layer
+	double fibre[3];           // material direction if the mesh has no UV; FAT: first material axis
+	int32_t material_count;    // at least 1; materials[0] is the default
 	cau_sheet_material sheet[CAU_MAX_MATERIALS]; // FASCIA, MEMBRANE
 	cau_fat_material fat[CAU_MAX_MATERIALS];     // FAT
 	cau_link_material link;                      // LINKS
@@ -262,20 +269,21 @@ typedef struct cau_layer_def {
 	X(SPHERE, "sphere") /* rest position within radius_m of center_m */                            \
 	X(NEAREST, "nearest") /* the one vertex nearest to center_m */
 
-// A choice of vertices by their rest positions.
+// A selection of vertices by their rest positions.
 typedef struct cau_selection {
 	int kind;                   // CAU_SELECT_*
-	char layer[CAU_NAME_BYTES]; // empty: any layer
-	double least_m[3];          // BOX: its least corner
-	double most_m[3];           // BOX: its greatest corner
-	double center_m[3];         // SPHERE, NEAREST
-	double radius_m;            // SPHERE
+	char layer[CAU_NAME_BYTES]; // name of a layer; empty: any layer
+	double least_m[3];          // BOX: corner with the least coordinates
+	double most_m[3];           // BOX: corner with the greatest coordinates
+	double center_m[3];         // SPHERE: centre; NEAREST: the point
+	double radius_m;            // radius of the SPHERE
 } cau_selection;
 
 // ---- tools ----------------------------------------------------------------------------------
-// The shapes of tools, one entry each: code, word in JSON, whether it has a hot part, whether it
-// has jaws that grasp, and what it is. Frames name a shape by its entry's number, so new entries
-// come last. The signed distances of the shape `word` are cau_shape_word in core/tool.
+// The shapes of tools. The columns are: code; word in JSON; whether the tool has a hot part;
+// whether it has jaws that grasp; description. Frames name a shape by its entry's number, so new
+// entries come last. The constant cau_shape_`word` in core/tool has the functions of the shape
+// `word`, as its signed distances.
 #define CAU_TOOL_SHAPE_TABLE(X)                                                                    \
 	X(SPHERE, sphere, true, false, "hot ball at the tip, cold shaft")                              \
 	X(CAPSULE, capsule, true, false, "hot needle, cold shaft")                                     \
@@ -285,7 +293,8 @@ typedef struct cau_selection {
 	X(SHEARS, shears, true, true, "ultrasonic: one hot blade, one cold clamping jaw")              \
 	X(GRASPER, grasper, false, true, "two cold jaws")
 
-// Sizes of a tool. Its own frame: the tip at the origin, the shaft along +z, jaws open in x.
+// Sizes of a tool, in the tool's own frame: the tip is at the origin, the shaft along +z, and jaws
+// open in x.
 #define CAU_TOOL_TABLE(X)                                                                          \
 	X(hot_radius_m, 3e-3, 2e-4, 0.05, "m", "radius of the hot part")                               \
 	X(tip_length_m, 8e-3, 1e-3, 0.1, "m", "length of needle, hook foot, blade or jaws")            \
@@ -323,23 +332,23 @@ typedef struct cau_selection {
 	  "power ends when the load reaches this multiple of its minimum, until energy is turned off " \
 	  "and on; 0: never")
 
-// Where a tool is, and how it is turned.
+// The position and rotation of a tool.
 typedef struct cau_pose {
-	double position_m[3]; // of the tip, in the world
+	double position_m[3]; // position of the tip, in the world
 	double rotation[4];   // unit quaternion w, x, y, z: tool frame to world
 } cau_pose;
 
 // One tool: its shape, its sizes and its first pose.
 typedef struct cau_tool_def {
-	char name[CAU_NAME_BYTES]; // of the tool
+	char name[CAU_NAME_BYTES]; // name of the tool
 	int shape;                 // CAU_TOOL_*
 	CAU_TOOL_TABLE(CAU_FIELD)
-	cau_pose pose; // first pose
+	cau_pose pose; // pose at creation
 } cau_tool_def;
 
-// ---- blood vessels
-// -------------------------------------------------------------------------------- A tube of blood
-// within a layer of fat, with energy `tissue` (core/vessel/README.md).
+// ---- blood vessels -----------------------------------------------------------------------------
+
+// A tube of blood within a layer of fat, with energy `tissue` (core/vessel/README.md).
 #define CAU_VESSEL_TABLE(X)                                                                        \
 	X(radius_m, 1.5e-3, 1e-4, 0.01, "m", "outer radius of the tube")                               \
 	X(wall_m, 3e-4, 1e-5, 5e-3, "m", "thickness of the wall of the vessel; less than the radius")  \
@@ -351,65 +360,67 @@ typedef struct cau_tool_def {
 
 // One vessel: its middle line, and its sizes and pressures.
 typedef struct cau_vessel_def {
-	char name[CAU_NAME_BYTES];  // of the vessel
-	char layer[CAU_NAME_BYTES]; // the layer of fat in which it lies
+	char name[CAU_NAME_BYTES];  // name of the vessel
+	char layer[CAU_NAME_BYTES]; // name of the layer of fat in which the vessel lies
 	CAU_VESSEL_TABLE(CAU_FIELD)
-	int32_t point_count;                       // 2 to CAU_MAX_VESSEL_POINTS
-	double points_m[CAU_MAX_VESSEL_POINTS][3]; // (point_count): at rest, in the world
+	int32_t point_count; // 2 to CAU_MAX_VESSEL_POINTS
+	// (point_count): points of the middle line at rest, in the world
+	double points_m[CAU_MAX_VESSEL_POINTS][3];
 } cau_vessel_def;
 
 // ---- the scripted motions that benchmarks and demonstrations share ------------------------------
-// The chosen vertices are moved by `move_m` in `duration_s`.
+// A pull: the selected vertices are moved by `move_m` in `duration_s`.
 typedef struct cau_pull_def {
 	int32_t present;         // 1: the scene has a pull
-	cau_selection selection; // which vertices
-	double move_m[3];        // their way
-	double duration_s;       // how long they take
+	cau_selection selection; // vertices that are moved
+	double move_m[3];        // displacement of the vertices
+	double duration_s;       // duration of the motion
 } cau_pull_def;
 
-// The tool dwells at `from_m`, then is drawn to `to_m`.
+// A cut: the tool dwells at `from_m`, then moves to `to_m`.
 typedef struct cau_cut_def {
 	int32_t present;           // 1: the scene has a cut
-	char tool[CAU_NAME_BYTES]; // which tool
-	double from_m[3];          // tip at the begin
-	double to_m[3];            // tip at the end
-	double rotation[4];        // unit quaternion w, x, y, z
-	double dwell_s;            // hot, at from_m
-	double speed_m_s;          // of the way
+	char tool[CAU_NAME_BYTES]; // name of the tool
+	double from_m[3];          // position of the tip at the beginning
+	double to_m[3];            // position of the tip at the end
+	double rotation[4];        // rotation of the tool: unit quaternion w, x, y, z
+	double dwell_s;            // time at from_m, with energy on
+	double speed_m_s;          // speed of the motion
 } cau_cut_def;
 
 // ---- the scene --------------------------------------------------------------------------------
 // A whole scene: the plain data from which a session is made.
 typedef struct cau_scene_def {
-	char name[CAU_NAME_BYTES];        // of the scene
-	char description[CAU_TEXT_BYTES]; // in words
-	char directory[CAU_TEXT_BYTES];   // where relative mesh files are looked up; not in the JSON
+	char name[CAU_NAME_BYTES];        // name of the scene
+	char description[CAU_TEXT_BYTES]; // description for the user
+	// folder in which relative mesh files are looked up; not in the JSON
+	char directory[CAU_TEXT_BYTES];
 	CAU_TIME_TABLE(CAU_FIELD)
-	int32_t iterations;                   // of a step at most, 1 to 1000
-	int solver;                           // CAU_SOLVER_*
-	int precision;                        // CAU_PRECISION_* of the local and global steps
-	int integrator;                       // CAU_INTEGRATOR_*: how a tick advances motion
-	int parting;                          // CAU_PARTING_*: what heat parts
-	int energy;                           // CAU_ENERGY_*: what an energized tool does to tissue
-	uint64_t seed;                        // of everything drawn at random (ignition temperatures)
-	double gravity_m_s2[3];               // acceleration
-	int32_t mesh_count;                   // at most CAU_MAX_MESHES
-	cau_mesh_def meshes[CAU_MAX_MESHES];  // (mesh_count)
-	int32_t layer_count;                  // at most CAU_MAX_LAYERS
-	cau_layer_def layers[CAU_MAX_LAYERS]; // (layer_count)
-	int32_t pin_count;                    // at most CAU_MAX_PINS
-	cau_selection pins[CAU_MAX_PINS];     // (pin_count): vertices that do not move
-	int32_t tool_count;                   // at most CAU_MAX_TOOLS
-	cau_tool_def tools[CAU_MAX_TOOLS];    // (tool_count)
-	int32_t vessel_count;                 // at most CAU_MAX_VESSELS
+	int32_t iterations;                      // most iterations of a step, 1 to 1000
+	int solver;                              // CAU_SOLVER_*
+	int precision;                           // CAU_PRECISION_* of the local and global steps
+	int integrator;                          // CAU_INTEGRATOR_*: how a tick advances motion
+	int parting;                             // CAU_PARTING_*: what heat parts
+	int energy;                              // CAU_ENERGY_*: what an energized tool does to tissue
+	uint64_t seed;                           // seed of all random numbers (ignition temperatures)
+	double gravity_m_s2[3];                  // acceleration of gravity
+	int32_t mesh_count;                      // at most CAU_MAX_MESHES
+	cau_mesh_def meshes[CAU_MAX_MESHES];     // (mesh_count)
+	int32_t layer_count;                     // at most CAU_MAX_LAYERS
+	cau_layer_def layers[CAU_MAX_LAYERS];    // (layer_count)
+	int32_t pin_count;                       // at most CAU_MAX_PINS
+	cau_selection pins[CAU_MAX_PINS];        // (pin_count): selections of vertices that do not move
+	int32_t tool_count;                      // at most CAU_MAX_TOOLS
+	cau_tool_def tools[CAU_MAX_TOOLS];       // (tool_count)
+	int32_t vessel_count;                    // at most CAU_MAX_VESSELS
 	cau_vessel_def vessels[CAU_MAX_VESSELS]; // (vessel_count)
-	cau_pull_def pull;                       // for measurements; may be absent
-	cau_cut_def cut;                         // for measurements; may be absent
+	cau_pull_def pull;                       // motion for measurements; may be absent
+	cau_cut_def cut;                         // motion for measurements; may be absent
 } cau_scene_def;                             // about 80 KiB: keep it on the heap
 
 #undef CAU_FIELD
 
-// The global system of a step: CAU_SOLVER_TABLE.
+// How the global system of a step is solved: CAU_SOLVER_TABLE.
 typedef enum cau_solver {
 #define X(code, name) CAU_SOLVER_##code,
 	CAU_SOLVER_TABLE(X)
@@ -430,14 +441,14 @@ typedef enum cau_integrator {
 #undef X
 		CAU_INTEGRATOR_COUNT
 } cau_integrator;
-// What heat parts: CAU_PARTING_TABLE.
+// What heat parts, edges or elements: CAU_PARTING_TABLE.
 typedef enum cau_parting {
 #define X(code, name) CAU_PARTING_##code,
 	CAU_PARTING_TABLE(X)
 #undef X
 		CAU_PARTING_COUNT
 } cau_parting;
-// What an energized tool does: CAU_ENERGY_TABLE.
+// What an energized tool does to tissue: CAU_ENERGY_TABLE.
 typedef enum cau_energy_law {
 #define X(code, name) CAU_ENERGY_##code,
 	CAU_ENERGY_TABLE(X)
@@ -479,7 +490,7 @@ typedef enum cau_layer_kind {
 #undef X
 		CAU_LAYER_COUNT
 } cau_layer_kind;
-// What heat and current find: CAU_LIVING_TABLE.
+// The kind of living tissue, for heat and current: CAU_LIVING_TABLE.
 typedef enum cau_living {
 #define X(code, name) CAU_LIVING_##code,
 	CAU_LIVING_TABLE(X)

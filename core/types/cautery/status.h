@@ -19,7 +19,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-// code, wire name, sentence
+// The entries: code, wire name, sentence.
 #define CAU_STATUS_TABLE(X)                                                                        \
 	X(OK, "ok", "done")                                                                            \
 	X(BAD_VALUE, "bad_value", "a value is missing, of the wrong type or out of its range")         \
@@ -36,7 +36,7 @@
 	X(FAULTED, "faulted", "the session is faulted: rewind or reset it")                            \
 	X(CORRUPT, "corrupt", "the data is damaged or of another version")
 
-// What a function returns; CAU_OK is 0.
+// The result of a function. CAU_OK is 0.
 typedef enum cau_status {
 #define X(code, name, sentence) CAU_##code,
 	CAU_STATUS_TABLE(X)
@@ -47,13 +47,13 @@ typedef enum cau_status {
 // What went wrong, where, and why. `path` is a path inside a document ("layers[1].poisson_ratio");
 // `file` names the document; either may be empty.
 typedef struct cau_error {
-	cau_status status; // the kind
-	char file[256];    // the document
-	char path[160];    // the place in it
+	cau_status status; // kind of the error
+	char file[256];    // name of the document
+	char path[160];    // path inside the document
 	char reason[320];  // a sentence: what is wrong, and what would be right
 } cau_error;
 
-// The word of a status on the wire; "unknown" for what is none.
+// Returns the word of a status on the wire, "unknown" for an invalid status.
 static inline const char *cau_status_name(cau_status status)
 {
 	static const char *const names[] = {
@@ -64,7 +64,7 @@ static inline const char *cau_status_name(cau_status status)
 	return (unsigned)status < CAU_STATUS_COUNT ? names[status] : "unknown";
 }
 
-// A status in words.
+// Returns a sentence that describes a status.
 static inline const char *cau_status_sentence(cau_status status)
 {
 	static const char *const sentences[] = {
@@ -92,6 +92,7 @@ cau_fail(cau_error *error, cau_status status, const char *path, const char *form
 }
 
 #ifdef __clang_analyzer__
-// The analyzer looks into no function of variable arguments: it is shown what this one returns.
+// The analyzer does not look into functions with variable arguments. This macro shows it the
+// result.
 #define cau_fail(error, status, ...) ((void)(cau_fail)((error), (status), __VA_ARGS__), (status))
 #endif

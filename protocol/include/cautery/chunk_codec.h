@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary chunks of files: client to server for uploads, server to client for exports.
+// Binary chunks of files. A client sends them for uploads, the server for exports.
 //
 //     #include <string.h>
 //
 //     #include "cautery/chunk_codec.h"
 //
-//     // Puts a chunk where it belongs in a file that is coming in.
+//     // Copies a chunk to its position in a file that is being received.
 //     static cau_status take_chunk(const void *message, size_t bytes, uint8_t *file,
 //                                  size_t file_bytes, cau_error *error)
 //     {
@@ -30,22 +30,23 @@ extern "C" {
 #endif
 
 enum {
-	CAU_CHUNK_HEADER_BYTES = 16,  // before the data
-	CAU_CHUNK_BYTES_MAX = 262144, // of data in one chunk
+	CAU_CHUNK_HEADER_BYTES = 16,  // size of the header before the data
+	CAU_CHUNK_BYTES_MAX = 262144, // largest data in one chunk
 };
 
 // A piece of a file.
 typedef struct cau_chunk {
-	uint32_t transfer; // as upload.begin, session.export or session.log answered
-	uint64_t offset;   // of the first byte in the file
+	uint32_t transfer; // id of the transfer from upload.begin, session.export or session.log
+	uint64_t offset;   // position of the first byte in the file
 	const void *data;  // borrowed from the message
-	size_t byte_count; // of `data`
+	size_t byte_count; // size of `data`
 } cau_chunk;
 
-// Errors: CAU_CORRUPT (no chunk), CAU_LIMIT (empty or more than CAU_CHUNK_BYTES_MAX).
+// Reads a chunk. Errors: CAU_CORRUPT (no chunk), CAU_LIMIT (empty or more than
+// CAU_CHUNK_BYTES_MAX).
 cau_status cau_chunk_read(const void *bytes, size_t byte_count, cau_chunk *chunk, cau_error *error);
 
-// Writes the header that goes before the data.
+// Writes the header that precedes the data.
 void cau_chunk_header_write(uint8_t header[CAU_CHUNK_HEADER_BYTES], const cau_chunk *chunk);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The labels of a fleet's daemons, as the proxy in front of them answers at /api/fleet:
+// The labels of a fleet's daemons. The proxy in front of them answers /api/fleet with them:
 // {"labels": ["d1", "d2"]}.
 //
 //     #include "cautery/fleet_json.h"
@@ -26,19 +26,19 @@ extern "C" {
 #endif
 
 enum {
-	CAU_FLEET_LABELS_MAX = 1024,        // daemons of a fleet
-	CAU_FLEET_JSON_MAX_BYTES = 1 << 16, // of the answer
+	CAU_FLEET_LABELS_MAX = 1024,        // largest number of daemons in a fleet
+	CAU_FLEET_JSON_MAX_BYTES = 1 << 16, // largest size of the answer
 };
 
 // The labels behind an address.
 typedef struct cau_fleet {
-	int32_t count;                                     // 0: no fleet, one daemon alone
-	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES]; // (count)
+	int32_t count;                                     // 0 means no fleet: a single daemon
+	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES]; // `count` labels
 } cau_fleet;
 
-// Reads the answer: labels, each a name without "-", none twice; a daemon alone has none. Members
-// that it does not know are skipped. On an error *fleet has no labels. Errors: CAU_BAD_SYNTAX,
-// CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the path of the member.
+// Reads the answer. Each label is a name without "-", and no label occurs twice. The answer of a
+// single daemon has no labels. Unknown members are skipped. After an error *fleet has no labels.
+// Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the path of the member.
 cau_status cau_fleet_from_json(const char *text, size_t bytes, cau_fleet *fleet, cau_error *error);
 
 #ifdef __cplusplus

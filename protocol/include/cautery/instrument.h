@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Profiles of instruments: shape, sizes and blade of an instrument, and the settings of its
-// generator in each mode. They are the files of deploy/instruments, which the library contains. A
-// tool of a scene, tool.add and tool.configure may name an instrument and a mode. Readers put the
-// numbers in their place, so that sessions, logs and snapshots hold numbers alone.
+// Profiles of instruments. A profile has the shape, sizes and blade of an instrument, and the
+// settings of its generator in each mode. The library contains the profiles of deploy/instruments.
+// A tool of a scene, tool.add and tool.configure may name an instrument and a mode. Readers replace
+// the name by the profile's numbers, so sessions, logs and snapshots contain only numbers.
 //
 //     #include "cautery/defaults.h"
 //     #include "cautery/instrument.h"
@@ -24,43 +24,45 @@
 extern "C" {
 #endif
 
-enum { CAU_MAX_MODES = 8 }; // of an instrument
+enum { CAU_MAX_MODES = 8 }; // modes of one instrument
 
 // A mode of an instrument.
 typedef struct cau_instrument_mode {
-	char name[CAU_NAME_BYTES];        // of the mode: cut, blend, level-3
-	char description[CAU_TEXT_BYTES]; // in words
-	double power_least_w;             // the range of power_w in this mode
-	double power_most_w;              // its upper end
-	cau_tool_def tool; // the instrument with the mode's settings; no name, the default pose
+	char name[CAU_NAME_BYTES];        // such as cut, blend or level-3
+	char description[CAU_TEXT_BYTES]; // description for people
+	double power_least_w;             // lower end of the range of power_w in this mode
+	double power_most_w;              // upper end of the range of power_w
+	// the instrument with the mode's settings, without a name, in the default pose
+	cau_tool_def tool;
 } cau_instrument_mode;
 
 // An instrument with all its modes.
 typedef struct cau_instrument {
-	char name[CAU_NAME_BYTES];                // of the instrument
-	char description[CAU_TEXT_BYTES];         // in words
-	int32_t mode_count;                       // at least 1
-	cau_instrument_mode modes[CAU_MAX_MODES]; // (mode_count); the first is the default
+	char name[CAU_NAME_BYTES];                // name of the instrument
+	char description[CAU_TEXT_BYTES];         // description for people
+	int32_t mode_count;                       // number of modes, at least 1
+	cau_instrument_mode modes[CAU_MAX_MODES]; // `mode_count` modes; mode 0 is the default
 } cau_instrument;
 
-// How many instruments there are.
+// Returns the number of instruments.
 int32_t cau_instrument_count(void);
-// The name of one, 0 to cau_instrument_count() - 1, in the order of the alphabet.
+// Returns the name of instrument `index`, 0 to cau_instrument_count() - 1, in alphabetical order.
 const char *cau_instrument_name(int32_t index);
-// Reads one, 0 to cau_instrument_count() - 1. Errors: those of a file that is no profile, which the
-// library's own files are not; CAU_NO_MEMORY.
+// Reads instrument `index`, 0 to cau_instrument_count() - 1. Errors: CAU_NO_MEMORY. The errors of
+// an invalid profile do not occur with the library's own files.
 cau_status cau_instrument_read(int32_t index, cau_instrument *instrument, cau_error *error);
 
-// Reads a profile's text. `name` is the file's name without its ending, which the profile must
-// have. Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY; CAU_BAD_VALUE with the path of the
-// member, also where a number has no source.
+// Reads a profile's text. `name` is the file's name without its ending, and must be the profile's
+// name. Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY; CAU_BAD_VALUE with the path of the
+// member, also if a number has no source.
 cau_status cau_instrument_from_json(const char *name, const char *text, size_t bytes,
                                     cau_instrument *instrument, cau_error *error);
 
-// Gives *tool the shape, sizes and settings of an instrument in a mode; its name and pose stay.
-// `mode` may be NULL or empty: the first. `power_w` is in the mode's range, or below 0: the mode's
-// own power. Errors: CAU_BAD_VALUE, with path instrument or mode and all known names, or with path
-// power_w; CAU_NO_MEMORY. After an error *tool is as before.
+// Gives *tool the shape, sizes and settings of an instrument in a mode. The tool's name and pose
+// stay. If `mode` is NULL or empty, the first mode is used. If `power_w` is negative, the mode's
+// own power is used; otherwise it must be in the mode's range. Errors: CAU_BAD_VALUE, with path
+// instrument or mode and all known names, or with path power_w; CAU_NO_MEMORY. After an error *tool
+// is unchanged.
 cau_status cau_instrument_take(const char *instrument, const char *mode, double power_w,
                                cau_tool_def *tool, cau_error *error);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strict RFC 8259: what passes this scan means the same to every JSON reader.
+// Checks JSON texts strictly by RFC 8259. An accepted text means the same to every JSON reader.
 //
 //     #include <stdbool.h>
 //
@@ -22,19 +22,19 @@ extern "C" {
 #endif
 
 enum {
-	CAU_JSON_MAX_DEPTH = 64,        // arrays and objects inside each other
-	CAU_JSON_MAX_MEMBERS = 256,     // of one object
-	CAU_JSON_MAX_OPEN_KEYS = 1024,  // of all objects open at one place
-	CAU_JSON_MAX_KEY_BYTES = 64,    // between the quotes
-	CAU_JSON_MAX_NUMBER_BYTES = 63, // cJSON reads no more
+	CAU_JSON_MAX_DEPTH = 64,        // nested arrays and objects
+	CAU_JSON_MAX_MEMBERS = 256,     // members of one object
+	CAU_JSON_MAX_OPEN_KEYS = 1024,  // members of all objects that are open at one position
+	CAU_JSON_MAX_KEY_BYTES = 64,    // bytes between the quotes
+	CAU_JSON_MAX_NUMBER_BYTES = 63, // bytes; cJSON reads no more
 };
 
-// Accepts exactly one JSON value with white space around it, of at most `bytes_max` bytes, in valid
-// UTF-8. Beyond the grammar it refuses what readers disagree on: repeated keys (compared after
+// Accepts exactly one JSON value of at most `bytes_max` bytes, in valid UTF-8, with optional white
+// space around it. It also refuses texts on which readers disagree: repeated keys (compared after
 // their escapes are resolved), \u0000 and lone surrogates in strings, numbers that overflow a
-// double, integers beyond 2^53, and what passes the limits above. Allocates nothing. Errors:
-// CAU_BAD_SYNTAX, CAU_LIMIT; the reason starts "line 3, column 7 (byte 42): ", lines and columns
-// counted from 1 (columns in bytes), bytes from 0.
+// double, integers beyond 2^53, and texts beyond the limits above. Allocates nothing. Errors:
+// CAU_BAD_SYNTAX, CAU_LIMIT; the reason starts "line 3, column 7 (byte 42): ". Lines and columns
+// are counted from 1 (columns in bytes), bytes from 0.
 cau_status cau_json_scan(const char *text, size_t bytes, size_t bytes_max, cau_error *error);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words that messages choose from. Each table is X(code, wire name); tables of scenes, channels and
-// reasons for energy off stand with their types.
+// Words that messages choose from. Each table is X(code, wire name). The words of scenes, channels
+// and reasons for energy off are defined with their types.
 //
 //     #include "cautery/message_choices.h"
 //
@@ -12,7 +12,7 @@
 //         return words[role];
 //     }
 //
-//     // Each may do what those before it may.
+//     // Each role includes the roles before it.
 //     static bool may_operate(cau_role role)
 //     {
 //         return role >= CAU_ROLE_OPERATE;
@@ -24,7 +24,7 @@
 #include "cautery/status.h"
 #include "cautery/stream.h"
 
-#define CAU_ROLE_TABLE(X) /* each may do what those before it may */                               \
+#define CAU_ROLE_TABLE(X) /* each role includes the roles before it */                             \
 	X(VIEW, "view")                                                                                \
 	X(OPERATE, "operate")                                                                          \
 	X(ADMIN, "admin")
@@ -35,7 +35,7 @@
 	X(PAUSED, "paused")                                                                            \
 	X(FAULTED, "faulted")
 
-#define CAU_CHANGE_TABLE(X) /* why session.changed was sent */                                     \
+#define CAU_CHANGE_TABLE(X) /* the reason for session.changed */                                   \
 	X(CREATED, "created")                                                                          \
 	X(DESTROYED, "destroyed")                                                                      \
 	X(PAUSED, "paused")                                                                            \
@@ -54,11 +54,11 @@
 	X(CREATED, "created")                                                                          \
 	X(CUT, "cut")                                                                                  \
 	X(TEAR, "tear")                                                                                \
-	X(INVERTED, "inverted")       /* tetrahedra of a layer that stay inside out */                 \
+	X(INVERTED, "inverted")       /* tetrahedra of a layer stay inverted */                        \
 	X(ENERGY_GAIN, "energy_gain") /* steps added energy without a source */                        \
 	X(BLEEDING, "bleeding")       /* blood begins to leave a vessel */                             \
 	X(BLEEDING_STOPPED, "bleeding_stopped")                                                        \
-	X(SEALED, "sealed") /* a seal of a vessel withstands its pressure */                           \
+	X(SEALED, "sealed") /* a seal withstands the vessel's pressure */                              \
 	X(ENERGY_ON, "energy_on")                                                                      \
 	X(ENERGY_OFF, "energy_off")                                                                    \
 	X(WATCHDOG, "watchdog")                                                                        \
@@ -73,7 +73,7 @@
 	X(RESTORE, "restore")
 
 #define CAU_EXPORT_TABLE(X)                                                                        \
-	X(VTU, "vtu") /* tetrahedra and triangles that are left, with fields, for ParaView */          \
+	X(VTU, "vtu") /* remaining tetrahedra and triangles with fields, for ParaView */               \
 	X(OBJ, "obj") /* drawn faces */
 
 #define CAU_LOOK_STAGE_TABLE(X)                                                                    \
@@ -82,7 +82,7 @@
 	X(RESTORING, "restoring")                                                                      \
 	X(REPLAYING, "replaying")
 
-// Commands of session.advance: those of a tool's driver.
+// Commands that session.advance may contain: the commands of a tool's driver.
 #define CAU_ADVANCE_METHOD_TABLE(X)                                                                \
 	X(TOOL_MOVE, "tool.move")                                                                      \
 	X(TOOL_ENERGIZE, "tool.energize")                                                              \
@@ -99,7 +99,7 @@
 #define CAU_CHANNEL_WORD(X, code, name, ...) X(code, #name)
 #define CAU_CHANNEL_TABLE(X) CAU_CHANNEL_ROWS(CAU_CHANNEL_WORD, CAU_CHANNEL_WORD, X)
 
-// Every choice that a message can name. CHOICE_TABLE(id, table)
+// All choices that a message can have. CHOICE_TABLE(id, table)
 #define CAU_CHOICE_LIST(CHOICE_TABLE)                                                              \
 	CHOICE_TABLE(role, CAU_ROLE_TABLE)                                                             \
 	CHOICE_TABLE(session_state, CAU_SESSION_STATE_TABLE)                                           \
@@ -114,21 +114,21 @@
 	CHOICE_TABLE(layer_kind, CAU_LAYER_TABLE)
 
 #define X(code, name) CAU_ROLE_##code,
-// What a client may do; each may do what those before it may.
+// What a client may do. Each role includes the roles before it.
 typedef enum cau_role { CAU_ROLE_TABLE(X) CAU_ROLE_COUNT } cau_role;
 #undef X
 #define X(code, name) CAU_SESSION_##code,
-// What a session does.
+// The state of a session.
 typedef enum cau_session_state {
 	CAU_SESSION_STATE_TABLE(X) CAU_SESSION_STATE_COUNT
 } cau_session_state;
 #undef X
 #define X(code, name) CAU_CHANGE_##code,
-// Why session.changed was sent.
+// The reason for session.changed.
 typedef enum cau_change { CAU_CHANGE_TABLE(X) CAU_CHANGE_COUNT } cau_change;
 #undef X
 #define X(code, name) CAU_EVENT_##code,
-// What an event of the timeline is.
+// The kind of an event in the timeline.
 typedef enum cau_event_kind { CAU_EVENT_TABLE(X) CAU_EVENT_COUNT } cau_event_kind;
 #undef X
 #define X(code, name) CAU_EXPORT_##code,
@@ -136,18 +136,16 @@ typedef enum cau_event_kind { CAU_EVENT_TABLE(X) CAU_EVENT_COUNT } cau_event_kin
 typedef enum cau_export_format { CAU_EXPORT_TABLE(X) CAU_EXPORT_COUNT } cau_export_format;
 #undef X
 #define X(code, name) CAU_LOOK_##code,
-// How far a past view is.
+// The progress of a past view.
 typedef enum cau_look_stage { CAU_LOOK_STAGE_TABLE(X) CAU_LOOK_STAGE_COUNT } cau_look_stage;
 #undef X
 #define X(code, name) CAU_ADVANCE_##code,
-// What a command of session.advance does: the method of that name.
+// The method that a command of session.advance calls.
 typedef enum cau_advance_method {
 	CAU_ADVANCE_METHOD_TABLE(X) CAU_ADVANCE_METHOD_COUNT
 } cau_advance_method;
 #undef X
 #define X(code, name) CAU_CAPABILITY_##code,
-// What a server can do; bit numbers of hello_result.capabilities.
-typedef enum cau_capability {
-	CAU_CAPABILITY_TABLE(X) CAU_CAPABILITY_COUNT
-} cau_capability; // bit numbers of hello_result.capabilities
+// A feature of the server. The value is a bit number in hello_result.capabilities.
+typedef enum cau_capability { CAU_CAPABILITY_TABLE(X) CAU_CAPABILITY_COUNT } cau_capability;
 #undef X

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages as C types, made from messages.def: object `hello` there is cau_wire_hello here. An
+// The messages as C types, generated from messages.def: object `hello` becomes cau_wire_hello. An
 // optional member f has a bool has_f before it. Text is UTF-8 with a closing zero.
 //
 //     #include "cautery/messages.h"
 //
-//     // The least role that may call a method; an admin's for what there is not.
+//     // Returns the lowest role that may call a method, or CAU_ROLE_ADMIN for an unknown method.
 //     static cau_role needed_role(const char *method)
 //     {
 //         int32_t found = cau_method_find(method);
@@ -23,14 +23,14 @@
 extern "C" {
 #endif
 
-// Objects of one kind; or numbers: double of NUMBERS, int64_t of INTEGERS. Writers take `count` of
-// them. Readers fill `items`, which the caller gives with its `capacity`, and set `count`; more
-// than that are CAU_LIMIT. An item is zeroed before, but for the items and capacity of its own
-// lists.
+// A list of objects of one kind, of doubles (NUMBERS) or of int64_t (INTEGERS). Writers write
+// `count` items. For a reader, the caller provides `items` with `capacity`; the reader fills them
+// and sets `count`. More items than `capacity` are the error CAU_LIMIT. The reader zeroes an item
+// before filling it, except the `items` and `capacity` of the item's own lists.
 typedef struct cau_wire_list {
-	void *items;      // of the type cau_wire_* that messages.def names
-	int32_t count;    // of the items
-	int32_t capacity; // of `items`; for readers
+	void *items;      // array of the type cau_wire_* that messages.def names
+	int32_t count;    // number of items
+	int32_t capacity; // capacity of `items`; only for readers
 } cau_wire_list;
 
 #define CAU_NEED_R(field)
@@ -51,20 +51,20 @@ typedef struct cau_wire_list {
 #define HEX64(o, field, need, meaning) CAU_NEED_##need(field) uint64_t field;
 #define CHOICE(o, field, need, choice, meaning) CAU_NEED_##need(field) int32_t field;
 #define CHOICES(o, field, need, choice, meaning)                                                   \
-	CAU_NEED_##need(field) uint32_t field; // bit per word
+	CAU_NEED_##need(field) uint32_t field; // one bit per word
 #define PART(o, field, need, object, meaning) CAU_NEED_##need(field) cau_wire_##object field;
 #define LIST(o, field, need, object, count_max, meaning) CAU_NEED_##need(field) cau_wire_list field;
 #define NUMBERS(o, field, need, count_max, least, most, unit, meaning)                             \
 	CAU_NEED_##need(field) cau_wire_list field;
 #define INTEGERS(o, field, need, count_max, least, most, unit, meaning)                            \
 	CAU_NEED_##need(field) cau_wire_list field;
-// Borrowed. Readers fill what it points to, or skip the member if it is NULL.
+// Borrowed. Readers fill the scene, or skip the member if it is NULL.
 #define SCENE(o, field, need, meaning) CAU_NEED_##need(field) cau_scene_def *field;
 #include "cautery/messages.def"
 #undef CAU_NEED_R
 #undef CAU_NEED_O
 
-// Which object of messages.def.
+// The objects of messages.def.
 typedef enum cau_wire_object {
 #define OBJECT(o, meaning) CAU_WIRE_##o,
 #define OBJECT_END(o)
@@ -86,7 +86,7 @@ typedef enum cau_wire_object {
 	CAU_WIRE_OBJECT_COUNT
 } cau_wire_object;
 
-// Which method of methods.def.
+// The methods of methods.def.
 typedef enum cau_method {
 #define REQUEST(code, ...) CAU_METHOD_##code,
 #define EITHER_WAY(code, ...) CAU_METHOD_##code,
@@ -97,36 +97,37 @@ typedef enum cau_method {
 	CAU_METHOD_COUNT
 } cau_method;
 
-// What the method table says.
+// Who sends a method, and whether it is answered.
 typedef enum cau_method_form {
-	CAU_FORM_REQUEST,    // has an id and is answered
-	CAU_FORM_EITHER_WAY, // answered if it has an id
+	CAU_FORM_REQUEST,    // from the client, with an id, always answered
+	CAU_FORM_EITHER_WAY, // from the client, answered if it has an id
 	CAU_FORM_NOTICE,     // from the client, never answered
-	CAU_FORM_PUSH,       // from the server
+	CAU_FORM_PUSH,       // from the server, never answered
 } cau_method_form;
 
-// Whether a request counts as expensive.
+// Whether a request counts against the quotas of expensive requests.
 typedef enum cau_method_cost {
 	CAU_COST_CHEAP,  // not counted by quotas
-	CAU_COST_COSTLY, // counted by the quotas of expensive requests
-	CAU_COST_FILE,   // counted by these quotas, too; a file follows the answer
+	CAU_COST_COSTLY, // counted
+	CAU_COST_FILE,   // counted, and a file follows the answer
 } cau_method_cost;
 
-// One method, as its entry in methods.def describes it.
+// The description of a method in methods.def.
 typedef struct cau_method_info {
-	const char *name;       // on the wire: "session.step"
+	const char *name;       // name in messages, such as "session.step"
 	cau_method_form form;   // who sends it, and whether it is answered
-	cau_wire_object params; // CAU_WIRE_nothing of commands: see cautery/command_json.h
-	cau_wire_object result; // CAU_WIRE_nothing where there is none; commands: command_result
-	cau_role role;          // the least that may call it
-	bool changes;           // stored; client_sequence applies
+	cau_wire_object params; // CAU_WIRE_nothing for commands: see cautery/command_json.h
+	cau_wire_object result; // CAU_WIRE_nothing if there is no result; command_result for commands
+	cau_role role;          // lowest role that may call it
+	bool changes;           // its effect is stored, and client_sequence applies
 	cau_method_cost cost;   // whether quotas count it
-	int32_t command;        // CAU_COMMAND_*, to be read with cau_rpc_command; or -1
-	const char *meaning;    // in words
+	int32_t command;        // CAU_COMMAND_* for cau_rpc_command, or -1
+	const char *meaning;    // description for people
 } cau_method_info;
 
-const cau_method_info *cau_method_describe(cau_method method); // NULL beyond the table
-int32_t cau_method_find(const char *name);                     // CAU_METHOD_*, or -1
+const cau_method_info *cau_method_describe(cau_method method); // NULL for an unknown method
+// CAU_METHOD_*, or -1 if there is no such method
+int32_t cau_method_find(const char *name);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the known word that is nearest to a misspelt one: members of an object, options, commands.
+// Finds the known word that is nearest to a misspelt member, option or command.
 //
 //     #include <stdio.h>
 //

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's command line as one table. Reading, --help and complaints use the same entries.
+// Describes a program's command line in one table. Reading, --help and error messages all use it.
 //
 //     #include <stddef.h>
 //
@@ -37,48 +37,51 @@
 extern "C" {
 #endif
 
-// What an option's value is, and with it the type of the member that it is read into.
+// The kind of an option's value, which also gives the type of its member.
 typedef enum cau_option_kind {
-	CAU_OPTION_FLAG,   // bool: true where it is named; takes no value
-	CAU_OPTION_HELP,   // bool: as FLAG; other arguments are then ignored. -h is the first one
+	CAU_OPTION_FLAG, // bool, true if the option is given; takes no value
+	// bool, like FLAG; other arguments are then ignored. -h means the first such option
+	CAU_OPTION_HELP,
 	CAU_OPTION_TEXT,   // const char *, which points into the arguments
 	CAU_OPTION_NUMBER, // double, from `least` to `most`
 	CAU_OPTION_WHOLE,  // int32_t, from `least` to `most`
 	CAU_OPTION_LONG,   // int64_t, from `least` to `most`, at most 2^53
-	CAU_OPTION_CHOICE, // int: which of `choices`
+	CAU_OPTION_CHOICE, // int, index in `choices`
 	CAU_OPTION_POINT,  // double[3], written X,Y,Z
 } cau_option_kind;
 
 // One option of a program.
 typedef struct cau_option {
-	const char *name;           // without its dashes
-	const char *argument;       // what --help calls its value; NULL where it takes none
-	cau_option_kind kind;       // what its value is
-	size_t member;              // offset of what it is read into
-	double least, most;         // of a number; both included
-	const char *const *choices; // of a choice; ends with NULL
-	const char *meaning;        // in --help; may have several lines
+	const char *name;           // without the dashes
+	const char *argument;       // name of the value in --help; NULL if the option takes no value
+	cau_option_kind kind;       // kind of the value
+	size_t member;              // offset of the member that gets the value
+	double least, most;         // inclusive range of a number
+	const char *const *choices; // words of a choice; NULL marks the end
+	const char *meaning;        // description in --help; may have several lines
 } cau_option;
 
-// All of a program's command line. Everything is borrowed.
+// A program's whole command line. All pointers are borrowed.
 typedef struct cau_command_line {
-	const char *program; // as it calls itself in complaints
-	const char *words; // what follows the options, as --help and a complaint say it; NULL: nothing
-	int word_count;    // as many as that are
-	const char *summary; // what the program does: whole lines
-	const char *closing; // after the options in --help, such as exit codes: whole lines; NULL: none
-	const cau_option *rows; // (row_count)
-	int row_count;          // options of the program
+	const char *program; // the program's name in messages
+	// the words after the options, for --help and messages; NULL if there are none
+	const char *words;
+	int word_count;         // number of these words
+	const char *summary;    // what the program does, in whole lines
+	const char *closing;    // lines after the options in --help, such as exit codes, or NULL
+	const cau_option *rows; // `row_count` options
+	int row_count;          // number of options
 } cau_command_line;
 
-// Reads arguments[1] and on. Options are `--name value` or `--name=value`, before, between or after
-// the words; after `--` all are words. `into` holds the defaults and is written where an option is
-// named; `words` takes word_count words. False after a line on `complaints` that says what is wrong
-// and what would be right; `into` is in part written then.
+// Reads the arguments from arguments[1]. Options are `--name value` or `--name=value`, before,
+// between or after the words. After `--` all arguments are words. `into` must hold the defaults;
+// options that are given overwrite them. `words` gets word_count words. On a mistake it prints on
+// `complaints` what is wrong and what is allowed, and returns false; `into` may then be partly
+// written.
 bool cau_options_read(const cau_command_line *line, int argument_count, char **arguments,
                       void *into, const char **words, FILE *complaints);
 
-// Writes what --help prints.
+// Prints the text of --help.
 void cau_options_help(const cau_command_line *line, FILE *out);
 
 #ifdef __cplusplus

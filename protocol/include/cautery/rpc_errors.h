@@ -3,7 +3,7 @@
 //
 //     #include "cautery/rpc_errors.h"
 //
-//     // As an answer's members code, message and data.status have it.
+//     // Prints an error like an answer's members code, message and data.status.
 //     static void tell(FILE *out, cau_status status)
 //     {
 //         int code = cau_rpc_error_of_status(status);
@@ -52,19 +52,19 @@ extern "C" {
 	  "this client_sequence belongs to another method")                                            \
 	X(-32051, MOVED, "moved", "another daemon has the session now")
 
-// The code of an error: CAU_RPC_ERROR_TABLE.
+// The code of an error, from CAU_RPC_ERROR_TABLE.
 typedef enum cau_rpc_error_code {
 #define X(number, code, word, sentence) CAU_RPC_##code = (number),
 	CAU_RPC_ERROR_TABLE(X)
 #undef X
 } cau_rpc_error_code;
 
-// The code for a status: one of the same word, else CAU_RPC_INTERNAL.
+// Returns the code with the same word as the status, or CAU_RPC_INTERNAL if there is none.
 cau_rpc_error_code cau_rpc_error_of_status(cau_status status);
 const char *cau_rpc_error_word(int code);     // "internal" for unknown codes
-const char *cau_rpc_error_sentence(int code); // that of "internal" for unknown codes
+const char *cau_rpc_error_sentence(int code); // the sentence of "internal" for unknown codes
 
-// number, code, reason sent
+// number, code, reason in the close frame
 #define CAU_CLOSE_TABLE(X)                                                                         \
 	X(1000, DONE, "done")                                                                          \
 	X(1001, DRAINING, "the server is shutting down")                                               \
@@ -83,14 +83,14 @@ const char *cau_rpc_error_sentence(int code); // that of "internal" for unknown 
 	X(4007, RESUMED, "another connection took over this one")                                      \
 	X(4008, GARBAGE, "the client sent too many malformed messages")
 
-// The code with which a connection is closed: CAU_CLOSE_TABLE.
+// The code with which a connection is closed, from CAU_CLOSE_TABLE.
 typedef enum cau_close_code {
 #define X(number, code, reason) CAU_CLOSE_##code = (number),
 	CAU_CLOSE_TABLE(X)
 #undef X
 } cau_close_code;
 
-// The reason that is sent with a code.
+// Returns the reason that is sent with a close code.
 const char *cau_close_reason(cau_close_code code);
 
 #ifdef __cplusplus

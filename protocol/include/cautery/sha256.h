@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256, which checks files sent in chunks and distinguishes identities.
+// SHA-256. It checks files that are sent in chunks, and distinguishes identities.
 //
 //     #include <string.h>
 //
@@ -19,9 +19,10 @@
 extern "C" {
 #endif
 
-enum { CAU_SHA256_TEXT_BYTES = 65 }; // of the hash as text, with its zero
+enum { CAU_SHA256_TEXT_BYTES = 65 }; // size of the hash as text, with its zero
 
-// 64 lower-case hex digits and a zero (FIPS 180-4). False if memory ran out.
+// Writes the hash as 64 lower-case hex digits and a zero (FIPS 180-4). Returns false if memory ran
+// out.
 bool cau_sha256(const void *bytes, size_t byte_count, char text[CAU_SHA256_TEXT_BYTES]);
 
 #ifdef __cplusplus

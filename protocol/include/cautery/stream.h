@@ -4,7 +4,7 @@
 //
 //     #include "cautery/stream.h"
 //
-//     // A stream of positions alone, to a hundredth of a millimetre.
+//     // Defines a stream with only positions, to a hundredth of a millimetre.
 //     static cau_status define(int32_t vertices, int32_t faces, cau_stream_def *def,
 //                              cau_error *error)
 //     {
@@ -32,152 +32,161 @@ extern "C" {
 #endif
 
 enum {
-	CAU_STREAM_PROFILES_MAX = 4,       // of a session
-	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // vertices, and faces
-	CAU_STREAM_STAGES = 8,             // of a step, see CAU_STAGE_TABLE in the README
+	CAU_STREAM_PROFILES_MAX = 4,       // profiles of one session
+	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // largest number of vertices or faces
+	CAU_STREAM_STAGES = 8,             // stages of a step, see CAU_STAGE_TABLE in the README
 };
 
-// Flags in a frame's header
+// Flags in a frame's header.
 enum {
 	CAU_FRAME_PAUSED = 1 << 0,  // the session is paused
 	CAU_FRAME_FAULTED = 1 << 1, // the session is faulted
 };
 
-// What encoder and decoder must agree on; sent as stream_description by session.join.
+// The parameters that encoder and decoder must share. session.join sends them as
+// stream_description.
 typedef struct cau_stream_def {
 	uint32_t session;      // the session's number on its daemon
-	uint16_t profile;      // of the session, 0 to CAU_STREAM_PROFILES_MAX - 1
+	uint16_t profile;      // profile number in the session, 0 to CAU_STREAM_PROFILES_MAX - 1
 	uint32_t channels;     // CAU_CHANNEL_* bits
 	int32_t vertex_count;  // 1 to CAU_STREAM_ELEMENTS_MAX
 	int32_t face_count;    // 0 to CAU_STREAM_ELEMENTS_MAX
 	double origin_m[3];    // position = origin_m + step_m * quantised
 	double step_m;         // 1e-7 to 1e-2
 	double stress_step_pa; // 1e-3 to 1e9; stress saturates at 65535 steps
-	bool plain;            // the encoder never uses meshoptimizer's codec; decoders do not look
+	// the encoder never uses meshoptimizer's codec; decoders ignore this member
+	bool plain;
 } cau_stream_def;
 
-// CAU_CHANNELS_BY_DEFAULT, 0.05 mm, 10 Pa, origin 0; counts and numbers zero.
+// Returns a definition with CAU_CHANNELS_BY_DEFAULT, steps of 0.05 mm and 10 Pa, and origin 0.
+// Counts and numbers are zero.
 cau_stream_def cau_default_stream_def(void);
 // Checks every range. Errors: CAU_BAD_VALUE with the path of the member.
 cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error);
 
-// One channel, as its entry in cautery/channels.h describes it.
+// The description of a channel in cautery/channels.h.
 typedef struct cau_channel_info {
-	const char *name;   // on the wire
-	int section;        // its type in frames
-	bool by_default;    // in a stream that names no channels
-	int scalar;         // CAU_SCALAR_*, or -1: it has a layout of its own and none of the following
-	double least, step; // in `unit`: n on the wire is least + step n; step 0: the stream states it
-	uint32_t most;      // the largest n
-	const char *unit, *meaning; // for people
+	const char *name; // name in messages
+	int section;      // section number in frames
+	bool by_default;  // included if a client names no channels
+	// CAU_SCALAR_*, or -1 for a channel with its own layout, without the members below
+	int scalar;
+	// in `unit`: a transmitted n means least + step * n; if step is 0, the stream definition has it
+	double least, step;
+	uint32_t most;              // the largest n
+	const char *unit, *meaning; // unit and description for people
 } cau_channel_info;
 
-// The entry of a channel, for as long as the program runs.
+// Returns the description of a channel; it is static.
 const cau_channel_info *cau_channel_describe(cau_channel_index channel);
-// The step of a scalar in a stream of this definition, in the channel's unit.
+// Returns the step of a scalar channel in a stream of this definition, in the channel's unit.
 double cau_channel_step(const cau_stream_def *def, cau_channel_index channel);
 
 // One tool as a frame shows it.
 typedef struct cau_stream_tool {
-	char name[CAU_NAME_BYTES]; // of the tool
+	char name[CAU_NAME_BYTES]; // name of the tool
 	int32_t shape;             // CAU_TOOL_*
-	cau_pose pose;             // single precision on the wire, like all that follows
+	cau_pose pose;             // single precision in frames, as are all numbers below
 	bool behind;               // tissue keeps the tool from its commanded pose
-	cau_pose asked_pose;       // commanded pose; a decoder fills it also where `behind` is false
+	cau_pose asked_pose;       // commanded pose; a decoder also sets it if `behind` is false
 	double jaw;                // actual opening, 0 closed to 1 open
 	double asked_jaw;          // commanded opening
-	double jaw_force_n;        // with which the jaws press what they hold, at their tips
-	double force_n[3];         // of the tissue on the tool, filtered, force_max_n at most
+	double jaw_force_n;        // pressing force at the tips of the jaws
+	double force_n[3];         // force of the tissue on the tool, filtered, force_max_n at most
 	double torque_nm[3];       // about the tip, filtered, force_max_n * tip_length_m at most
-	bool has_raw_force;        // false from senders that do not send the next three; these are 0
+	// false if the sender does not send the next three members, which are 0 then
+	bool has_raw_force;
 	double raw_force_n[3];     // force of the frame's tick, without filter and bound
 	double raw_torque_nm[3];   // torque of the frame's tick, without filter and bound
-	double force_filter_s;     // time constant of the filter; 0: no filter
-	double tip_temperature_c;  // of the hot part
-	double energy_j;           // heat taken up by tissue, rough
-	double delivered_w;        // into tissue in the last step, with energy `tissue`
-	double load_ohm;           // that its generator finds; 0: no current flows
-	uint64_t sequence;         // of the last applied command
-	uint32_t driver;           // the driving client's number; 0: no driver
+	double force_filter_s;     // time constant of the filter, or 0 without a filter
+	double tip_temperature_c;  // temperature of the hot part
+	double energy_j;           // estimate of the heat that tissue took up
+	double delivered_w;        // power delivered to tissue in the last step, with energy `tissue`
+	double load_ohm;           // load of the tool's generator, or 0 without current
+	uint64_t sequence;         // sequence of the last applied command
+	uint32_t driver;           // the driving client's number, or 0 without a driver
 	bool energized;            // energy is on
 	bool grasping;             // jaws commanded closed on tissue
-	bool slipping;             // some of what its jaws hold slid in the last step
-	bool frozen;               // its watchdog fired: it does not move until a new command
+	bool slipping;             // some of the grasped tissue slid in the last step
+	bool frozen;               // the watchdog fired: the tool stays at its pose until a new command
 	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
-	uint16_t grasped_vertices; // saturates
-	uint16_t contact_vertices; // saturates
-	uint16_t touched_layers;   // bit per layer
+	uint16_t grasped_vertices; // saturates at the largest number
+	uint16_t contact_vertices; // saturates at the largest number
+	uint16_t touched_layers;   // one bit per layer
 } cau_stream_tool;
 
-// Scalars about the last step; see cau_statistics of the core for their meaning.
+// Scalars about the last step. cau_statistics of the core explains them.
 typedef struct cau_stream_statistics {
-	float realtime_factor;            // simulated over wall time, last second
+	float realtime_factor;            // simulated time over wall time in the last second
 	float step_cost_s;                // wall time of the last step
 	float stage_s[CAU_STREAM_STAGES]; // wall time of each stage of the last step
-	float residual;                   // relative
-	float deferred_max_s;             // longest wait for a downdate, simulated
-	uint32_t iterations;              // of the last step
-	uint32_t backtracks;              // increments that were refused
+	float residual;                   // relative residual
+	float deferred_max_s;             // longest wait for a downdate, in simulated time
+	uint32_t iterations;              // iterations of the last step
+	uint32_t backtracks;              // refused increments
 	uint32_t inverted;                // tetrahedra with negative volume
-	uint32_t edges_parted;            // since creation
-	uint32_t elements_removed;        // since creation
-	uint32_t pending_downdates;       // removed elements that the factor holds
-	uint32_t refactorisations;        // since creation
+	uint32_t edges_parted;            // total since creation
+	uint32_t elements_removed;        // total since creation
+	uint32_t pending_downdates;       // removed elements that are still in the factor
+	uint32_t refactorisations;        // total since creation
 	uint32_t contacts;                // contact constraints of the last step
-	uint32_t frozen_vertices;         // that do not move any more
-	uint32_t refused_commands;        // since creation
-	float energy_gain_j;              // 0 where the sender does not send it
-	uint32_t resting;            // 1: the tissue is at rest; 0 where the sender does not send it
-	float error;                 // of the last step, estimated; 0 where the sender does not send it
-	uint32_t contacts_left_out;  // 0 where the sender does not send it
-	uint32_t elements_torn;      // 0 where the sender does not send it
-	uint32_t touching_cut_short; // 0 where the sender does not send it
+	uint32_t frozen_vertices;         // vertices that do not move any more
+	uint32_t refused_commands;        // total since creation
+	float energy_gain_j;              // 0 if the sender does not send it
+	uint32_t resting; // 1 if the tissue is at rest; 0 if the sender does not send it
+	// estimated error of the last step; 0 if the sender does not send it
+	float error;
+	uint32_t contacts_left_out;  // 0 if the sender does not send it
+	uint32_t elements_torn;      // 0 if the sender does not send it
+	uint32_t touching_cut_short; // 0 if the sender does not send it
 } cau_stream_statistics;
 
-// The server's state at a tick. All pointers are borrowed for the call. Arrays of a channel that
-// the stream lacks may be NULL.
+// The server's state at a tick. All pointers are borrowed for the call. The array of a channel that
+// the stream does not have may be NULL.
 typedef struct cau_stream_sample {
-	uint64_t tick;                           // of the state
-	double time_s;                           // simulated
-	uint64_t published_us;                   // the server's monotonic clock
-	uint16_t flags;                          // CAU_FRAME_*
-	const double *position;                  // m, (vertex_count x 3)
-	const uint8_t *vertex_visible;           // (vertex_count), 1: on a drawn face; NULL: all are
-	const uint32_t *face_mask;               // ((face_count + 31) / 32), a set bit: not drawn
+	uint64_t tick;          // tick of the state
+	double time_s;          // simulated time
+	uint64_t published_us;  // time on the server's monotonic clock
+	uint16_t flags;         // CAU_FRAME_*
+	const double *position; // m, (vertex_count x 3)
+	// (vertex_count), 1 for a vertex of a drawn face; NULL if all are
+	const uint8_t *vertex_visible;
+	const uint32_t *face_mask;               // ((face_count + 31) / 32), a set bit means not drawn
 	CAU_SCALAR_MEMBERS(const float);         // (vertex_count) each, in the channel's unit
-	int32_t tool_count;                      // at most CAU_MAX_TOOLS
+	int32_t tool_count;                      // number of tools, at most CAU_MAX_TOOLS
 	const cau_stream_tool *tools;            // (tool_count)
-	const cau_stream_statistics *statistics; // of the last step
-	int32_t vessel_count;                    // at most CAU_MAX_VESSELS
+	const cau_stream_statistics *statistics; // statistics of the last step
+	int32_t vessel_count;                    // number of vessels, at most CAU_MAX_VESSELS
 	const cau_vessel_state *const *vessels;  // (vessel_count)
-	int32_t contact_count;                   // at most CAU_MAX_TOOLS
+	int32_t contact_count;                   // number of contacts, at most CAU_MAX_TOOLS
 	const cau_tool_contact *contacts;        // (contact_count)
 } cau_stream_sample;
 
 // The state of a decoder; borrowed, valid until the next decode. A face is drawn if its bit in
-// face_mask is clear. At the vertices of drawn faces, positions and scalars are those of `tick`. At
-// other vertices they are those of the last frame in which a drawn face used the vertex, or of the
-// epoch's first frame. In a stream without the mask they are of `tick` at every vertex.
+// face_mask is clear. At the vertices of drawn faces, positions and scalars are of `tick`. At other
+// vertices they are of the last frame in which a drawn face used the vertex, or of the epoch's
+// first frame. In a stream without the mask they are of `tick` at every vertex.
 typedef struct cau_stream_state {
-	bool synced;               // false: nothing to draw yet, or damaged: a key frame is needed
-	uint64_t epoch;            // of the last frame
-	uint64_t sequence;         // of the last frame
-	uint64_t tick;             // of the last frame
-	double time_s;             // simulated
-	uint64_t published_us;     // the server's monotonic clock
+	bool synced;               // if false, there is no valid state, and a key frame is needed
+	uint64_t epoch;            // epoch of the last frame
+	uint64_t sequence;         // sequence of the last frame
+	uint64_t tick;             // tick of the last frame
+	double time_s;             // simulated time
+	uint64_t published_us;     // time on the server's monotonic clock
 	uint16_t flags;            // CAU_FRAME_*
 	const int32_t *quantised;  // steps from the origin, (vertex_count x 3)
 	const uint32_t *face_mask; // ((face_count + 31) / 32)
-	CAU_SCALAR_MEMBERS(const uint32_t); // (vertex_count) each, steps from its least value
-	int32_t moved_count;                // vertices that the last frame carried
-	int32_t mask_changed_count;         // mask words that the last frame carried
-	int32_t tool_count;                 // at most CAU_MAX_TOOLS
-	const cau_stream_tool *tools;       // (tool_count)
-	cau_stream_statistics statistics;   // of the last frame that has them
-	int32_t vessel_count;               // at most CAU_MAX_VESSELS
-	const cau_vessel_state *vessels;    // (vessel_count), of the last frame that has them
-	int32_t contact_count;              // at most CAU_MAX_TOOLS
-	const cau_tool_contact *contacts;   // (contact_count), of the last frame that has them
+	// (vertex_count) each, in steps from the channel's least value
+	CAU_SCALAR_MEMBERS(const uint32_t);
+	int32_t moved_count;              // number of vertices in the last frame
+	int32_t mask_changed_count;       // number of mask words in the last frame
+	int32_t tool_count;               // number of tools, at most CAU_MAX_TOOLS
+	const cau_stream_tool *tools;     // (tool_count)
+	cau_stream_statistics statistics; // statistics from the last frame that has them
+	int32_t vessel_count;             // number of vessels, at most CAU_MAX_VESSELS
+	const cau_vessel_state *vessels;  // (vessel_count), from the last frame that has vessels
+	int32_t contact_count;            // number of contacts, at most CAU_MAX_TOOLS
+	const cau_tool_contact *contacts; // (contact_count), from the last frame that has contacts
 } cau_stream_state;
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing beyond U+10FFFF.
+// UTF-8 by RFC 3629: no overlong forms, no surrogates, nothing beyond U+10FFFF.
 //
 //     #include "cautery/utf8.h"
 //
@@ -19,17 +19,17 @@
 extern "C" {
 #endif
 
-// How many bytes at the start of `text` are ASCII (0 to `bytes`): each of these is a whole
+// Returns the number of ASCII bytes at the start of `text`, 0 to `bytes`. Each is a whole
 // character.
 size_t cau_utf8_ascii(const char *text, size_t bytes);
 
-// Bytes of the valid character at the start of `text` (1 to 4), or 0 if there is none.
+// Returns the length of the valid character at the start of `text` (1 to 4), or 0 if there is none.
 size_t cau_utf8_length(const char *text, size_t bytes);
 
-// Whether `text` (at least one byte) is the start of a valid character whose rest is still to come.
+// True if `text` (at least one byte) is the beginning of a valid character that is not complete.
 bool cau_utf8_is_start(const char *text, size_t bytes);
 
-// Writes `code` (not a surrogate, at most 0x10FFFF) into out[4]; returns how many bytes.
+// Writes `code` (not a surrogate, at most 0x10FFFF) to out[4]. Returns the number of bytes.
 size_t cau_utf8_encode(unsigned code, char out[4]);
 
 #ifdef __cplusplus

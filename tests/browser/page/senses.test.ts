@@ -6,7 +6,7 @@ import { COARSE, MOVING, ViewerPage } from './viewer_page';
 
 const CUT_HZ = 660;
 const PLACE: [number, number, number] = [0.01, 0.01, 0];
-const ELSEWHERE: [number, number, number] = [0.01, -0.02, 0]; // where tissue is still whole
+const ELSEWHERE: [number, number, number] = [0.01, -0.005, 0]; // where tissue is still whole
 const ON_M = 0.0005; // a part of the way
 const PARTS = 60;
 const TICKS = 6; // at least, for each part

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-enum { FACES = 40 }; // two words, the second not full
+enum { FACES = 40 }; // two words of the mask; the second is not full
 
 static void faces_are_counted_against_the_first_state(void **state)
 {
@@ -19,13 +19,13 @@ static void faces_are_counted_against_the_first_state(void **state)
 	assert_int_equal(cli_faces_count(&faces, &s, FACES), CAU_OK);
 	assert_int_equal(faces.drawn, 36);
 	assert_int_equal(faces.gone, 0);
-	mask[0] = 0x00000ff7; // eight more are gone, one of the first four is bared
+	mask[0] = 0x00000ff7; // eight more faces are gone, and one of the first four is bared
 	mask[1] = 0x00000080;
 	assert_int_equal(cli_faces_count(&faces, &s, FACES), CAU_OK);
 	assert_int_equal(faces.drawn, 28);
 	assert_int_equal(faces.gone, 9);
 	assert_int_equal(faces.bared, 1);
-	s.epoch = 2; // after going back, counting starts anew
+	s.epoch = 2; // a new epoch after a rewind: counting starts again
 	assert_int_equal(cli_faces_count(&faces, &s, FACES), CAU_OK);
 	assert_int_equal(faces.drawn, 28);
 	assert_int_equal(faces.gone, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests/browser/page/mcap.test.ts reads with the format's own library, record by record.
+// Writes MCAP files and checks their records. tests/browser/page/mcap.test.ts reads such files with
+// the format's own library.
 #include "cautery/mcap.h"
 
 #include <setjmp.h>
@@ -47,7 +48,8 @@ static size_t read_file(unsigned char *bytes)
 	return count;
 }
 
-// Counts records by opcode from `at` to the magic at the end; each must end where the next begins.
+// Counts records by opcode from `at` to the magic at the end. Each record must end where the next
+// begins.
 static void count_records(const unsigned char *bytes, size_t at, size_t end, int count[256])
 {
 	memset(count, 0, 256 * sizeof *count);
@@ -78,10 +80,12 @@ static void every_message_is_found_through_the_summary(void **state)
 	assert_memory_equal(bytes + size - 8, "\x89MCAP0\r\n", 8);
 	count_records(bytes, 8, size - 8, count);
 	assert_int_equal(count[0x06], MESSAGES); // chunks
-	assert_int_equal(count[0x07], MESSAGES); // their indices of messages
-	assert_int_equal(count[0x08], MESSAGES); // their indices in the summary
-	assert_int_equal(count[0x03], 2);        // the schema, before the messages and in the summary
-	assert_int_equal(count[0x04], 2);        // the channel
+	assert_int_equal(count[0x07], MESSAGES); // message indices of the chunks
+	assert_int_equal(count[0x08], MESSAGES); // chunk indices in the summary
+	// the schema, before the messages and again in the summary
+	assert_int_equal(count[0x03], 2);
+	// the channel, before the messages and again in the summary
+	assert_int_equal(count[0x04], 2);
 	size_t summary = get(bytes + size - 8 - 20, 8);
 	count_records(bytes, summary, size - 8, count);
 	assert_int_equal(count[0x08], MESSAGES);
@@ -111,7 +115,7 @@ static void a_full_disk_is_told(void **state)
 	assert_int_equal(cli_mcap_create(&mcap, "/no/such/folder/file", &error), CAU_IO);
 	assert_string_equal(error.file, "/no/such/folder/file");
 	assert_int_equal(cli_mcap_close(&mcap, &error), CAU_OK);
-	// What fits into the stream's buffer is refused when it is closed.
+	// Bytes that fit into the stream's buffer can fail only when the file is closed.
 	cau_status status = cli_mcap_create(&mcap, "/dev/full", &error);
 	for (int i = 0; i < MESSAGES && !status; i++)
 		status = cli_mcap_message(&mcap, 1, "{}", 2, &error);

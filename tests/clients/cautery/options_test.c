@@ -17,10 +17,10 @@ typedef struct reading {
 	bool read;
 } reading;
 
-// Reads words parted by single spaces.
+// Reads a command line whose words are separated by single spaces.
 static reading read_line(const char *line)
 {
-	static char copy[1024]; // arguments are borrowed
+	static char copy[1024]; // static, because the result points into it
 	char *arguments[200] = {"cautery"};
 	int count = 1;
 	reading r = {0};

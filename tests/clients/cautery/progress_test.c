@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-// What a run of progress writes where there is no terminal.
+// Returns the text that a progress writes to a file that is not a terminal.
 static char *written(const uint64_t *done, int count, uint64_t total, const char *note)
 {
 	cli_progress progress;

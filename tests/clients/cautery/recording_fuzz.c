@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings: read to the end or to the first error, descriptions too.
+// Fuzz target: reads a recording and its descriptions to the end or to the first error.
 #include "fuzz/fuzz_target.h"
 
 #include <stdlib.h>
@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	while (!status && kind) {
 		status = cli_recording_next(&recording, &kind, &bytes, &error);
 		if (!status && kind && bytes > size)
-			abort(); // more than there was
+			abort(); // a record cannot be longer than the input
 		if (!status && kind == CLI_RECORD_DESCRIPTION)
 			status = cli_recording_read_description(&recording, bytes, &description, &error);
 	}

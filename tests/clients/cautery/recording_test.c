@@ -79,7 +79,7 @@ static void what_was_recorded_comes_back(void **state)
 	cli_recording_close(&recording, NULL);
 }
 
-// Reads to the end or to the first error.
+// Reads the recording to its end or to the first error.
 static cau_status read_all(void)
 {
 	cli_recording recording;
@@ -104,7 +104,7 @@ static void a_recording_cut_short_is_told(void **state)
 	fseek(file, 0, SEEK_END);
 	long whole = ftell(file);
 	fclose(file);
-	// Whole records end after the magic, the description and each frame.
+	// positions where a record ends: after the magic, the description and each frame
 	const long ends[] = {8, whole - 16 - 11 - 16 - 5, whole - 16 - 11, whole};
 	for (long bytes = whole; bytes >= 0; bytes--) {
 		bool at_end = false;
@@ -125,9 +125,9 @@ static void damage_is_told(void **state)
 		unsigned char byte;
 	} cases[] = {
 		{0, 'c'},   // the magic
-		{8, 3},     // the first record's kind
-		{15, 0x7f}, // its length
-		{24, '['},  // its text
+		{8, 3},     // the kind of the first record
+		{15, 0x7f}, // the length of the first record
+		{24, '['},  // the text of the first record
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		write_recording();
@@ -151,7 +151,7 @@ static void files_that_are_not_there(void **state)
 	assert_int_equal(cli_recording_close(&recording, &error), CAU_OK);
 }
 
-// A full disk shows when the file is closed, at the latest.
+// A full disk is reported when the file is closed, at the latest.
 static void a_full_disk_is_told(void **state)
 {
 	(void)state;

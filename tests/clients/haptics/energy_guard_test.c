@@ -16,7 +16,8 @@ static const energy_guard_def def = {.period_s = 0.001,
                                      .reserve_j = 5e-4,
                                      .tank_j = 0.05};
 
-// By hand: 1 N with 6 N on 50 g is 120 m/s^2; forces 1, 0.7, 0.4 and 0.1 N in four milliseconds.
+// Calculated by hand: 1 N with 6 N on 50 g is 120 m/s^2. The forces in four milliseconds are 1,
+// 0.7, 0.4 and 0.1 N.
 static void the_need_is_the_work_until_the_force_is_gone(void **state)
 {
 	(void)state;
@@ -27,7 +28,8 @@ static void the_need_is_the_work_until_the_force_is_gone(void **state)
 	assert_true(energy_guard_need(&def, 0, 1) == 0);
 }
 
-// A device that is pushed away with all there is, at the worst moment, from any wanted force.
+// The hand pushes the device away with its largest force. The test tries many moments and wanted
+// forces.
 static void the_worst_push_gets_the_reserve_at_most(void **state)
 {
 	(void)state;
@@ -41,7 +43,8 @@ static void the_worst_push_gets_the_reserve_at_most(void **state)
 				energy_guard_account(&guard, place);
 				most = fmax(most, guard.given_j);
 				energy_guard_bound(&guard, velocity, force);
-				double push = step < wait ? -force[0] : def.hand_n; // held, then pushed
+				// first the hand holds the device, then it pushes
+				double push = step < wait ? -force[0] : def.hand_n;
 				double a = (force[0] + push) / def.mass_kg;
 				place[0] += velocity[0] * def.period_s + a * def.period_s * def.period_s / 2;
 				velocity[0] += a * def.period_s;
@@ -56,7 +59,8 @@ static void a_spring_that_is_pressed_pays_for_itself(void **state)
 	(void)state;
 	energy_guard guard = {.def = def};
 	double place[3] = {0}, velocity[3] = {0}, least = 1;
-	for (int step = 0; step < 4000; step++) { // 2 N at 4 mm, once in each second
+	// a force of 2 N while the device swings by 4 mm once a second
+	for (int step = 0; step < 4000; step++) {
 		double time_s = 0.001 * step;
 		place[2] = -0.002 * (1 - cos(6.28318530718 * time_s));
 		velocity[2] = -0.002 * 6.28318530718 * sin(6.28318530718 * time_s);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hand that presses a ball into fat of 5 and 100 kPa over links of 0, 20 and 50 ms each way.
+// A hand presses a ball into fat of 5 and 100 kPa, over links of 0, 20 and 50 ms each way.
 #include "clients/haptics/loop.h"
 
-static const double top_m = 0.003; // the ball of 3 mm touches the slab there
-// What is asked for: of a held contact, N peak to peak; of a moved one, its error below 3 Hz.
+static const double top_m = 0.003; // height at which the ball of 3 mm touches the slab
+// Requirements. A held contact: largest trembling, N peak to peak. A moved contact: largest
+// relative error below 3 Hz.
 static const double most_trembling_n = 0.05, most_error = 0.05;
 static const double most_given_j = 1e-3, most_jump_n = 0.3;
 
-// Down in half a second, and then it stays.
+// Lowers the ball in half a second and holds it there.
 static void press(const loop_def *def, double time_s, double wanted_m[3])
 {
 	double share = fmin(time_s / 0.5, 1);
@@ -15,7 +16,7 @@ static void press(const loop_def *def, double time_s, double wanted_m[3])
 	wanted_m[2] = top_m + 0.001 - share * (def->deep_m + 0.001);
 }
 
-// The same, and then up and down below 3 Hz.
+// Lowers the ball and then moves it up and down below 3 Hz.
 static void swing(const loop_def *def, double time_s, double wanted_m[3])
 {
 	press(def, time_s, wanted_m);
@@ -24,10 +25,11 @@ static void swing(const loop_def *def, double time_s, double wanted_m[3])
 		begun * def->swing_m * (sin(0.5 * turn) / 2 + sin(1.2 * turn) / 3 + sin(2.7 * turn) / 6);
 }
 
-// Below 3 Hz: one pole, forwards and backwards, twice.
+// Low-pass filter with 3 Hz: one pole, forwards and backwards, twice.
 static void keep_slow(double (*signal)[3], int count, int axis)
 {
-	const double pole_hz = 3 * 2.3; // of each of the four: together they take off 3 dB at 3 Hz
+	// frequency of each of the four poles; together they attenuate 3 Hz by 3 dB
+	const double pole_hz = 3 * 2.3;
 	const double turned = 6.283185307179586 * pole_hz * 0.001, share = turned / (1 + turned);
 	for (int pass = 0; pass < 2; pass++) {
 		for (int i = 1; i < count; i++)
@@ -37,7 +39,7 @@ static void keep_slow(double (*signal)[3], int count, int axis)
 	}
 }
 
-// Root mean square of the difference over that of `b`.
+// Returns the root mean square of a - b, relative to that of b.
 static double difference(double (*a)[3], double (*b)[3], int from, int to)
 {
 	double sum = 0, size = 0;
@@ -55,7 +57,7 @@ static void is_safe(const loop_log *log)
 	assert_true(log->most_jump_n <= most_jump_n + 1e-9);
 }
 
-// Of the soft fat 4 mm, of the hard one so deep that the hand presses with 0.9 N.
+// Holds the ball 4 mm deep in soft fat. In hard fat it is so deep that the hand presses with 0.9 N.
 static void hold(double young_modulus_pa, double delay_s)
 {
 	loop_def def = {.young_modulus_pa = young_modulus_pa,
@@ -74,7 +76,7 @@ static void hold(double young_modulus_pa, double delay_s)
 	is_safe(&log);
 	if (!CAU_TEST_SANITIZED) {
 		assert_true(most - least < most_trembling_n);
-		assert_true(most > 0.08); // it does press
+		assert_true(most > 0.08); // the hand does press
 	}
 	loop_finish(&log);
 }
@@ -112,7 +114,8 @@ static void move(double young_modulus_pa, double delay_s)
 	loop_finish(&log);
 }
 
-// Without the first second, in which the ball comes down, and the end, which the filter bends.
+// The first second is left out, because the ball comes down in it, and the end is left out, because
+// the filter distorts it.
 static void force_is_that_of_the_scene_in_milliseconds(void **state)
 {
 	(void)state;

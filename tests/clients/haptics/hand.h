@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hand that holds a device: 50 g, 0.3 N s/m, and a spring of 100 N/m to where it wants to be.
+// A simulated hand that holds a device: 50 g, 0.3 N s/m, and a spring of 100 N/m to its wanted
+// position.
 #pragma once
 
 #include <math.h>
@@ -8,13 +9,13 @@
 typedef struct simulated_hand {
 	double place_m[3], velocity_m_s[3];
 	double wanted_m[3];
-	double most_n;  // that it gives; 0: no bound
-	double given_j; // work of the rendered force on it
+	double most_n;  // largest force of the hand; 0 for no limit
+	double given_j; // work of the rendered force on the hand
 } simulated_hand;
 
 static const double hand_mass_kg = 0.05, hand_damping_ns_m = 0.3, hand_stiffness_n_m = 100;
 
-// A millisecond under a constant force.
+// Moves the hand for a millisecond under a constant force.
 static inline void hand_move(simulated_hand *hand, const double force_n[3])
 {
 	enum { PARTS = 10 };

@@ -23,7 +23,7 @@ static cau_haptics *make(void)
 	return haptics;
 }
 
-// Tissue of 500 N/m below z = 0, seen with the tool at z.
+// Returns the contact record of tissue of 500 N/m below z = 0, with the tool at z.
 static cau_tool_contact floor_at(double z)
 {
 	cau_tool_contact record = {.valid = true,
@@ -35,7 +35,7 @@ static cau_tool_contact floor_at(double z)
 	return record;
 }
 
-// The same under a round tip, after Hertz: 1.5 N at 3 mm.
+// Returns the contact record of tissue under a round tip, by Hertz's law: 1.5 N at 3 mm.
 static cau_tool_contact hertz_at(double z)
 {
 	cau_tool_contact record = floor_at(fmin(z, 0));
@@ -70,7 +70,8 @@ static void without_a_record_there_is_no_force(void **state)
 	cau_haptics_destroy(NULL);
 }
 
-// A slow press and release: the record is a tick old, and the force is that of the present place.
+// Slow presses and releases. The record is a tick old, but the force must be that of the present
+// position.
 static void force_follows_the_place_not_the_record(void **state)
 {
 	(void)state;
@@ -90,7 +91,7 @@ static void force_follows_the_place_not_the_record(void **state)
 			worst = fmax(worst, fabs(force - 1.5 * pow(-z / 0.003, 1.5)));
 	}
 	print_message("at most %.4f N off at 1.5 N\n", worst);
-	assert_true(worst < 0.03); // what damping takes below damping_hz
+	assert_true(worst < 0.03); // damping below damping_hz
 	cau_haptics_destroy(haptics);
 }
 
@@ -99,11 +100,11 @@ static void a_new_record_is_blended_in(void **state)
 	(void)state;
 	cau_haptics *haptics = make();
 	cau_tool_contact soft = floor_at(-0.001), hard = floor_at(-0.001);
-	hard.force_n[2] = 0.6; // with the same stiffness the tissue begins higher
+	hard.force_n[2] = 0.6; // with the same stiffness, the tissue begins higher
 	hard.plane[0].offset_m = 0.0002;
 	double before = 0, force = 0;
 	for (int k = 0; k < 40; k++) {
-		if (k % 20 == 0) // each is blended in when the next one comes
+		if (k % 20 == 0) // each record is blended in when the next one comes
 			cau_haptics_take(haptics, &soft);
 		before = render_at(haptics, -0.001, 0, period_s * k);
 	}
@@ -156,7 +157,7 @@ static void bad_states_of_the_device_let_it_fade(void **state)
 	force = render_at(haptics, NAN, 0, 0.050);
 	assert_true(fabs(force - 0.7) < 1e-9);
 	force = render_at(haptics, -0.002, INFINITY, 0.051);
-	force = render_at(haptics, -0.002, 0, 0.001); // a clock that goes back
+	force = render_at(haptics, -0.002, 0, 0.001); // a clock that runs backwards
 	force = render_at(haptics, -0.002, 0, NAN);
 	assert_true(force == 0);
 	for (int k = 52; k < 80; k++)
@@ -178,7 +179,7 @@ static void definitions_are_checked(void **state)
 	def.mass_kg = NAN;
 	assert_int_equal(cau_haptics_create(&def, &haptics, &error), CAU_BAD_VALUE);
 	def = cau_default_haptics_def();
-	def.fade_s = 0.09; // with 5 N it could not be 0 in time
+	def.fade_s = 0.09; // with force_max_n = 5 N the force could not be 0 in time
 	assert_int_equal(cau_haptics_create(&def, &haptics, &error), CAU_BAD_VALUE);
 	assert_string_equal(error.path, "fade_s");
 	assert_null(haptics);
@@ -199,7 +200,7 @@ static int compare(const void *a, const void *b)
 
 enum { CALLS = 20000, RUNS = 7 };
 
-// The time of each call of a run, where it is less than that of the runs before.
+// Times each call of a run. us[] keeps the smallest time of each call over all runs.
 static void time_calls(const cau_tool_contact *record, double us[CALLS])
 {
 	cau_haptics *haptics = make();
@@ -214,8 +215,9 @@ static void time_calls(const cau_tool_contact *record, double us[CALLS])
 	cau_haptics_destroy(haptics);
 }
 
-// With all planes, a record every tick, and a force that energy bounds. The same calls are made in
-// seven runs, and the least time of each counts: other programs on the machine are not measured.
+// The record has all planes, comes every tick, and its force is limited by energy. The same calls
+// are made in seven runs, and the smallest time of each call counts, so other programs on the
+// machine do not matter.
 static void a_render_takes_a_few_microseconds(void **state)
 {
 	(void)state;

@@ -5,9 +5,9 @@
 
 #include "clients/haptics/hand.h"
 
-enum { PENDING = 16 }; // records on the link
+enum { PENDING = 16 }; // records that are on the link
 static const double tick_s = 1.0 / 60, period_s = 0.001;
-// From a tick's time until its record is on the link: what the step of `fat` takes on two cores.
+// time from a tick until its record is on the link: the step of `fat` on two cores
 static const double compute_s = 0.005;
 
 cau_scene_def *loop_scene(double young_modulus_pa)
@@ -21,13 +21,13 @@ cau_scene_def *loop_scene(double young_modulus_pa)
 
 typedef struct closed_loop {
 	cau_session *session;
-	cau_pose turned; // the tool's rotation
+	cau_pose turned; // its rotation is the tool's
 	cau_haptics *haptics;
 	simulated_hand hand;
-	int ticks, sent, taken; // ticks done; records sent and taken
+	int ticks, sent, taken; // numbers of finished ticks, sent records and taken records
 	cau_tool_contact record[PENDING];
 	double arrives_s[PENDING];
-	double spent_s; // on ticks
+	double spent_s; // processor time of all ticks
 } closed_loop;
 
 static double clock_s(void)
@@ -37,7 +37,7 @@ static double clock_s(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// A tick at its time: with what the device had sent when the link's delay began.
+// Computes a tick. It uses the device's position that was sent one link delay before.
 static void tick(closed_loop *loop, const loop_def *def, const loop_log *log)
 {
 	double time_s = ++loop->ticks * tick_s, sent_s = fmax(time_s - def->delay_s, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever records say and however late they are, a hand gets no energy and no jolt. The argument
-// is the number of steps.
+// Random records with random delays must give the hand no energy and no jolt. The argument is the
+// number of steps.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,7 +47,7 @@ static void random_unit(double out[3])
 		out[i] /= length;
 }
 
-// A record of anything, near a place: soft and hard, pushing and pulling, moving, lying.
+// Returns a random record near a position: soft or hard, pushing or pulling, moving or wrong.
 static cau_tool_contact random_record(const double place_m[3])
 {
 	cau_tool_contact record = {.valid = !one_in(50)};
@@ -76,14 +76,15 @@ static cau_tool_contact random_record(const double place_m[3])
 	return record;
 }
 
-// The honest contact of a wall at z = 0 as it was at a place: what an unstable loop is made of.
+// Returns the true contact of a wall at z = 0 for a position. A delayed loop with such records
+// would be unstable.
 static cau_tool_contact wall_record(const double place_m[3], double stiffness_n_m)
 {
 	double push_n = fmax(-place_m[2] * stiffness_n_m, 0);
 	cau_tool_contact record = {.valid = true, .plane_count = 1, .friction = 0.2};
 	record.plane[0].normal[2] = 1;
 	record.force_n[2] = push_n;
-	double wrong = random_between(0.3, 3); // of its stiffness
+	double wrong = random_between(0.3, 3); // factor on the stiffness
 	for (int i = 0; i < 3; i++) {
 		record.asked_pose.position_m[i] = place_m[i];
 		record.compliance_m_n[i] = wrong / stiffness_n_m;
@@ -92,7 +93,7 @@ static cau_tool_contact wall_record(const double place_m[3], double stiffness_n_
 	return record;
 }
 
-// Where the hand wants to be: it stays, swings, leaps, and shakes.
+// Changes the wanted position: it stays, swings, leaps or shakes.
 static void lead(simulated_hand *hand, double time_s, int manner)
 {
 	for (int i = 0; i < 3; i++)
@@ -106,12 +107,12 @@ static void lead(simulated_hand *hand, double time_s, int manner)
 
 enum { LATE = 256, EPISODE = 5000 };
 
-// What a run has seen.
+// Extremes that the runs have seen.
 typedef struct findings {
 	double most_j, most_jump_n, least_j, pushed_n;
 } findings;
 
-// Five seconds of one renderer, over a link that is late by the same all the time.
+// Runs one renderer for five seconds, over a link with a constant delay.
 static void run_episode(findings *found)
 {
 	cau_haptics_def def = cau_default_haptics_def();
@@ -162,7 +163,8 @@ static void hands_get_no_energy(void **state)
 	              step_count, 1e3 * found.most_j, found.most_jump_n, found.pushed_n);
 	assert_true(found.most_j <= most_given_j);
 	assert_true(found.most_jump_n <= most_jump_n + 1e-9);
-	assert_true(found.most_j > 0 && found.least_j < -0.01 && found.pushed_n > 0.1); // it did push
+	// the renderer did push
+	assert_true(found.most_j > 0 && found.least_j < -0.01 && found.pushed_n > 0.1);
 }
 
 int main(int argc, char **argv)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connecting, calling, losing the connection and coming back.
+// Connecting, calling, losing the connection and reconnecting.
 #include "clients/library/fixture.h"
 
 // ---- hello -------------------------------------------------------------------------------------
 typedef struct greeting {
-	cau_wire_hello hello[4]; // of each connection
+	cau_wire_hello hello[4]; // hello of each connection
 } greeting;
 
 static bool note_hello(scripted_peer *peer, const cau_rpc_message *message, const char *text)
@@ -52,7 +52,7 @@ static void a_refused_hello_says_why(void **state)
 	(void)state;
 	fixture f;
 	fixture_begin(&f, &(scripted_script){.text = refuse_hello});
-	f.def.reconnect = true; // it must not try again
+	f.def.reconnect = true; // the client must not reconnect after a refusal
 	assert_int_not_equal(fixture_connect(&f), CAU_OK);
 	assert_string_equal(f.error.path, "params.token");
 	assert_non_null(strstr(f.error.reason, "not known"));
@@ -122,7 +122,8 @@ static bool refuse_pause(scripted_peer *peer, const cau_rpc_message *message, co
 	(void)text;
 	if (message->method != CAU_METHOD_SESSION_PAUSE)
 		return false;
-	scripted_send(peer, false, "{\"no\": json", 11); // what comes before must not matter
+	// these invalid messages must not disturb the client
+	scripted_send(peer, false, "{\"no\": json", 11);
 	scripted_send(peer, true, "neither frame nor chunk", 23);
 	scripted_refuse(peer, message, CAU_RPC_NOT_FOUND, "not_found", "params.session", "no `t1-x`");
 	return true;
@@ -170,7 +171,7 @@ static void a_call_without_answer_ends_in_time(void **state)
 	(void)state;
 	fixture f;
 	fixture_begin(&f, &(scripted_script){.text = answer_nothing_but_hello});
-	f.def.timeout_s = 2; // for hello, too, which is answered
+	f.def.timeout_s = 2; // also the timeout of hello, which is answered
 	assert_int_equal(fixture_connect(&f), CAU_OK);
 	assert_int_equal(cau_client_call(f.client, CAU_METHOD_SESSION_DESCRIBE,
 	                                 &(cau_wire_session_ref){0}, NULL, &f.error),
@@ -179,11 +180,11 @@ static void a_call_without_answer_ends_in_time(void **state)
 	fixture_end(&f);
 }
 
-// A server that goes back to tick 0 for as long as two heartbeats take to come.
+// A server that takes so long for a reset that two heartbeats arrive.
 typedef struct long_work {
 	cau_rpc_message reset;
 	int heartbeats;
-	bool deaf; // to heartbeats after the first
+	bool deaf; // after the first heartbeat, it answers no more
 } long_work;
 
 static bool work_long(scripted_peer *peer, const cau_rpc_message *message, const char *text)
@@ -201,7 +202,7 @@ static bool work_long(scripted_peer *peer, const cau_rpc_message *message, const
 static cau_status reset_of(long_work *work, fixture *f, cau_wire_restored *restored)
 {
 	fixture_begin(f, &(scripted_script){.text = work_long, .user = work});
-	f->def.timeout_s = 0.5; // for hello and each heartbeat, too
+	f->def.timeout_s = 0.5; // also the timeout of hello and of each heartbeat
 	assert_int_equal(fixture_connect(f), CAU_OK);
 	return cau_client_call(f->client, CAU_METHOD_SESSION_RESET, &(cau_wire_session_change){0},
 	                       restored, &f->error);
@@ -216,7 +217,7 @@ static void what_costs_much_is_waited_for_while_the_server_is_heard(void **state
 	assert_int_equal(reset_of(&work, &f, &restored), CAU_OK);
 	assert_int_equal(restored.epoch, 7);
 	fixture_end(&f);
-	assert_int_equal(work.heartbeats, 2); // the server's thread has ended
+	assert_int_equal(work.heartbeats, 2); // the server's thread has ended, so the count is final
 }
 
 static void what_costs_much_ends_with_a_server_that_is_not_heard(void **state)
@@ -230,14 +231,14 @@ static void what_costs_much_ends_with_a_server_that_is_not_heard(void **state)
 	assert_int_equal(work.heartbeats, 2);
 }
 
-// ---- coming back -------------------------------------------------------------------------------
+// ---- reconnecting ------------------------------------------------------------------------------
 typedef struct breaking {
 	greeting greeting;
-	char energize[2][512]; // the request as it came on each connection
+	char energize[2][512]; // the request on each connection
 	int close_code;
 } breaking;
 
-// Cuts the first connection when energy is asked for; answers on the second.
+// Cuts the first connection when it receives tool.energize; answers on the second connection.
 static bool cut_once(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
 	breaking *b = scripted_user(peer);
@@ -279,7 +280,7 @@ static void a_lost_connection_resumes_and_resends_what_acts_once(void **state)
 	fixture_begin(&f, &(scripted_script){.text = cut_once, .user = &b});
 	f.def.reconnect = true;
 	assert_int_equal(fixture_connect(&f), CAU_OK);
-	// Without client_sequence nobody knows whether it acted: it fails instead of going out again.
+	// A request without client_sequence may or may not have acted. So it fails and is not resent.
 	assert_int_equal(cau_client_send(f.client, CAU_METHOD_SESSION_PAUSE,
 	                                 &(cau_wire_session_change){0}, note_error, &pause_status,
 	                                 &f.error),
@@ -324,7 +325,7 @@ static void some_close_codes_mean_it(void **state)
 	fixture_end(&f);
 }
 
-// ---- signs of life -----------------------------------------------------------------------------
+// ---- heartbeats --------------------------------------------------------------------------------
 static bool count_heartbeats(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
 	(void)text;
@@ -355,7 +356,7 @@ static void the_clock_is_measured(void **state)
 	double before_s = cau_client_now();
 	assert_int_equal(cau_client_measure_clock(f.client, 4, &clock, &f.error), CAU_OK);
 	double after_s = cau_client_now();
-	// The script's clock stands at 1 us.
+	// The script's clock is constantly 1 us.
 	assert_true(clock.offset_s > 1e-6 - after_s && clock.offset_s < 1e-6 - before_s);
 	assert_true(clock.error_s > 0 && clock.error_s < after_s - before_s);
 	fixture_end(&f);

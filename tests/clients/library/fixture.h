@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client on a scripted server.
+// A client that is connected to a scripted server.
 #pragma once
 
 #include <setjmp.h>
@@ -14,7 +14,7 @@
 #include "cautery/client.h"
 #include "clients/library/scripted_server.h"
 
-// Long beside what a loopback needs, even under sanitizers; reached by failing tests alone.
+// Much longer than a loopback needs, even under sanitizers. Only failing tests reach it.
 enum { FIXTURE_PATIENCE_S = 20 };
 
 typedef struct fixture {
@@ -49,7 +49,7 @@ static inline void fixture_end(fixture *f)
 	scripted_stop(f->server);
 }
 
-// Lets things happen until `condition` holds.
+// Waits until `condition` is true.
 #define FIXTURE_AWAIT(f, condition)                                                                \
 	do {                                                                                           \
 		double until_s_ = cau_client_now() + FIXTURE_PATIENCE_S;                                   \

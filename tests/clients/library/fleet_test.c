@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asking who stands behind an address, of a server that says one thing.
+// Asks a server for the labels behind an address. The server gives one fixed answer.
 #include <arpa/inet.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -15,11 +15,11 @@
 
 #include "cautery/client.h"
 
-// Long beside what a loopback needs, even under sanitizers; reached by failing tests alone.
+// Much longer than a loopback needs, even under sanitizers. Only failing tests reach it.
 static const double patience_s = 20;
 
 typedef struct speaker {
-	const char *answer; // NULL: none, until the asker hangs up
+	const char *answer; // if NULL: no answer until the client hangs up
 	int socket;
 	char url[64], request[2048];
 	pthread_t thread;
@@ -96,8 +96,8 @@ static void trouble_is_told(void **state)
 {
 	(void)state;
 	cau_error error = {0};
-	assert_int_equal(ask("", patience_s, &fleet, &error), CAU_IO); // hangs up
-	assert_int_equal(ask(NULL, 0.05, &fleet, &error), CAU_IO);     // silent
+	assert_int_equal(ask("", patience_s, &fleet, &error), CAU_IO); // the server hangs up
+	assert_int_equal(ask(NULL, 0.05, &fleet, &error), CAU_IO);     // the server is silent
 	assert_non_null(strstr(error.reason, "in time"));
 	assert_int_equal(
 		ask("HTTP/1.1 200 OK\r\ncontent-length: 2\r\n\r\n{}", patience_s, &fleet, &error),

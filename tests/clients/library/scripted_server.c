@@ -27,7 +27,7 @@ struct scripted_peer {
 	struct lws *wsi;
 	int number;
 	outgoing *first, *last;
-	int close_code; // -1: stays open
+	int close_code; // -1 while the connection stays open
 	unsigned char *message;
 	size_t message_bytes;
 	void *storage;
@@ -136,7 +136,7 @@ static int write_next(scripted_peer *peer)
 	return written < 0 ? -1 : 0;
 }
 
-// ---- the plain stream --------------------------------------------------------------------------
+// ---- the standard stream -----------------------------------------------------------------------
 static cau_stream_def stream_def(void)
 {
 	cau_stream_def def = cau_default_stream_def();
@@ -328,7 +328,7 @@ static const struct lws_protocols protocols[] = {
 	{0},
 };
 
-// ---- life --------------------------------------------------------------------------------------
+// ---- starting and stopping ---------------------------------------------------------------------
 static void *serve(void *user)
 {
 	scripted_server *server = user;

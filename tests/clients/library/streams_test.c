@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joining, gaps, damage, and joining again.
+// Joining streams, gaps, damaged frames, and joining again.
 #include "clients/library/fixture.h"
 
 typedef struct streaming {
@@ -25,7 +25,7 @@ static void joining_brings_topology_and_state(void **state)
 	assert_true(stream->has_topology);
 	assert_int_equal(stream->topology.face[4], 2);
 	assert_int_equal(stream->topology.rest[3], 20000); // 1 m in steps of 0.05 mm
-	assert_int_equal(stream->state->quantised[0], 20); // 1 mm: the first frame
+	assert_int_equal(stream->state->quantised[0], 20); // 1 mm, from the first frame
 	assert_int_equal(stream->key_frames, 1);
 	assert_int_equal(cau_client_faces_drawn(stream), SCRIPTED_FACES);
 	fixture_end(&f);
@@ -55,7 +55,7 @@ static void a_refused_join_says_why(void **state)
 	fixture_end(&f);
 }
 
-// A server that builds the session for as long as two heartbeats take to come.
+// A server that takes so long to build the session that two heartbeats arrive.
 typedef struct building {
 	cau_rpc_message join;
 	int heartbeats;
@@ -81,14 +81,14 @@ static void a_join_waits_for_a_session_that_is_built(void **state)
 	fixture f;
 	building b = {0};
 	fixture_begin(&f, &(scripted_script){.text = build_first, .user = &b});
-	f.def.timeout_s = 0.5; // for hello and each heartbeat, too
+	f.def.timeout_s = 0.5; // also the timeout of hello and of each heartbeat
 	assert_int_equal(fixture_connect(&f), CAU_OK);
 	assert_true(join(&f)->state->synced);
 	fixture_end(&f);
-	assert_int_equal(b.heartbeats, 2); // the server's thread has ended
+	assert_int_equal(b.heartbeats, 2); // the server's thread has ended, so the count is final
 }
 
-// Loses frame 3 of a chain of 5; sends a key frame only when asked.
+// Loses frame 3 of a chain of 5. Sends a key frame only on request.
 static bool lose_a_frame(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
 	streaming *s = scripted_user(peer);
@@ -128,10 +128,10 @@ static void a_gap_is_closed_by_a_key_frame(void **state)
 	assert_int_equal(stream->damaged, 0);
 	FIXTURE_AWAIT(&f, atomic_load(&s.acknowledged) > 0);
 	fixture_end(&f);
-	assert_true(s.key_frames_asked >= 1); // again after a second, if the answer took so long
+	assert_true(s.key_frames_asked >= 1); // the client repeats the request after a second
 }
 
-// Sends a delta whose sections are overwritten.
+// Sends a delta with overwritten sections.
 static bool damage_a_frame(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
 	if (message->method != CAU_METHOD_SESSION_JOIN)
@@ -141,14 +141,14 @@ static bool damage_a_frame(scripted_peer *peer, const cau_rpc_message *message, 
 	scripted_advance(peer, true);
 	unsigned char damaged[CAU_FRAME_HEADER_BYTES + 16] = {0};
 	cau_frame_header header;
-	// A header that is sound but for what follows it: kind delta, on the state that is held.
+	// A delta on the present state: its header is valid, its sections are not.
 	static const unsigned char start[] = {'C', 'A', 'U', 'F', 1, CAU_FRAME_DELTA};
 	memcpy(damaged, start, sizeof start);
 	damaged[8] = sizeof damaged;
 	damaged[12] = 5;  // session
 	damaged[16] = 78; // epoch of the first connection
 	damaged[24] = 2;  // sequence
-	damaged[32] = 1;  // its base
+	damaged[32] = 1;  // base sequence
 	damaged[66] = 1;  // one section
 	memset(damaged + CAU_FRAME_HEADER_BYTES, 0xff, 16);
 	assert_int_equal(cau_frame_header_read(damaged, sizeof damaged, &header, NULL), CAU_OK);
@@ -167,7 +167,7 @@ static void damage_is_counted_and_repaired(void **state)
 	FIXTURE_AWAIT(&f, stream->damaged == 1);
 	FIXTURE_AWAIT(&f, stream->state->synced && stream->key_frames == 2);
 	fixture_end(&f);
-	assert_true(s.key_frames_asked >= 1); // again after a second, if the answer took so long
+	assert_true(s.key_frames_asked >= 1); // the client repeats the request after a second
 }
 
 static void a_stream_is_joined_again_after_a_loss(void **state)

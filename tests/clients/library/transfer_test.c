@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files up and down.
+// Uploads and downloads of files.
 #include "cautery/chunk_codec.h"
 #include "cautery/sha256.h"
 #include "clients/library/fixture.h"
@@ -11,8 +11,8 @@ typedef struct filing {
 	unsigned char *received;
 	uint64_t received_bytes;
 	bool in_order;
-	char sha256[65];   // as upload.end told it
-	bool lie, shuffle; // a wrong hash; chunks out of order
+	char sha256[65];   // hash from upload.end
+	bool lie, shuffle; // test cases: a wrong hash, chunks out of order
 } filing;
 
 static void filing_begin(filing *f)
@@ -28,7 +28,7 @@ static void filing_end(filing *f)
 	free(f->received);
 }
 
-// ---- up ----------------------------------------------------------------------------------------
+// ---- upload ------------------------------------------------------------------------------------
 static bool take_upload(scripted_peer *peer, const cau_rpc_message *message, const char *text)
 {
 	filing *f = scripted_user(peer);
@@ -107,7 +107,7 @@ static void the_hash_is_sha_256(void **state)
 	assert_string_equal(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
-// ---- down --------------------------------------------------------------------------------------
+// ---- download ----------------------------------------------------------------------------------
 static void send_chunk(scripted_peer *peer, const filing *f, uint64_t offset, size_t bytes)
 {
 	unsigned char *message = malloc(CAU_CHUNK_HEADER_BYTES + bytes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Addresses: what is taken has a host and a port, and reads back to the same.
+// Fuzz target for URLs. An accepted URL has a host and a port, and reading it back gives the same
+// URL.
 #include "fuzz/fuzz_target.h"
 
 #include <stdlib.h>

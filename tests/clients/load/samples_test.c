@@ -13,13 +13,13 @@ static void percentiles_are_those_of_the_nearest_rank(void **state)
 {
 	(void)state;
 	load_samples samples = {0};
-	for (int i = 10000; i >= 1; i--) // falling, so that sorting matters
+	for (int i = 10000; i >= 1; i--) // descending, so that the values must be sorted
 		load_samples_add(&samples, i);
 	assert_true(load_samples_percentile(&samples, 0.5) == 5000);
 	assert_true(load_samples_percentile(&samples, 0.99) == 9900);
 	assert_true(load_samples_percentile(&samples, 1) == 10000);
 	assert_true(load_samples_percentile(&samples, 0) == 1);
-	load_samples_add(&samples, 20000); // may come after sorting
+	load_samples_add(&samples, 20000); // values may be added after sorting
 	assert_true(load_samples_percentile(&samples, 1) == 20000);
 	assert_int_equal(samples.count, 10001);
 	assert_int_equal(samples.lost, 0);

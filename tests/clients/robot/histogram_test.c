@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-static const double bin_width = 1.1; // of one bin to the next
+static const double bin_width = 1.1; // upper edge of a bin over its lower edge
 
 static void quantiles_are_within_a_bin(void **state)
 {

@@ -12,7 +12,7 @@
 enum { JOBS = 2000 };
 
 typedef struct job {
-	pthread_mutex_t gate; // held by the test while the job must not end
+	pthread_mutex_t gate; // locked by the test while the job must not end
 	int64_t value;
 	pthread_t thread;
 } job;
@@ -31,22 +31,23 @@ static void test_jobs_run_in_order_and_are_waited_for(void **state)
 	(void)state;
 	cau_background *background = cau_background_create();
 	assert_non_null(background);
-	cau_background_wait(background); // no job: at once
+	cau_background_wait(background); // returns at once without a job
 	job work = {.gate = PTHREAD_MUTEX_INITIALIZER, .value = 1};
 	int64_t expected = 1;
 	for (int i = 0; i < JOBS; i++) {
-		if (i % 39 == 0) // before the number is full
+		if (i % 39 == 0) // before the value overflows
 			work.value = 1, expected = 1;
 		cau_background_start(background, run, &work);
 		cau_background_wait(background);
 		expected = 3 * expected + 1;
-		assert_int_equal(work.value, expected); // visible without a lock
+		assert_int_equal(work.value, expected); // the job's writes are visible without a lock
 	}
 	assert_false(pthread_equal(work.thread, pthread_self()));
 	cau_background_destroy(background);
 }
 
-// Start returns while the job cannot have ended: the caller holds what the job needs.
+// cau_background_start returns before the job ends: the caller still holds the lock that the job
+// needs.
 static void test_start_does_not_wait(void **state)
 {
 	(void)state;

@@ -17,7 +17,7 @@ static int compare(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-// Every single flipped bit and every shorter length of a state hashes to something of its own.
+// All states that differ by one flipped bit, and all shorter lengths, have different hashes.
 static void test_every_bit_and_length_counts(void **state)
 {
 	(void)state;

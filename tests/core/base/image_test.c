@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equal pages of several owners become one, nobody sees what another writes, and nothing is left.
+// Equal pages of several owners share memory. No owner sees another owner's writes, and nothing is
+// left afterwards.
 #include "base/image.h"
 
 #include <errno.h>
@@ -19,9 +20,9 @@
 
 enum { PAGES = 64, KEY = 7, LEAST_RUN_BYTES = 16 << 10 };
 
-static size_t page; // bytes
+static size_t page; // page size, bytes
 
-// The number of each page, and of each byte in it.
+// Fills each page with a pattern from its number and the index of each byte.
 static cau_pages patterned(void)
 {
 	cau_pages pages;
@@ -41,7 +42,7 @@ static bool is_patterned(const cau_pages *pages, size_t but_for_page)
 	return true;
 }
 
-// Writable private mappings of images in this process, and one that is there to compare with.
+// Counts the private mappings of images with these rights in this process. *one is one of them.
 static int mappings(const char *rights, void **one)
 {
 	char line[512], found[5];
@@ -65,26 +66,27 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 {
 	(void)state;
 	cau_pages a = patterned(), b = patterned(), c = patterned();
-	((char *)b.start)[20 * page + 5]++; // before it is shared
+	((char *)b.start)[20 * page + 5]++; // change a page before it is shared
 	cau_image *image = cau_image_of(KEY, &a, 1, NULL);
 	assert_non_null(image);
 	assert_int_equal(cau_image_show(image, &a, 1, false), (size_t)PAGES * page);
 	assert_ptr_equal(cau_image_of(KEY, &b, 1, NULL), image);
 	assert_int_equal(cau_image_show(image, &b, 1, false), (size_t)(PAGES - 1) * page);
-	assert_int_equal(mappings("rw-p", NULL), 3); // one of a, two around the page of b
+	// one mapping of a, two around the changed page of b
+	assert_int_equal(mappings("rw-p", NULL), 3);
 	assert_true(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&b, 20));
-	((char *)a.start)[30 * page]++; // and afterwards, to either side
+	((char *)a.start)[30 * page]++; // change a page of each afterwards
 	((char *)b.start)[40 * page]++;
 	assert_false(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&a, 30));
 	assert_false(is_patterned(&b, 20));
-	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image); // which is as it was
+	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image); // the image is unchanged
 	assert_int_equal(cau_image_show(image, &c, 1, false), (size_t)PAGES * page);
 	for (int i = 0; i < 3; i++)
 		cau_image_release(image);
 	assert_int_equal(cau_image_count(), 0);
-	assert_true(is_patterned(&c, PAGES)); // what was mapped outlives it
+	assert_true(is_patterned(&c, PAGES)); // the mapping still exists without the image
 	cau_pages_give_back(&a);
 	cau_pages_give_back(&b);
 	cau_pages_give_back(&c);
@@ -108,7 +110,7 @@ static void who_made_it_knows(void **state)
 	assert_false(made);
 	assert_int_equal(cau_image_show(image, &b, 1, made), (size_t)(PAGES - 1) * page);
 	assert_true(is_patterned(&b, 20));
-	assert_false(is_patterned(&b, PAGES)); // as b was, and not as the image is
+	assert_false(is_patterned(&b, PAGES)); // b has its own page, not the image's
 	((char *)b.start)[20 * page]--;
 	assert_true(is_patterned(&b, PAGES));
 	cau_image_release(image);
@@ -132,7 +134,7 @@ static void nothing_can_write_an_image(void **state)
 	cau_pages_give_back(&a);
 }
 
-// What is shorter than 16 KiB, of another size, or in another place, stays as it is.
+// Runs shorter than 16 KiB, parts of another size, and parts at another position stay unchanged.
 static void short_runs_and_others_stay_as_they_are(void **state)
 {
 	(void)state;
@@ -163,7 +165,8 @@ static int touched_of(const cau_pages *pages)
 	return count;
 }
 
-// The middle of `a` was never touched. The first and the last quarter were, were it with zeros.
+// The middle of `a` was never touched. The first and the last quarter were, although the first
+// contains zeros.
 static void untouched_pages_are_in_no_image(void **state)
 {
 	(void)state;
@@ -178,7 +181,8 @@ static void untouched_pages_are_in_no_image(void **state)
 		image = cau_image_of(KEY, &a[i], 1, NULL);
 		assert_non_null(image);
 		assert_int_equal(cau_image_show(image, &a[i], 1, i == 0), (size_t)2 * QUARTER * page);
-		assert_int_equal(touched_of(&a[i]), 0); // none is read by that, and none is a copy
+		// cau_image_show neither reads nor copies these pages
+		assert_int_equal(touched_of(&a[i]), 0);
 		assert_int_equal(mappings("rw-p", NULL), 2 * (i + 1));
 		for (int k = 0; k < PAGES; k++)
 			assert_int_equal(byte[(size_t)k * page + 7], k < 3 * QUARTER ? 0 : 5);
@@ -189,7 +193,7 @@ static void untouched_pages_are_in_no_image(void **state)
 	}
 }
 
-// A page that is zero where the image is not, and the other way round.
+// A page that is zero in one session only, or in the image only, is not shared.
 static void zeros_of_one_are_not_shown_to_another(void **state)
 {
 	(void)state;
@@ -209,7 +213,7 @@ static void zeros_of_one_are_not_shown_to_another(void **state)
 	cau_pages_give_back(&c);
 }
 
-// No file can be opened, so all pages are looked at.
+// No file can be opened, so all pages count as touched.
 static void without_the_systems_word_all_are_read(void **state)
 {
 	(void)state;
@@ -244,7 +248,7 @@ static void each_key_has_its_own(void **state)
 	assert_non_null(image[0]);
 	assert_ptr_not_equal(image[0], image[1]);
 	assert_int_equal(cau_image_count(), 2);
-	cau_image_release(image[0]); // the older, behind the other in the list
+	cau_image_release(image[0]); // the older image is second in the list
 	assert_int_equal(cau_image_count(), 1);
 	assert_ptr_equal(cau_image_of(2, &a, 1, NULL), image[1]);
 	cau_image_release(image[1]);
@@ -258,13 +262,13 @@ static void of_too_much_and_of_nothing_there_is_none(void **state)
 {
 	(void)state;
 	cau_pages much, blank, nothing = {0};
-	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // never touched
+	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // the pages were never touched
 	assert_null(cau_image_of(KEY, &much, 1, NULL));
 	*(char *)much.start = 1;
 	assert_null(cau_image_of(KEY, &much, 1, NULL));
 	assert_true(cau_pages_take(&blank, (size_t)PAGES * page));
 	assert_null(cau_image_of(KEY, &blank, 1, NULL));
-	assert_int_equal(touched_of(&blank), 0); // by that look either
+	assert_int_equal(touched_of(&blank), 0); // cau_image_of has not touched any page
 	cau_pages_give_back(&blank);
 	assert_null(cau_image_of(KEY, &nothing, 1, NULL));
 	assert_null(cau_image_of(KEY, NULL, 0, NULL));

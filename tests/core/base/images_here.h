@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether this system has what images are made of (core/base/image.h): files in memory that can be
-// sealed. Where it has, a session that shares nothing is a failure, and not a test to be skipped.
+// Finds whether this system supports images (core/base/image.h): files in memory that can be
+// sealed. If it does, a session without shared pages is a failure, and the test must not be
+// skipped.
 #pragma once
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small pieces are the heap's, large ones whole pages; what grows and shrinks keeps its content.
+// Small pieces come from malloc, large ones are whole pages. Reallocation keeps the content.
 #include "base/large.h"
 
 #include <setjmp.h>

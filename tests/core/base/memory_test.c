@@ -23,9 +23,10 @@ static void test_arrays_are_zeroed_aligned_and_padded(void **state)
 		assert_int_equal((uintptr_t)array[k] % ALIGNMENT, 0);
 		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; i++)
 			assert_int_equal(array[k][i], 0);
-		memset(array[k], (int)k + 1, 3 * counts[k] + ALIGNMENT); // the padding is the caller's too
+		// the padding belongs to the caller too
+		memset(array[k], (int)k + 1, 3 * counts[k] + ALIGNMENT);
 	}
-	for (size_t k = 0; k < 7; k++) // and no array reaches into another
+	for (size_t k = 0; k < 7; k++) // no array overlaps another
 		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; i++)
 			assert_int_equal(array[k][i], k + 1);
 	assert_true(arena.byte_count >= 3 * 1200);
@@ -60,7 +61,7 @@ static void test_copy(void **state)
 	cau_arena_finish(&arena);
 }
 
-// As a session does: a few large arrays among many small ones.
+// Allocates as a session does: a few large arrays among many small ones.
 static void fill(cau_arena *arena, unsigned char *array[40], size_t bytes[40])
 {
 	for (size_t k = 0; k < 40; k++) {
@@ -89,7 +90,8 @@ static void test_arrays_lie_in_few_blocks_alike_in_each_arena(void **state)
 		held += pages[0][b].byte_count;
 	}
 	assert_true(held < arena[0].byte_count + arena[0].byte_count / 4);
-	for (size_t k = 0; k < 40; k++) { // each in one of them, and at the same place in both
+	// each array is in one block, at the same offset in both arenas
+	for (size_t k = 0; k < 40; k++) {
 		int32_t in = -1;
 		for (int32_t b = 0; b < count[0] && in < 0; b++) {
 			unsigned char *start = pages[0][b].start;

@@ -31,7 +31,7 @@ static void test_pages_are_zeroed_and_counted(void **state)
 		cau_pages_give_back(&pages[k]);
 	assert_int_equal(cau_pages_held(), before);
 	assert_null(pages[0].start);
-	cau_pages_give_back(&pages[0]); // empty now
+	cau_pages_give_back(&pages[0]); // the pages are empty now
 	assert_int_equal(cau_pages_held(), before);
 }
 
@@ -44,15 +44,15 @@ static void test_too_much_is_refused(void **state)
 	cau_pages_give_back(&pages);
 }
 
-// Pages that were written count as touched. Asking touches none.
+// Pages that were written count as touched. cau_pages_touched touches no page.
 static void test_touched_pages_are_known(void **state)
 {
 	(void)state;
-	enum { COUNT = 1500 }; // more than are asked for at once
+	enum { COUNT = 1500 }; // more than one read of cau_pages_touched
 	static uint8_t touched[COUNT];
 	size_t page = (size_t)sysconf(_SC_PAGESIZE);
 	cau_pages pages;
-	assert_true(cau_pages_take(&pages, COUNT * page + 1)); // the last is a part of one
+	assert_true(cau_pages_take(&pages, COUNT * page + 1)); // the allocation ends within a page
 	for (int round = 0; round < 2; round++) {
 		cau_pages_touched(&pages, touched);
 		for (int k = 0; k < COUNT; k++)

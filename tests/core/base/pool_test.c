@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every part once, whatever the number of threads, over very many loops.
+// Every part runs once, for any number of threads, in very many loops.
 #include "base/pool.h"
 
 #include <pthread.h>
@@ -23,7 +23,7 @@ typedef struct tally {
 static void count_part(void *context, int32_t index)
 {
 	tally *work = context;
-	work->count[index]++; // parts have their own cell: no lock is needed if each runs once
+	work->count[index]++; // each part has its own cell, so no lock is needed if each part runs once
 }
 
 static void test_every_part_once(void **state)
@@ -60,7 +60,8 @@ static void test_the_most_parts(void **state)
 	cau_pool_destroy(pool);
 }
 
-// What one loop wrote, the next one reads in other parts: a sum handed round.
+// Values that one loop writes are read in other parts of the next loop: a sum that passes from part
+// to part.
 typedef struct chain {
 	int64_t value[2][4];
 	int32_t from;
@@ -91,13 +92,13 @@ static void test_loops_follow_each_other(void **state)
 	cau_pool_destroy(NULL);
 }
 
-// A helper that loses its core in the middle of a part, as on a machine that others use.
+// A helper that loses its core in the middle of a part, as on a machine that other programs use.
 typedef struct stall {
 	pthread_t caller;
 	_Atomic int stalled, by_helpers;
 } stall;
 
-// By far more than a loop takes, so that the caller is through with its parts meanwhile.
+// Much longer than a loop takes, so that the caller finishes its own parts meanwhile.
 static const long stall_ns = 50000000;
 
 static void stall_once(void *context, int32_t index)
@@ -111,10 +112,11 @@ static void stall_once(void *context, int32_t index)
 	}
 	atomic_fetch_add(&work->by_helpers, 1);
 	if (!atomic_exchange(&work->stalled, 1))
-		nanosleep(&(struct timespec){.tv_nsec = stall_ns}, NULL); // the stall itself
+		// the stall: the helper sleeps in its part
+		nanosleep(&(struct timespec){.tv_nsec = stall_ns}, NULL);
 }
 
-// Loops until the helper has stalled in one: the caller works alone from there.
+// Runs loops until the helper has stalled in one. From then on the caller works alone.
 static void run_into_a_stall(cau_pool *pool, stall *work)
 {
 	for (int loop = 0; loop < 100000 && !work->stalled; loop++)
@@ -123,7 +125,7 @@ static void run_into_a_stall(cau_pool *pool, stall *work)
 	atomic_store(&work->by_helpers, 0);
 }
 
-// After such a wait the caller does some thousand parts alone, then shares them again.
+// After such a wait the caller does some thousand parts alone. Then it shares parts again.
 static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 {
 	(void)state;
@@ -139,8 +141,8 @@ static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 	cau_pool_destroy(pool);
 }
 
-// The caller sleeps in its first part until the helper has had one, or for `PATIENCE_MS`: the
-// helper of a loop that is shared may need that long for a core.
+// The caller sleeps in its first part until the helper has had a part, or for PATIENCE_MS. Even in
+// a shared loop the helper may need that long to get a core.
 enum { PATIENCE_MS = 500, LONG_LOOPS = 6 };
 
 static void wait_for_a_helper(void *context, int32_t index)
@@ -153,9 +155,9 @@ static void wait_for_a_helper(void *context, int32_t index)
 			nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 }
 
-// However many parts a loop has, it is as many of them that the caller does alone: a large session,
-// whose loops are long, shares them again within the six. Were loops counted instead, thousands
-// would not do.
+// The caller works alone for a number of parts, not of loops. So a large session, whose loops are
+// long, shares them again within LONG_LOOPS loops. If loops were counted, thousands would be
+// needed.
 static void test_long_loops_are_shared_again_as_soon(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of symmetric matrices by what defines them.
+// Functions of symmetric matrices against their definitions.
 #include "base/symmetric.h"
 
 #include <setjmp.h>
@@ -13,10 +13,10 @@
 #include "core/tool/tools.h"
 
 enum { DRAWS = 500 };
-// Jacobi leaves a few roundings of the largest entry.
+// The Jacobi iteration leaves a few roundings of the largest entry.
 static const double TOLERANCE = 2e-14;
 
-// V diag(value) V^T from a random rotation.
+// V diag(value) V^T, with a random rotation V.
 static void random_symmetric(uint64_t *random, const double value[3], double out[6])
 {
 	double axis[3], v[3][3], scaled[3][3], full[3][3];
@@ -79,7 +79,8 @@ static void test_powers(void **state)
 		assert_near(root2[0] * root2[0] + root2[2] * root2[2], two[0], 3 * TOLERANCE);
 		assert_near(root2[1] * root2[1] + root2[2] * root2[2], two[1], 3 * TOLERANCE);
 		assert_near((root2[0] + root2[1]) * root2[2], two[2], 3 * TOLERANCE);
-		assert_true(root2[0] > 0 && root2[0] * root2[1] > root2[2] * root2[2]); // the positive root
+		// the root is positive definite
+		assert_true(root2[0] > 0 && root2[0] * root2[1] > root2[2] * root2[2]);
 	}
 }
 
@@ -89,7 +90,7 @@ static void test_floor_and_identity(void **state)
 	const double identity[6] = {1, 1, 1, 0, 0, 0}, negative[6] = {-4, 1, 9, 0, 0, 0};
 	double out[6];
 	cau_symmetric_power3(identity, 0.5, 0, out);
-	assert_memory_equal(out, identity, sizeof out); // exactly: rest must be silent
+	assert_memory_equal(out, identity, sizeof out); // exact, so that forces at rest are 0
 	cau_symmetric_power3(negative, 0.5, 0.25, out);
 	assert_near(out[0], 0.5, TOLERANCE);
 	assert_near(out[1], 1, TOLERANCE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A bar of cells along x, and tissue to fill it with. Include after cmocka.h.
+// A bar of cells along x, and a tissue for these cells. Include after cmocka.h.
 #pragma once
 
 #include <math.h>
@@ -16,7 +16,7 @@ static inline void assert_within(double found, double wanted, double share)
 		fail_msg("%.9g, but %.9g is wanted within %g %%", found, wanted, 100 * share);
 }
 
-// Liver's, without blood flow and death, so that closed forms hold.
+// Properties of liver, without perfusion and damage, so that closed forms hold.
 static const cau_bioheat_material plain_tissue = {.conductivity_w_mk = 0.52,
                                                   .density_kg_m3 = 1079,
                                                   .specific_heat_j_kgk = 3540,

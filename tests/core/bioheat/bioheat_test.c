@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Heat in cells against closed forms, within 1 %: conduction, perfusion, boiling, a boiling front,
-// a blade, damage; and the ledger.
+// Tests heat in cells against closed forms, within 1 %: conduction, perfusion, boiling, a boiling
+// front, a blade, damage. Also tests the energy ledger.
 #include "bioheat/bioheat.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 static const double PI = 3.14159265358979323846, SIDE_M = 1e-4;
 static const double WATER_HEAT = 4186, BOILING = 2.257e6, DRY_W_MK = 0.2;
 
-// What is left of a cosine over the bar, 10 K high, after a time.
+// Returns the remaining share of a cosine over the bar, 10 K high, after a time.
 static double cosine_left(double pull, double seconds)
 {
 	enum { LENGTH = 40 };
@@ -41,8 +41,8 @@ static void a_cosine_decays_by_diffusivity(void **state)
 		assert_within(cosine_left(1, seconds), exp(-diffusivity * wave * wave * seconds), 0.01);
 }
 
-// Tissue that is stretched to 1.5 times its length conducts over 1.5 times the way; one that is
-// compressed to half, over half.
+// Tissue that is stretched to 1.5 times its length conducts over 1.5 times the distance. Tissue
+// that is compressed to half conducts over half.
 static void stretched_tissue_conducts_over_its_length(void **state)
 {
 	(void)state;
@@ -66,7 +66,7 @@ static void blood_carries_heat_away(void **state)
 		bar.temperature[i] = 60;
 	run(&bar, NULL, 60);
 	assert_within(bar.temperature[1] - 37, 23 * exp(-40000.0 / (1079 * 3540) * 60), 0.01);
-	bar.damage[1] = 1; // its vessels have closed
+	bar.damage[1] = 1; // the cell's blood vessels have closed
 	bar.temperature[0] = bar.temperature[1] = bar.temperature[2] = 40;
 	double before = bar.ledger.perfused_j, volume = SIDE_M * SIDE_M * SIDE_M;
 	run(&bar, NULL, 1.0 / 60);
@@ -74,7 +74,7 @@ static void blood_carries_heat_away(void **state)
 	cau_arena_finish(&arena);
 }
 
-// Steady state of a perfused bar at a wall that is held: exp(-x sqrt(omega / k)).
+// The steady state of a perfused bar at a wall of constant temperature is exp(-x sqrt(omega / k)).
 static void a_perfused_bar_at_a_wall(void **state)
 {
 	(void)state;
@@ -92,7 +92,7 @@ static void a_perfused_bar_at_a_wall(void **state)
 	cau_arena_finish(&arena);
 }
 
-// 1 mm^3 of tissue takes 1.9 J until it is dry.
+// 1 mm^3 of tissue takes up 1.9 J until it is dry.
 static void water_boils_off_by_its_enthalpy(void **state)
 {
 	(void)state;
@@ -110,11 +110,12 @@ static void water_boils_off_by_its_enthalpy(void **state)
 	assert_near(bar.water[0], 0.5, 1e-6);
 	run(&bar, NULL, boil);
 	assert_near(bar.water[0], 0, 0);
-	assert_within(bar.ledger.delivered_j, warm + boil, 1e-9); // it takes no more once it is dry
+	assert_within(bar.ledger.delivered_j, warm + boil, 1e-9); // a dry cell takes up no more
 	cau_arena_finish(&arena);
 }
 
-// Neumann's solution for one phase: lambda exp(lambda^2) erf(lambda) = St / sqrt(pi).
+// Returns lambda of Neumann's solution for one phase: lambda exp(lambda^2) erf(lambda) = St /
+// sqrt(pi).
 static double front_factor(double stefan)
 {
 	double least = 0, most = 5;
@@ -128,7 +129,8 @@ static double front_factor(double stefan)
 	return least;
 }
 
-// A wall at 300 degC dries tissue that is at 100 degC: the front goes with the root of time.
+// A wall at 300 degC dries tissue that is at 100 degC. The front moves with the square root of
+// time.
 static void a_boiling_front_moves_with_the_root_of_time(void **state)
 {
 	(void)state;
@@ -150,7 +152,7 @@ static void a_boiling_front_moves_with_the_root_of_time(void **state)
 	cau_arena_finish(&arena);
 }
 
-// A cube in gas, through its six sides.
+// A cube cools in gas, through its six sides.
 static void a_surface_cools_in_gas(void **state)
 {
 	(void)state;
@@ -173,7 +175,8 @@ static void a_blade_cools_and_gives_its_heat(void **state)
 	cau_blade blade = {.temperature_c = 200, .heat_capacity_j_k = 0.05, .cooling_w_k = 1e-3};
 	run(&bar, &blade, 30);
 	assert_within(blade.temperature_c - 37, 163 * exp(-30 * 1e-3 / 0.05), 0.01);
-	// With one cell, of a third of its heat capacity: the difference falls with 1 / C + 1 / (3 C).
+	// The cell has a third of the blade's heat capacity. The difference falls with 1 / C + 1 / (3
+	// C).
 	double capacity = cau_bioheat_capacity(&bar, 0), rate = 0.52 * 1e-6 * 4 / (3 * capacity);
 	blade = (cau_blade){.temperature_c = 77, .heat_capacity_j_k = 3 * capacity};
 	bar.contact[bar.contact_count++] = (cau_contact_cell){.cell = 0, .over_length_m = 1e-6};
@@ -183,7 +186,7 @@ static void a_blade_cools_and_gives_its_heat(void **state)
 	cau_arena_finish(&arena);
 }
 
-// A blade much lighter than its cell comes to the cell's temperature, and never passes it.
+// A blade much lighter than its cell reaches the cell's temperature, and never passes it.
 static void a_light_blade_is_stable(void **state)
 {
 	(void)state;
@@ -203,7 +206,7 @@ static void a_light_blade_is_stable(void **state)
 	cau_arena_finish(&arena);
 }
 
-// The shaft cools it within less than a step, whether it touches tissue or not.
+// The shaft cools the blade within less than a step. The blade touches no tissue here.
 static void a_blade_that_cools_fast_is_stable(void **state)
 {
 	(void)state;
@@ -238,7 +241,7 @@ static void damage_follows_arrhenius(void **state)
 	cau_arena_finish(&arena);
 }
 
-// Everything at once: what goes in is what is found.
+// With all effects at once, the energy that enters equals the energy that the ledger finds.
 static void the_ledger_closes(void **state)
 {
 	(void)state;
@@ -281,7 +284,8 @@ static void nothing_flows_through_a_cell_that_is_gone(void **state)
 	cau_arena_finish(&arena);
 }
 
-// What is left below half a degree is forgotten in one step, and counts as perfused.
+// If all cells are within half a degree of ambient, they are set to ambient in one step. Their heat
+// counts as perfused.
 static void the_last_warmth_is_forgotten(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells are found by their place and joined with their neighbours, in any order; a severed one with
-// none.
+// Tests that cells are found by position and joined with their neighbours, whatever the order of
+// addition. A severed cell has no neighbours.
 #include "bioheat/cells.h"
 
 #include <setjmp.h>
@@ -14,8 +14,8 @@
 
 enum { SIDE = 6, COUNT = SIDE * SIDE * SIDE };
 
-// A cube of cells round the origin, in an order that jumps about (95 and 216 have no divisor in
-// common).
+// Makes a cube of cells around the origin. Cells are added in a mixed order (95 and 216 have no
+// common divisor).
 static cau_cells cube(cau_arena *arena)
 {
 	cau_cells cells;
@@ -46,11 +46,13 @@ static void neighbours_are_those_beside(void **state)
 		for (int side = 0; side < CAU_CELL_SIDES; side++)
 			assert_int_equal(cells.neighbour[CAU_CELL_SIDES * cell + side],
 			                 beyond(&cells, cell, side));
-	assert_int_equal(cau_cells_add(&cells, (int32_t[]){50, 0, 0}, 0, 1), -1); // full
+	// The capacity is used up.
+	assert_int_equal(cau_cells_add(&cells, (int32_t[]){50, 0, 0}, 0, 1), -1);
 	cau_arena_finish(&arena);
 }
 
-// Into a set of other cells, of which some are in the same places: they are found no more.
+// Copies into a set of other cells, some at the same positions. The former cells are no longer
+// found.
 static void a_copy_has_the_same_cells_and_no_others(void **state)
 {
 	(void)state;
@@ -68,7 +70,7 @@ static void a_copy_has_the_same_cells_and_no_others(void **state)
 				const int32_t place[] = {x, y, z};
 				assert_int_equal(cau_cells_find(&to, place), cau_cells_find(&from, place));
 			}
-	// What comes later comes to the same place of either.
+	// A later cell gets the same bucket in both sets.
 	assert_memory_equal(to.bucket, from.bucket, (size_t)to.bucket_count * sizeof *to.bucket);
 	assert_memory_equal(to.neighbour, from.neighbour,
 	                    (size_t)COUNT * CAU_CELL_SIDES * sizeof *to.neighbour);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Current against closed forms, within 1 %: a bar, a sphere, a needle, a disc in a sheet; and that
-// what enters returns, as heat.
+// Tests current against closed forms, within 1 %: a bar, a sphere, a needle, a disc in a sheet.
+// Also tests that the current that enters returns, and that its power becomes heat.
 #include "bioheat/current.h"
 
 #include <math.h>
@@ -23,7 +23,8 @@ static void solve(cau_current *current, cau_bioheat *bioheat, double reach_m, bo
 	assert_within(current->returned_s, current->conductance_s, 0.01);
 }
 
-// Between its ends, straight, stretched to twice its length and compressed to half.
+// Current between the ends of a bar: unchanged, stretched to twice its length, and compressed to
+// half.
 static void a_bar_between_two_jaws(void **state)
 {
 	(void)state;
@@ -41,7 +42,8 @@ static void a_bar_between_two_jaws(void **state)
 		current.electrode[1] = (cau_electrode_cell){LENGTH - 1, 2 * SIDE_M * pull, 0};
 		current.electrode_count = 2;
 		solve(&current, &bar, 1e-2, false);
-		// Its length times the stretch, its section over it.
+		// Stretching multiplies the bar's length by the stretch and divides its cross section by
+		// it.
 		double ohm = LENGTH * SIDE_M * stretch[k] / (SIGMA * SIDE_M * SIDE_M / stretch[k]);
 		assert_within(1 / current.conductance_s, ohm, 1e-4);
 		cau_current_heat(&current, &bar, 30);
@@ -60,8 +62,8 @@ static double from_sphere(cau_vec3 point, const double *size_m)
 	return cau_length(point) - size_m[0];
 }
 
-// Of a spheroid round z with half axes size_m[0] and size_m[1]: to first order, right at its
-// surface.
+// Returns the distance from a spheroid around z with half axes size_m[0] and size_m[1], to first
+// order. It is exact at the surface.
 static double from_spheroid(cau_vec3 p, const double *size_m)
 {
 	cau_vec3 scaled = {p.x / size_m[0], p.y / size_m[0], p.z / size_m[1]};
@@ -85,7 +87,8 @@ static cau_vec3 middle_of(int32_t x, int32_t y, int32_t z)
 	return (cau_vec3){(x + 0.5) * SIDE_M, (y + 0.5) * SIDE_M, (z + 0.5) * SIDE_M};
 }
 
-// Tissue outside the electrode, within `reach` cells of it, in `layers` layers of cells.
+// Adds tissue outside the electrode, within `reach` cells of the origin, in `layers` layers of
+// cells.
 static void fill(electrode_stage *stage, distance_function *distance, const double *size_m,
                  int reach, int lowest, int layers)
 {
@@ -98,8 +101,8 @@ static void fill(electrode_stage *stage, distance_function *distance, const doub
 			}
 }
 
-// Cells beside the electrode have its potential where its surface is, on the way to the neighbour
-// that is within.
+// Connects cells next to the electrode. Each has the electrode's potential at the electrode's
+// surface, on the line to a neighbour inside the electrode.
 static void touch(electrode_stage *stage, distance_function *distance, const double *size_m)
 {
 	const cau_cells *cells = &stage->bioheat.cells;
@@ -170,7 +173,7 @@ static void a_needle_in_tissue_without_end(void **state)
 	cau_arena_finish(&arena);
 }
 
-// The return electrode is 30 mm away.
+// A disc in a sheet, with the return electrode 30 mm away.
 static void a_disc_in_a_sheet(void **state)
 {
 	(void)state;
@@ -187,7 +190,7 @@ static void a_disc_in_a_sheet(void **state)
 	cau_arena_finish(&arena);
 }
 
-// The potential of the solve before is where the next one begins.
+// The potential of the last solve is the start of the next one.
 static void a_second_solve_has_nothing_to_do(void **state)
 {
 	(void)state;
@@ -201,7 +204,7 @@ static void a_second_solve_has_nothing_to_do(void **state)
 	assert_true(current.iterations > 10);
 	solve(&current, &bar, 1e-2, false);
 	assert_int_equal(current.iterations, 0);
-	cau_bioheat_take_out(&bar, 15); // nothing flows where it is interrupted
+	cau_bioheat_take_out(&bar, 15); // a gap interrupts the current
 	cau_current_solve(&current, &bar, 1e-2, false, 1e-9, 2000);
 	assert_near(current.conductance_s, 0, 1e-9 * SIGMA * SIDE_M);
 	cau_arena_finish(&arena);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A generator keeps its power between its limits of voltage and current.
+// Tests that a generator keeps its power within its limits of voltage and current.
 #include "bioheat/generator.h"
 
 #include <math.h>
@@ -40,8 +40,8 @@ static void a_great_load_meets_the_limit_of_voltage(void **state)
 	assert_near(cau_generator_into(&cut, 0).voltage_v, 300, 1e-9);
 }
 
-// A sine that is on for a share D of the time has the crest factor sqrt(2 / D). So a crest factor
-// says how long the generator is on: always at 1.41, half at 2, and 6 % at 5.8.
+// A sine that is on for a share D of the time has the crest factor sqrt(2 / D). So the crest factor
+// determines how long the generator is on: always at 1.41, half of the time at 2, and 6 % at 5.8.
 static void the_crest_factor_says_the_duty(void **state)
 {
 	(void)state;
@@ -62,7 +62,7 @@ static void the_crest_factor_says_the_duty(void **state)
 	}
 }
 
-// The band of loads into which the set power goes ends where a limit is met.
+// The range of loads that get the set power ends at the limits of voltage and current.
 static void the_band_follows_from_the_limits(void **state)
 {
 	(void)state;

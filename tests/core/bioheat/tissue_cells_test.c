@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells of sheets and solids: their volume, where they are in bent and stretched tissue, and what
+// Tests cells of sheets and solids: their volume, their positions in deformed tissue, and what
 // holds an element together.
 #include "bioheat/tissue_cells.h"
 
@@ -47,7 +47,8 @@ static rig small_slab(void)
 	return r;
 }
 
-// Liver without blood, as an organ that was taken out; the same layer by default is fat.
+// A layer of liver without perfusion, as an organ outside the body. Without a stated tissue the
+// layer is fat.
 static void a_layer_is_of_its_tissue(void **state)
 {
 	(void)state;
@@ -82,8 +83,7 @@ static void cells_have_the_tissue_s_volume(void **state)
 	rig_finish(&slab);
 }
 
-// Under an affine motion every cell goes where its rest place goes; a sheet's thickness does not
-// stretch with it.
+// Under an affine motion every cell moves as its rest position does.
 static void cells_move_with_the_tissue(void **state)
 {
 	(void)state;
@@ -111,7 +111,7 @@ static void cells_move_with_the_tissue(void **state)
 	rig_finish(&r);
 }
 
-// J F^-1 F^-T of a stretch along the axes; a sheet keeps its volume.
+// The pull-back is J F^-1 F^-T of a stretch along the axes. A sheet keeps its volume.
 static void conductivity_is_pulled_back(void **state)
 {
 	(void)state;
@@ -138,7 +138,8 @@ static void conductivity_is_pulled_back(void **state)
 	rig_finish(&sheet);
 }
 
-// However flat or long an element is: a snapshot has the value as a float, and asks for the bounds.
+// The pull-back has bounds, however flat or long an element is. A snapshot stores it as a float and
+// checks these bounds.
 static void a_pull_back_has_bounds(void **state)
 {
 	(void)state;
@@ -156,7 +157,7 @@ static void a_pull_back_has_bounds(void **state)
 	rig_finish(&slab);
 }
 
-// A slit of cells: an element holds until it goes all the way through.
+// A slit in the cells separates an element only after the slit passes all the way through.
 static void a_slit_separates_an_element(void **state)
 {
 	(void)state;
@@ -172,14 +173,14 @@ static void a_slit_separates_an_element(void **state)
 		}
 		rows++;
 	}
-	assert_in_range(rows, 4, 5); // where its middle crosses the longest side
+	assert_in_range(rows, 4, 5); // where the slit's middle crosses the longest side
 	assert_true(cau_tissue_cells_separated(&cells, 0));
 	assert_false(cau_tissue_cells_separated(&cells, 1));
 	rig_finish(&r);
 }
 
-// The lips of a cut whose element is gone: what hangs on the other triangle moves with it, and what
-// hangs on nothing is taken out with its heat.
+// The element of a cut's lips is removed. Cells that are connected to the other triangle move with
+// it. Cells without a connection are severed, and their heat is removed.
 static void what_an_element_leaves_moves_with_its_neighbour(void **state)
 {
 	(void)state;
@@ -216,7 +217,7 @@ static void what_an_element_leaves_moves_with_its_neighbour(void **state)
 	rig_finish(&r);
 }
 
-// Two sheets, 2 mm apart, and links between their corners.
+// Makes two sheets, 2 mm apart, and links between their corners.
 static rig tied_sheets(void)
 {
 	static const double below[] = {0, 0, 0, 4e-3, 0, 0, 0, 4e-3, 0};
@@ -231,7 +232,7 @@ static rig tied_sheets(void)
 	return r;
 }
 
-// Cells in the plane half way between the sheets.
+// Severs the cells in the plane half way between the sheets. Returns how many there are.
 static int32_t take_out_half_way(cau_tissue_cells *cells)
 {
 	int32_t found = 0;
@@ -241,8 +242,8 @@ static int32_t take_out_half_way(cau_tissue_cells *cells)
 	return found;
 }
 
-// A link has its section times its length of tissue, and goes when its cells are interrupted. What
-// it ties keeps its own cells.
+// A link has tissue of its section times its length. A link is separated when its cells are
+// interrupted. The sheets at its ends keep their own cells.
 static void a_link_is_of_cells(void **state)
 {
 	(void)state;
@@ -271,7 +272,7 @@ static void a_link_is_of_cells(void **state)
 	rig_finish(&r);
 }
 
-// Its cells lie around it wherever its ends are, and conduct along it as far as it is long.
+// A link's cells stay around the link wherever its ends are. They conduct along its present length.
 static void a_link_s_cells_move_with_its_ends(void **state)
 {
 	(void)state;
@@ -282,7 +283,7 @@ static void a_link_s_cells_move_with_its_ends(void **state)
 	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_PRIMITIVE_LINK, 0);
 	assert_true(cau_tissue_cells_fill(&cells, link));
 	double x[18];
-	for (int i = 0; i < 18; i += 3) { // pulled to twice its length, and turned
+	for (int i = 0; i < 18; i += 3) { // pulled to twice the length, and turned
 		const double *rest = r.tissue.rest + i;
 		memcpy(x + i, (double[]){2 * rest[2] + 0.1, rest[1], rest[0]}, 3 * sizeof *x);
 	}
@@ -292,7 +293,7 @@ static void a_link_s_cells_move_with_its_ends(void **state)
 		cau_vec3 off = cau_sub(cau_tissue_cells_at(&cells, i, x), a);
 		assert_true(hypot(off.y, off.z) < radius + SIDE_M);
 		cau_tissue_cells_stretch(&cells, i, x);
-		assert_near(cells.bioheat.cells.pull[3 * i + 2], 0.5, 1e-5); // it lies along z at rest
+		assert_near(cells.bioheat.cells.pull[3 * i + 2], 0.5, 1e-5); // the link is along z at rest
 	}
 	rig_finish(&r);
 }

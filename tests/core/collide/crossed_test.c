@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What crosses is found, and nothing else: one sheet is put through the other at random, and each
-// vertex that is exempt belongs to an edge that pierces a face, or to that face.
+// Tests that exactly the crossing vertices are exempted. One sheet is pushed through the other at
+// random. Each exempt vertex must be a corner of an edge that pierces a face, or of that face.
 #include "core/collide/sheets.h"
 
 #include <stdlib.h>
 
 static const double THICKNESS_M = 1e-3;
 
-// Every edge against every face.
+// Marks the corners of all crossings, found by testing every edge against every face. Returns the
+// number of crossings.
 static int mark(const sheets *s, uint8_t *expected)
 {
 	const cau_tissue *t = &s->r.tissue;
@@ -61,7 +62,8 @@ static void sheets_apart_cross_nothing(void **state)
 	rig_finish(&s.r);
 }
 
-// It is looked for where something touches again, and in the first tick, of which nothing is known.
+// A search for crossings is needed when a vertex takes part in contact again, and in the first
+// tick, when no earlier state is known.
 static void it_is_looked_for_where_something_touches_again(void **state)
 {
 	(void)state;
@@ -73,12 +75,12 @@ static void it_is_looked_for_where_something_touches_again(void **state)
 	s.collide.exempt[3] = 1; // jaws close
 	assert_false(cau_collide_touches_again(&s.collide));
 	cau_collide_begin(&s.collide, s.pool, s.x);
-	s.collide.exempt[3] = 0; // and open
+	s.collide.exempt[3] = 0; // jaws open
 	assert_true(cau_collide_touches_again(&s.collide));
 	cau_collide_begin(&s.collide, s.pool, s.x);
 	cau_collide_let_go(&s.collide, 4);
 	assert_true(s.collide.exempt[4]);
-	s.collide.exempt[4] = 0; // of the next tick
+	s.collide.exempt[4] = 0; // the next tick
 	assert_true(cau_collide_touches_again(&s.collide));
 	rig_finish(&s.r);
 }

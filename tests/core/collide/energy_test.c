@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy and gradient of touching sheets: against finite differences, nothing beyond the thickness,
-// the same whatever was foreseen, and the friction of a slide.
+// Tests energy and gradient of touching sheets. The gradient agrees with finite differences. Sheets
+// beyond the thickness have no energy. Pairs found in advance change nothing. A slide has friction.
 #include "core/collide/sheets.h"
 
 #include <stdlib.h>
 
-static const double STEP_M = 1e-9;     // of a difference
-static const double DIFFERENCE = 1e-4; // where two nearest places are equally near it has a kink
+static const double STEP_M = 1e-9; // difference of positions, m
+// Relative error. The gradient has a kink where two nearest points are equally near.
+static const double DIFFERENCE = 1e-4;
 static const double ROUNDING = 1e-12;
 
 static void gradient_is_the_energys(void **state)
@@ -21,7 +22,7 @@ static void gradient_is_the_energys(void **state)
 	assert_true(collide->touching_count > 100 && collide->grip_count == collide->touching_count);
 	double *x = malloc(3 * (size_t)n * sizeof *x), *gradient = malloc(3 * (size_t)n * sizeof *x);
 	memcpy(x, s.x, 3 * (size_t)n * sizeof *x);
-	for (int32_t i = 0; i < 3 * n; i++) // some slide, some stick, some come nearer
+	for (int32_t i = 0; i < 3 * n; i++) // some pairs slide, some stick, some come nearer
 		x[i] += 1e-4 * sheets_draw(&s);
 	cau_collide_evaluate(collide, s.pool, x);
 	memcpy(gradient, collide->gradient, 3 * (size_t)n * sizeof *x);
@@ -41,7 +42,7 @@ static void gradient_is_the_energys(void **state)
 		off += fabs((up - down) / (2 * STEP_M) - gradient[i]) > DIFFERENCE * most;
 	}
 	assert_int_equal(off, 0);
-	for (int c = 0; c < 3; c++) // action and reaction
+	for (int c = 0; c < 3; c++) // action equals reaction
 		assert_true(fabs(total[c]) < 1e-9 * most);
 	free(x);
 	free(gradient);
@@ -59,7 +60,7 @@ static void apart_is_nothing(void **state)
 	rig_finish(&s.r);
 }
 
-// What is found besides changes no bit.
+// Pairs that are found only for a longer step change no bit of the result.
 static void foresight_changes_nothing(void **state)
 {
 	(void)state;
@@ -93,8 +94,8 @@ static void expect_as_found_anew(sheets *s)
 	free(gradient);
 }
 
-// What was found ticks ago, and mended since where tissue moved, was cut or died, tells the same
-// bits as what is found anew: forces, and steps that are held back.
+// Pairs are kept over many ticks and updated where tissue moved, was cut or died. They give the
+// same bits as a new search: the same forces, and the same steps that are held back.
 static void what_is_kept_changes_nothing(void **state)
 {
 	(void)state;
@@ -105,10 +106,10 @@ static void what_is_kept_changes_nothing(void **state)
 	cau_collide *collide = &s.collide;
 	double *held = malloc(3 * (size_t)n * sizeof *held), *wanted = malloc(3 * (size_t)n * 8);
 	for (int tick = 0; tick < TICKS; tick++) {
-		if (tick % CUT == 0) // some faces come, some go
+		if (tick % CUT == 0) // some faces appear, some disappear
 			s.mask[(tick * 7 % faces) >> 5] ^= 1u << (tick * 7 % faces & 31);
 		cau_surface_list(&collide->surface, s.mask);
-		for (int32_t i = 0; i < 3 * n; i++) // most stay where they are
+		for (int32_t i = 0; i < 3 * n; i++) // most vertices do not move
 			collide->step[i] =
 				(i / 3 + tick) % n < MOVING ? (i % 3 ? 5e-4 * sheets_draw(&s) : 8e-4) : 0;
 		memcpy(wanted, collide->step, 3 * (size_t)n * sizeof *wanted);
@@ -133,7 +134,8 @@ static void what_is_kept_changes_nothing(void **state)
 	rig_finish(&s.r);
 }
 
-// The stiffness that the solve is told of is the gradient's change, where no force is large.
+// The stiffness that cau_collide_apply uses equals the change of the gradient, if no force is
+// large.
 static void stiffness_is_the_gradients_change(void **state)
 {
 	(void)state;
@@ -159,7 +161,7 @@ static void stiffness_is_the_gradients_change(void **state)
 	rig_finish(&s.r);
 }
 
-// A slide is resisted by friction times what presses, and no more.
+// Friction resists a slide by the friction coefficient times the pressing force, and by no more.
 static void a_slide_rubs(void **state)
 {
 	(void)state;
@@ -174,7 +176,7 @@ static void a_slide_rubs(void **state)
 		pressed += collide->grip[k].most_n;
 	memcpy(x, s.x, 3 * (size_t)n * sizeof *x);
 	double energy[2];
-	for (int k = 0; k < 2; k++) { // far beyond where it sticks, where the pairs' distances stay
+	for (int k = 0; k < 2; k++) { // far beyond sticking; the pairs keep their distances
 		for (int32_t v = upper; v < n; v++)
 			x[3 * (size_t)v] = s.x[3 * (size_t)v] + 2e-3 * (k + 1);
 		energy[k] = cau_collide_evaluate(collide, s.pool, x) - collide->energy_j;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Filtered steps: sheets that are thrown at each other step after step end on the sides they began
-// on, those that go apart are let alone, and where pairs find no room nothing moves that could
-// cross.
+// Tests filtered steps. Sheets that move at each other step after step end on the sides on which
+// they began. Sheets that part are not changed. If pairs exceed the capacity, nothing moves that
+// could cross.
 #include "core/collide/sheets.h"
 
 #include <stdlib.h>
@@ -20,7 +20,7 @@ static int crossings(const sheets *s, const double *x)
 	return count;
 }
 
-// Every pair keeps a fifth of its distance, or of its thickness where that is less.
+// Expects that every pair keeps a fifth of its distance, or of its thickness if that is less.
 static void expect_kept(const sheets *s, const double *before)
 {
 	for (int32_t k = 0; k < s->collide.pair_count; k++) {
@@ -34,7 +34,8 @@ static void expect_kept(const sheets *s, const double *before)
 	}
 }
 
-// Steps of several thicknesses any way, and towards each other. Returns the steps held back.
+// Makes random steps of several thicknesses, with a drift of the sheets towards each other. Returns
+// the number of steps that were held back.
 static int throw_together(sheets *s, bool filtered)
 {
 	int32_t n = s->r.tissue.vertex_count, upper = s->r.tissue.layer[1].first_vertex;
@@ -73,11 +74,11 @@ static void thrown_sheets_stay_apart(void **state)
 	rig_finish(&s.r);
 	sheets_begin(&s, 5e-4, 0, 2e-3);
 	throw_together(&s, false);
-	assert_true(crossings(&s, s.x) > 0); // it was needed, and would be seen
+	assert_true(crossings(&s, s.x) > 0); // the filter was needed, and crossings would be found
 	rig_finish(&s.r);
 }
 
-// Where every third vertex is fixed, moving parts back does not settle it: corners have to stop.
+// Every third vertex is fixed. Moving parts back is not enough then, and corners have to stop.
 static void what_cannot_make_room_stops(void **state)
 {
 	(void)state;
@@ -104,7 +105,7 @@ static void parting_sheets_are_let_go(void **state)
 	rig_finish(&s.r);
 }
 
-// A sheet that is fixed is no obstacle that gives way: the other one stops.
+// A fixed sheet does not give way. The free sheet stops.
 static void what_is_fixed_is_not_moved(void **state)
 {
 	(void)state;
@@ -123,8 +124,8 @@ static void what_is_fixed_is_not_moved(void **state)
 	rig_finish(&s.r);
 }
 
-// Pairs that find room once only what the step needs is looked for hold it back as all those do
-// that are looked for where there is room.
+// If the list of pairs is full, the search keeps only pairs that this step needs. These hold the
+// step back exactly as all pairs do.
 static void scant_room_changes_nothing(void **state)
 {
 	(void)state;
@@ -135,7 +136,8 @@ static void scant_room_changes_nothing(void **state)
 	double *wanted = malloc(3 * (size_t)n * sizeof *wanted), *held = malloc(3 * (size_t)n * 8);
 	for (int32_t i = 0; i < 3 * n; i++)
 		wanted[i] =
-			3e-5 * sheets_draw(&s) - (i % 15 == 2) * 9e-4; // some push others to their limit
+			// some vertices push others to their limit
+			3e-5 * sheets_draw(&s) - (i % 15 == 2) * 9e-4;
 	memcpy(s.collide.step, wanted, 3 * (size_t)n * sizeof *wanted);
 	cau_collide_begin(&s.collide, s.pool, s.x);
 	assert_true(cau_collide_filter(&s.collide, s.pool, s.x, true));
@@ -163,7 +165,7 @@ static double longest_of(const double *step, int32_t count)
 	return most;
 }
 
-// The look at few vertices lets pass what the filter lets be, and nothing else.
+// If the quick check of few vertices accepts a step, the filter does not change that step.
 static void what_passes_is_what_is_let_be(void **state)
 {
 	(void)state;
@@ -182,7 +184,7 @@ static void what_passes_is_what_is_let_be(void **state)
 		cau_collide_see(&s.collide, s.pool, s.x);
 		bool passes = cau_collide_foresee(&s.collide, longest);
 		for (int32_t i = 0; i < 3 * n; i++)
-			s.collide.step[i] = NAN; // but where it is asked for
+			s.collide.step[i] = NAN; // all other vertices, which may not be read
 		for (int32_t i = 0; i < 4 * s.collide.unclear_count; i++) {
 			size_t v = (size_t)s.collide.pair[s.collide.unclear[i / 4]].vertex[i % 4];
 			memcpy(s.collide.step + 3 * v, wanted + 3 * v, 3 * sizeof *wanted);
@@ -205,7 +207,7 @@ static void without_room_nothing_crosses(void **state)
 	(void)state;
 	sheets s;
 	sheets_begin(&s, 5e-4, 0, 2e-3);
-	s.collide.most_pairs = 40; // far from enough once they are near
+	s.collide.most_pairs = 40; // too few once the sheets are near
 	throw_together(&s, true);
 	assert_true(s.collide.cut_short_count > 0);
 	rig_finish(&s.r);

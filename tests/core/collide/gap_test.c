@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distances of random parts against the least over a fine grid of their points.
+// Tests the distances of random parts against the least distance over a fine grid of their points.
 #include "collide/gap.h"
 
 #include "core/rig/rig.h"
@@ -7,7 +7,7 @@
 enum { CASES = 300, GRID = 60 };
 static const double ROUNDING = 1e-12;
 static const double GRID_STEP =
-	2.0 / GRID; // of parts of size 1: how far the grid's least may be off
+	2.0 / GRID; // largest error of the grid's least distance, for parts of size 1
 
 static double draw(uint64_t *random)
 {
@@ -49,7 +49,7 @@ static void expect_least(cau_gap_kind kind, const cau_vec3 corner[4])
 		way = cau_add_scaled(way, gap.weight[i], corner[i]);
 	}
 	assert_true(fabs(sum) < ROUNDING);
-	assert_true(cau_gap_distance(kind, corner) == gap.distance); // to the bit
+	assert_true(cau_gap_distance(kind, corner) == gap.distance); // equal to the bit
 	assert_true(gap.distance <= grid + ROUNDING && gap.distance >= grid - GRID_STEP);
 	assert_true(cau_length(cau_add_scaled(way, -gap.distance, gap.normal)) < ROUNDING);
 	assert_true(cau_gap_along(kind, corner, gap.normal) >= gap.distance - ROUNDING);
@@ -63,7 +63,7 @@ static void random_parts(void **state)
 		cau_vec3 corner[4];
 		for (int i = 0; i < 4; i++)
 			corner[i] = (cau_vec3){draw(&random), draw(&random), draw(&random)};
-		if (k % 3 == 0) // parallel edges, and a vertex beside the face's plane
+		if (k % 3 == 0) // parallel edges, and a vertex in the plane of the face, outside it
 			corner[3] = cau_add(corner[2], cau_sub(corner[1], corner[0]));
 		expect_least(CAU_GAP_VERTEX_FACE, corner);
 		expect_least(CAU_GAP_EDGE_EDGE, corner);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Groups of boxes against what each box alone says in double.
+// Tests groups of boxes against each box alone in double precision.
 #include "collide/lanes.h"
 
 #include "core/rig/rig.h"
 
 enum { CASES = 20000 };
 static const double THICKNESS_M = 5e-4;
-// Of least and most to float, where no place is beyond a metre.
+// Rounding of `least` and `most` to float, for positions within a metre.
 static const double ROUNDING_M = 2e-7;
 
 static double draw(uint64_t *random)
@@ -19,7 +19,7 @@ typedef struct box {
 	double least[3], most[3];
 } box;
 
-// Up to a decimetre wide, somewhere within a few.
+// Returns a random box, at most a decimetre wide, at a position within a few decimetres.
 static box draw_box(uint64_t *random)
 {
 	box b;
@@ -73,7 +73,8 @@ static void groups_meet_what_boxes_meet(void **state)
 	}
 }
 
-// Where doubles just touch, along each axis, from either side, rounding must not come between.
+// Boxes that just touch in double precision are found. This is tested along each axis and from both
+// sides.
 static void what_just_touches_is_met(void **state)
 {
 	(void)state;

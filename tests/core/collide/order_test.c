@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What blocks found, in any order, against an order by its parts.
+// Tests that cau_collide_sort orders pairs by their parts, whatever order blocks found them in.
 #include "collide/collide.h"
 
 #include "core/rig/rig.h"
@@ -15,7 +15,8 @@ static bool is_before(const cau_collide_found *a, const cau_collide_found *b)
 	return a->first != b->first ? a->first < b->first : a->second < b->second;
 }
 
-// Of few parts and many, so that firsts are of several pairs; what belongs to a pair goes with it.
+// Sorts random pairs and expects their order. With few different first parts, several pairs have
+// the same first part. The other members of a pair must move with the pair.
 static void expect_order(int32_t count, int32_t firsts, int32_t seconds, uint64_t *random)
 {
 	static cau_collide_found found[CAU_COLLIDE_SLICE];
@@ -32,7 +33,7 @@ static void expect_order(int32_t count, int32_t firsts, int32_t seconds, uint64_
 		assert_true(found[i].thickness_m == found[i].first + 0.5 * found[i].second);
 		sum -= found[i].stiffness;
 	}
-	assert_true(sum == 0); // whole numbers: none lost, none twice
+	assert_true(sum == 0); // sum of whole numbers: no pair is lost and none is there twice
 }
 
 static void found_is_in_order_of_parts(void **state)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two sheets, one above the other, that a random noise brings near.
+// Two sheets, one above the other. Random noise moves vertices of both near each other.
 #pragma once
 
 #include "collide/collide.h"
@@ -14,13 +14,14 @@ typedef struct sheets {
 	uint64_t random;
 } sheets;
 
-static inline double sheets_draw(sheets *s) // -1 to 1
+static inline double sheets_draw(sheets *s) // returns a random number from -1 to 1
 {
 	s->random = s->random * 6364136223846793005ull + 1442695040888963407ull;
 	return (double)(s->random >> 11) / 4503599627370496.0 - 1;
 }
 
-// `thickness_m` of contact; the upper sheet lies `apart_m` above the lower one.
+// Makes the sheets. Their contact has `thickness_m`. The upper sheet is `apart_m` above the lower
+// one.
 static inline void sheets_begin(sheets *s, double thickness_m, double friction, double apart_m)
 {
 	*s = (sheets){.random = 5};
@@ -31,7 +32,7 @@ static inline void sheets_begin(sheets *s, double thickness_m, double friction, 
 	const cau_tissue *tissue = &s->r.tissue;
 	size_t n = (size_t)tissue->vertex_count;
 	for (int32_t v = tissue->layer[1].first_vertex; v < tissue->vertex_count; v++)
-		tissue->rest[3 * (size_t)v + 2] += 0.05; // at rest nobody is near
+		tissue->rest[3 * (size_t)v + 2] += 0.05; // at rest no parts are near each other
 	assert_int_equal(
 		cau_collide_create(&s->collide, tissue, thickness_m, friction, 1.0 / 60, &s->r.arena, NULL),
 		CAU_OK);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The diagonal system against the printed projections: for one constraint C, unit masses,
-// dx_u = -C grad_u C / sum |grad C|^2 over all its vertices, weighted with
-// omega = w |G|^2 / vertices.
+// The diagonal system against the printed projections. For one constraint C and unit masses, dx_u =
+// -C grad_u C / sum |grad C|^2 over all its vertices, weighted with omega = w |G|^2 / vertices.
 #include "core/constraint/element.h"
 #include "reference/stress.h"
 
 enum { DRAWS = 40 };
-// About forty roundings, with D_m^-1 on both sides.
+// About forty roundings, because D_m^-1 is used on both sides.
 static const double FORCE_TOLERANCE = 1e-11;
 
-// omega of an element map.
+// omega of the element.
 static double omega_of(const rig *r, int kind)
 {
 	cau_element_map map;
@@ -21,7 +20,7 @@ static double omega_of(const rig *r, int kind)
 	return map.weight * sum / map.vertex_count;
 }
 
-// omega C grad_u C / sum |grad C|^2 of a constraint whose slope in F is `slope`, added to `out`.
+// Adds omega C grad_u C / sum |grad C|^2 to `out`, for a constraint whose gradient in F is `slope`.
 static void add_printed(const rig *r, int triangle, double c, double slope[3][3], double omega,
                         double *out)
 {
@@ -106,7 +105,7 @@ static void test_linearised_limit_is_equation_13(void **state)
 	rig_finish(&r);
 }
 
-// A truss: C = |e| - L, each end goes half way.
+// A truss with C = |e| - L: each end moves half of the way.
 static void test_link_goes_half_way_at_each_end(void **state)
 {
 	(void)state;
@@ -139,7 +138,7 @@ static void test_link_goes_half_way_at_each_end(void **state)
 	}
 	rig_local(&r, x, got);
 	assert_true(rig_difference(got, expected, 18) < FORCE_TOLERANCE);
-	r.solver.diagonal = 0; // and the whole force in the other system
+	r.solver.diagonal = 0; // the other system has the whole force
 	rig_local(&r, x, got);
 	for (int i = 0; i < 18; i++)
 		expected[i] *= 2;

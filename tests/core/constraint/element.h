@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One element of each kind at a given deformation gradient, and the stress that its law answers
-// with.
+// One element of each kind at a given deformation gradient, and the stress of its law.
 #pragma once
 
 #include <string.h>
 
 #include "core/rig/rig.h"
 
-// A tetrahedron without right angles or equal edges, and a triangle across the axes (m).
+// A tetrahedron without right angles or equal edges, and a triangle that is oblique to the axes
+// (m).
 static const double element_points[4][3] = {
 	{0.004, -0.002, 0.001}, {0.024, 0.003, -0.002}, {0.006, 0.021, 0.004}, {0.009, 0.005, 0.019}};
 
@@ -23,7 +23,8 @@ static inline cau_layer_def *element_add_triangle(rig *r)
 	return rig_add_triangles(r, 3, element_points[0], 1, vertex);
 }
 
-// Edge vectors from vertex 0 as columns; a third unit column across a triangle.
+// Computes the edge vectors from vertex 0 as columns. For a triangle, the third column is the unit
+// normal.
 static inline void element_edges(const rig *r, int triangle, const double *x, double out[3][3])
 {
 	const int32_t *v = triangle ? r->tissue.triangle : r->tissue.tetrahedron;
@@ -40,7 +41,8 @@ static inline void element_edges(const rig *r, int triangle, const double *x, do
 		out[c][2] = n[c] / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-// Axes in which a triangle's F is written: columns t_u, t_v, normal; I for a tetrahedron.
+// The axes in which F is expressed: for a triangle the columns t_u, t_v and normal; for a
+// tetrahedron I.
 static inline void element_axes(const rig *r, int triangle, double axes[3][3])
 {
 	mat_identity(axes);
@@ -55,7 +57,7 @@ static inline void element_axes(const rig *r, int triangle, double axes[3][3])
 	}
 }
 
-// Positions at which F, in the element's axes, is f: x = f axes^T X.
+// Computes the positions at which F, in the element's axes, is f: x = f axes^T X.
 static inline void element_place(const rig *r, int triangle, double f[3][3], double *x)
 {
 	double axes[3][3], map[3][3];
@@ -66,8 +68,9 @@ static inline void element_place(const rig *r, int triangle, double f[3][3], dou
 		mat_apply(map, r->tissue.rest + 3 * v, x + 3 * v);
 }
 
-// Columns of the law's stress times volume (N m): the S for which vertex i + 1 gets S m_i, m_i the
-// rows of D_m^-1, from the forces on the vertices. The third column of a triangle is zero.
+// Computes the columns of the law's stress times volume (N m), from the forces on the vertices.
+// Vertex i + 1 has the force S m_i, where m_i are the rows of D_m^-1. The third column of a
+// triangle is zero.
 static inline void element_stress(const rig *r, int triangle, const double *gradient,
                                   double stress[3][3])
 {
@@ -83,7 +86,7 @@ static inline void element_stress(const rig *r, int triangle, const double *grad
 	mat_multiply(forces, d, stress); // S = [g_1 g_2 g_3] D_m^T
 }
 
-// The law's stress times volume at F = f.
+// Computes the law's stress times volume at F = f.
 static inline void element_answer(rig *r, int triangle, double f[3][3], double stress[3][3])
 {
 	double x[12], gradient[12];

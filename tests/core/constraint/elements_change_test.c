@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Targets and materials set anew: the dead stay dead, the shrunk keep their targets.
+// Targets and materials are set again: removed elements stay removed, shrunk elements keep their
+// targets.
 #include <string.h>
 
 #include "core/dissect/cutting.h"
@@ -36,21 +37,22 @@ static void test_targets_are_set_and_read(void **state)
 			for (int i = 0; i < (kind ? 6 : 3); i++)
 				assert_true(got[i] == root[i]);
 		}
-		// fat without a limit has one now
+		// fat without a limit has a limit after its target is set
 		double expected =
 			r.tissue.tetrahedron_volume[9] * r.tissue.layer[0].def.fat[0].limit_stiffness_pa;
 		assert_near(cau_real_get(e->fat.limit_weight, e->single, slot), expected, 1e-7 * expected);
 		assert_int_equal(e->fat.limited[slot / CAU_BATCH], 1);
 		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; b++)
 			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
-		cau_elements_mark_targets(e, &r.solver.slots); // as a snapshot's targets are
+		cau_elements_mark_targets(e, &r.solver.slots); // as after the restore of a snapshot
 		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; b++)
 			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
 		rig_finish(&r);
 	}
 }
 
-// New materials reach live elements only; the dead stay dead, the shrunk keep their targets.
+// New materials reach live elements only. Removed elements stay removed, and shrunk elements keep
+// their targets.
 static void test_new_materials(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slots: every element has one, padding is silent.
+// Slots: every element has one, and padding has no effect.
 #include <string.h>
 
 #include "core/dissect/cutting.h"
@@ -51,7 +51,8 @@ static void test_slots_and_elements_are_one_to_one(void **state)
 	rig_finish(&r);
 }
 
-// A pair's second half is a batch behind its first, which the kernel asks for what both share.
+// The second element of a pair is one batch after the first. The kernel reads the shared vertices
+// from the first.
 static void test_pairs_share_all_but_their_apex(void **state)
 {
 	(void)state;
@@ -66,7 +67,7 @@ static void test_pairs_share_all_but_their_apex(void **state)
 		for (int32_t s = 0; s < slot_count(e, kinds[k]); s++) {
 			if (s % (2 * CAU_BATCH) >= CAU_BATCH || element_at[s + CAU_BATCH] < 0)
 				continue;
-			assert_true(element_at[s] >= 0); // one that is alone is the first
+			assert_true(element_at[s] >= 0); // an element without a partner is in the first batch
 			for (int i = 0; i < apex; i++) {
 				assert_int_equal(rig_vertex(&r, kinds[k], s, i),
 				                 rig_vertex(&r, kinds[k], s + CAU_BATCH, i));

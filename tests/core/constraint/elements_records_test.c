@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records and shares of work: every one once.
+// Records and shares of work: each exists once.
 #include <string.h>
 
 #include "core/dissect/cutting.h"
@@ -12,8 +12,8 @@ static void make(rig *r, int precision)
 	rig_build(r, NULL, 1);
 }
 
-// Each vertex of an element has a record, of its own vertex, which that vertex sums once; what no
-// vertex sums no element has.
+// Each vertex of an element has a record, which belongs to that vertex and is summed by it once. A
+// record that no vertex sums belongs to no element.
 static void test_every_record_is_summed_once(void **state)
 {
 	(void)state;
@@ -38,7 +38,8 @@ static void test_every_record_is_summed_once(void **state)
 			int32_t slot = r.solver.slots.slot_of[kind][i], found = 0;
 			for (int k = 0; k < map.vertex_count; k++) {
 				int32_t record = rig_record(&r, kind, slot, k);
-				for (int own = 0; own < map.vertex_count; own++) // in its pair's order
+				// the pair may have another order of vertices
+				for (int own = 0; own < map.vertex_count; own++)
 					if (vertex_of[record] == map.vertex[own])
 						found |= 1 << own;
 				assert_int_equal(4 * vertex_of[record], e->record_vertex[record]);
@@ -51,7 +52,7 @@ static void test_every_record_is_summed_once(void **state)
 	rig_finish(&r);
 }
 
-// A share writes the records of its own range only, and the ranges do not meet.
+// A share writes only the records of its own range, and the ranges do not overlap.
 static void test_shares_write_apart(void **state)
 {
 	(void)state;
@@ -63,7 +64,7 @@ static void test_shares_write_apart(void **state)
 		const cau_local_work *work = &r.solver.slots.work[w];
 		assert_int_equal(work->first_record, next);
 		next += work->record_count;
-		for (int32_t s = work->first; s < work->last; s++) // padding too
+		for (int32_t s = work->first; s < work->last; s++) // including padding
 			for (int i = 0; i < rig_vertex_count(work->kind); i++) {
 				int32_t record = rig_record(&r, work->kind, s, i);
 				assert_true(record >= work->first_record && record < next);
@@ -73,7 +74,8 @@ static void test_shares_write_apart(void **state)
 	rig_finish(&r);
 }
 
-// The shares of the local step cover every batch of every set once, within one group.
+// The shares of the local step cover every batch of every set once. A share has elements of one
+// group.
 static void test_work_covers_everything_once(void **state)
 {
 	(void)state;
@@ -103,7 +105,7 @@ static void test_work_covers_everything_once(void **state)
 	assert_int_equal(covered[CAU_ELEMENT_TETRAHEDRON], e->fat.slot_count);
 	assert_int_equal(covered[CAU_ELEMENT_LINK], e->link.slot_count);
 	assert_int_equal(covered[CAU_ELEMENT_HINGE], e->hinge.slot_count);
-	assert_int_equal(e->sheet.group_count, 2); // membrane and fascia have laws of their own
+	assert_int_equal(e->sheet.group_count, 2); // membrane and fascia have separate laws
 	rig_finish(&r);
 }
 

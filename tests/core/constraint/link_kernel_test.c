@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trusses and hinges by hand: a spring along e, and bending that turns with the sheet.
+// Trusses and hinges against formulas: a spring along e, and bending that turns with the sheet.
 #include <string.h>
 
 #include "core/constraint/element.h"
 #include "core/rig/law_scenes.h"
 
-static const double FORCE_TOLERANCE = 1e-11; // a dozen roundings of a length's small difference
+// a dozen roundings; the change of length is a small difference
+static const double FORCE_TOLERANCE = 1e-11;
 
 static void test_links_are_springs(void **state)
 {
@@ -37,7 +38,7 @@ static void test_links_are_springs(void **state)
 	rig_finish(&r);
 }
 
-// A truss shut to a point has no direction: no force that is not a number.
+// A truss of length 0 has no direction. Its force must still be a number.
 static void test_a_link_of_no_length(void **state)
 {
 	(void)state;
@@ -58,8 +59,8 @@ static void test_a_link_of_no_length(void **state)
 	}
 }
 
-// Energy of a flat sheet's hinge is w/2 |e|^2; that of a bent one w/2 (|e| - |rest|)^2, and a turn
-// of the whole sheet costs neither anything.
+// The energy of a flat sheet's hinge is w/2 |e|^2, and that of a bent one w/2 (|e| - |rest|)^2. A
+// rotation of the whole sheet changes neither.
 static void test_hinges_keep_their_bend(void **state)
 {
 	(void)state;
@@ -99,8 +100,8 @@ static void test_hinges_keep_their_bend(void **state)
 	}
 }
 
-// In the diagonal system a hinge is one constraint C = |e| - |rest|: each vertex is moved by
-// -C c_i / |c|^2 along e, weighted with omega = w |c|^2 / 4.
+// In the diagonal system a hinge is one constraint C = |e| - |rest|. It moves each vertex by -C c_i
+// / |c|^2 along e, weighted with omega = w |c|^2 / 4.
 static void test_hinges_in_the_diagonal_system(void **state)
 {
 	(void)state;

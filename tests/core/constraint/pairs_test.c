@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs: every element of a group once, with a neighbour where there is one left.
+// Pairs: every element of a group is in one pair, with a neighbour if one is left.
 #include "constraint/pairs.h"
 
 #include "core/dissect/cutting.h"
@@ -24,7 +24,7 @@ static const int32_t *vertices_of(const cau_tissue *tissue, int kind, int32_t e)
 	                                    : tissue->tetrahedron + 4 * (size_t)e;
 }
 
-// The first's shared vertices and the second's are the same, in the same order; the apexes differ.
+// Both elements of a pair list the same shared vertices in the same order. The apexes differ.
 static void assert_orders_agree(const cau_tissue *tissue, int kind, int32_t first, int32_t other)
 {
 	int mine[4], theirs[4], count = kind == CAU_ELEMENT_TRIANGLE ? 3 : 4;
@@ -64,12 +64,12 @@ static void test_pairs_are_neighbours_of_one_group(void **state)
 				assert_orders_agree(&r.tissue, kind, e, partner[e]);
 			}
 			assert_int_equal(2 * pairs, members + alone);
-			assert_true(alone <= members / 50); // of a regular mesh next to none
+			assert_true(alone <= members / 50); // in a regular mesh few are alone
 		}
 	rig_finish(&r);
 }
 
-// One that is alone has its vertices in its own order.
+// An element without a partner has its vertices in its own order.
 static void test_alone(void **state)
 {
 	(void)state;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plastic flow against the rule in plain double: with e' the deviator of the elastic strain and
-// d = |e'| - gamma_1 > 0, e_p grows by (d / |e'|) e' and is scaled back to gamma_2.
+// Plastic flow against the rule in plain double. Let e' be the deviator of the elastic strain, and
+// d = |e'| - gamma_1. If d > 0, e_p grows by (d / |e'|) e' and is scaled back to gamma_2 if it is
+// longer.
 #include "core/constraint/element.h"
 
 static const double YIELD = 0.03, MOST = 0.16;
-// Ten roundings of strains below one, through an inverse square root.
+// Ten roundings of strains below one, and an inverse square root.
 static const double STRAIN_TOLERANCE = 1e-12;
 
 static void make(rig *r, double yield, double most)
@@ -44,7 +45,7 @@ static double norm(double a[3][3])
 	return sqrt(sum);
 }
 
-// e_p after one tick at F, from e_p before and the map z = C_p^(-1/2) - I.
+// Computes e_p after one tick at F, from e_p before and the map z = C_p^(-1/2) - I.
 static void flow(double f[3][3], double map[3][3], double plastic[3][3], double yield, double most)
 {
 	double fe[3][3], e[3][3], z[3][3];
@@ -67,7 +68,8 @@ static void flow(double f[3][3], double map[3][3], double plastic[3][3], double 
 		plastic[k / 3][k % 3] *= most / length;
 }
 
-// (I + z) (I + 2 e_p) (I + z) = I of every slot: their maps are made two vectors at a time.
+// Checks (I + z) (I + 2 e_p) (I + z) = I for every slot. The maps z are computed two vectors at a
+// time.
 static void expect_maps(const rig *r, double tolerance)
 {
 	double identity[3][3];
@@ -118,7 +120,7 @@ static void test_below_yield_nothing_flows(void **state)
 	rig r;
 	make(&r, YIELD, MOST);
 	double strain = 0.9 * YIELD / sqrt(1.5), got[3][3], none[3][3] = {{0}};
-	// a stretch and its sides' contraction: the deviator's norm is sqrt(1.5) times the strain
+	// a stretch and the contraction of its sides: the deviator's norm is sqrt(1.5) times the strain
 	double f[3][3] = {
 		{sqrt(1 + 2 * strain), 0, 0}, {0, sqrt(1 - strain), 0}, {0, 0, sqrt(1 - strain)}};
 	settle(&r, f);
@@ -127,8 +129,8 @@ static void test_below_yield_nothing_flows(void **state)
 	rig_finish(&r);
 }
 
-// What has flowed is the new rest: a stretch held for long is answered with yield stress only, and
-// silence follows at the plastic shape itself.
+// Plastic flow makes the deformed shape the new rest shape. If a stretch is held for long, only the
+// yield stress remains, here 0.
 static void test_flow_takes_the_stress_away(void **state)
 {
 	(void)state;
@@ -141,17 +143,17 @@ static void test_flow_takes_the_stress_away(void **state)
 		settle(&r, f);
 	element_answer(&r, 0, f, last);
 	double mean = (last[0][0] * f[0][0] + last[1][1] * f[1][1] + last[2][2] * f[2][2]) / 3;
-	double deviator = last[0][0] * f[0][0] - mean; // of P F^T: what is left is pressure
+	double deviator = last[0][0] * f[0][0] - mean; // of P F^T; the rest is pressure
 	assert_true(fabs(deviator) < 1e-6 * norm(first));
 	rig_finish(&r);
 }
 
-// A block in every precision and on every instruction set: the same plastic strains.
+// A block in every precision and on every instruction set has the same plastic strains.
 static void test_precisions_and_instruction_sets_agree(void **state)
 {
 	(void)state;
 	static const char *const tiers[] = {"baseline", "avx2", "avx512"};
-	// strains of a tenth as differences of squares near one, three ticks long
+	// strains of a tenth, computed as differences of squares near one, over three ticks
 	static const double tolerance[] = {3e-5, 1e-13};
 	double expected[6 * 128] = {0};
 	for (int precision = CAU_PRECISION_COUNT - 1; precision >= 0; precision--)
@@ -173,7 +175,7 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 					r.solver.kernels->settle(&r.solver.elements, &r.solver.slots.work[w],
 					                         r.solver.displacement);
 			}
-			// a hundred roundings of what is about one
+			// a hundred roundings of numbers near one
 			expect_maps(&r, r.solver.elements.single ? 6e-6 : STRAIN_TOLERANCE);
 			for (int i = 0; i < 6; i++)
 				for (int32_t s = 0; s < r.tissue.tetrahedron_count; s++)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rotation nearest to F, seen through corotated fat with Poisson's ratio 0: P = 2 mu (F - R).
-// One element is taken from each F to the next, so every start is a far one.
+// The rotation nearest to F, obtained from corotated fat with Poisson's ratio 0: P = 2 mu (F - R).
+// The same element gets one F after another, so every start is far from the solution.
 #include "core/constraint/element.h"
 
 enum { DRAWS = 300, RIVALS = 200 };
-static const double YOUNG = 1000; // 2 mu
-// The last Newton step leaves about epsilon, D_m^-1 ten roundings; in float likewise.
+static const double YOUNG = 1000; // equals 2 mu, because Poisson's ratio is 0
+// The last Newton step leaves about epsilon, and D_m^-1 adds ten roundings.
 static const double ROTATION_DOUBLE = 1e-12, ROTATION_SINGLE = 5e-6;
 
 static void make(rig *r, int precision)
@@ -41,7 +41,7 @@ static void random_turn(uint64_t *random, double out[3][3])
 	mat_rotation(axis, random_between(random, -3.1, 3.1), out);
 }
 
-// U diag(s) V^T with U and V rotations.
+// U diag(s) V^T, with random rotations U and V.
 static void with_singular_values(uint64_t *random, double a, double b, double c, double f[3][3])
 {
 	double u[3][3], v[3][3];
@@ -62,7 +62,7 @@ static double agreement(double q[3][3], double f[3][3])
 	return sum;
 }
 
-// A rotation, and no other one agrees better with F.
+// Checks that q is a rotation, and that no other rotation agrees better with F.
 static void assert_nearest(const rig *r, double f[3][3], double q[3][3], uint64_t *random)
 {
 	double identity[3][3], square[3][3], rival[3][3], tolerance = tolerance_of(r), size = 0;
@@ -75,7 +75,7 @@ static void assert_nearest(const rig *r, double f[3][3], double q[3][3], uint64_
 	for (int i = 0; i < RIVALS; i++) {
 		random_turn(random, rival);
 		assert_true(agreement(rival, f) <= agreement(q, f) + tolerance * size);
-		double small[3][3], axis[3] = {0, 0, 0}; // and no near one
+		double small[3][3], axis[3] = {0, 0, 0}; // compare with near rotations too
 		axis[i % 3] = i & 1 ? 1 : -1;
 		mat_rotation(axis, 0.02, small);
 		mat_multiply(small, q, rival);
@@ -122,8 +122,8 @@ static void test_inverted_and_flat_elements_get_a_rotation(void **state)
 	}
 }
 
-// Mirrored at rest: all singular values are equal and every mirror axis is as good as another; some
-// rotation comes out.
+// A mirror image of the rest shape. All singular values are equal, so every mirror axis is as good
+// as any other. The result must be a rotation.
 static void test_mirror_image(void **state)
 {
 	(void)state;

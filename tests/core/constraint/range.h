@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The range limit by angles: what strain_range.h computes from products, derived another way.
+// The range limit computed by angles. strain_range.h computes the same from products.
 #pragma once
 
 #include "core/rig/rig.h"
 
-// RANGE_ROUNDING of strain_range.h in double moves limits by 1e-10, and what comes of it is up to
-// ten times as large for the columns drawn here.
+// RANGE_ROUNDING of strain_range.h, in double, moves limits by 1e-10. The effect is up to ten times
+// as large for the columns drawn here.
 static const double RANGE_TOLERANCE = 1e-8;
 
 typedef struct range_limits {
@@ -24,14 +24,14 @@ static inline double range_cosine(double f[3][3], int a, int b)
 	return range_dot(f, a, b) / sqrt(range_dot(f, a, a) * range_dot(f, b, b));
 }
 
-// Half turns by which columns of lengths s and t part by `turn` in all so that
-// s^2 sin^2 first + t^2 sin^2 (turn - first), the squared distance, is least.
+// Returns the part of `turn` by which the column of length s turns; the column of length t turns by
+// the rest. The squared distance s^2 sin^2 first + t^2 sin^2 (turn - first) is then least.
 static inline double range_first_turn(double s, double t, double turn)
 {
 	return turn / 2 + atan2(sin(turn) * (t * t - s * s), cos(turn) * (s * s + t * t)) / 2;
 }
 
-// Adds F - P of the pair's shear to r.
+// Adds F - P of a pair's shear to r.
 static inline void range_add_shear(double f[3][3], int a, int b, double most, double r[3][3])
 {
 	double s = sqrt(range_dot(f, a, a)), t = sqrt(range_dot(f, b, b));
@@ -40,7 +40,7 @@ static inline void range_add_shear(double f[3][3], int a, int b, double most, do
 		return;
 	double turn = acos(most) - acos(fabs(cosine)), first = range_first_turn(s, t, turn);
 	double across = sqrt(1 - cosine * cosine), second = turn - first;
-	for (double off = -0.3; off <= 0.3; off += 0.01) { // it is the least
+	for (double off = -0.3; off <= 0.3; off += 0.01) { // no other division has a smaller distance
 		double x = s * sin(first + off), y = t * sin(second - off);
 		double x0 = s * sin(first), y0 = t * sin(second);
 		assert_true(x * x + y * y >= x0 * x0 + y0 * y0 - 1e-15);
@@ -53,7 +53,8 @@ static inline void range_add_shear(double f[3][3], int a, int b, double most, do
 	}
 }
 
-// Residual of the range at f, columns in the limits' axes. Returns whether nothing is beyond them.
+// Computes the residual of the range at f, with columns in the limits' axes. Returns whether f is
+// within all limits.
 static inline int range_residual(const range_limits *limits, double f[3][3], double r[3][3])
 {
 	int inside = 1;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of tetrahedra against the formulas of section 5.1 on the 3x3 metric. The limit acts
-// beside an energy whose stress is known by hand and is taken off.
+// Strain limits of tetrahedra against the formulas of section 5.1 for the 3x3 metric. The limit
+// acts in addition to an energy, whose known stress is subtracted.
 #include "core/constraint/element.h"
 #include "core/constraint/range.h"
 #include "reference/stress.h"
 
 enum { DRAWS = 60 };
-// About thirty roundings of numbers near one, and D_m^-1.
+// About thirty roundings of numbers near one, and those of D_m^-1.
 static const double RESIDUAL_TOLERANCE = 1e-12;
 static const double YOUNG = 100, POISSON = 0.3, LIMIT_PA = 5000;
 static const double TARGET[6] = {0.4, 0.9, 1.2, 0.1, -0.06, 0.15};
@@ -35,7 +35,8 @@ static void residual(rig *r, double f[3][3], double out[3][3])
 			(out[k / 3][k % 3] / r->tissue.tetrahedron_volume[0] - known[k / 3][k % 3]) / LIMIT_PA;
 }
 
-// P = F - R has the wanted metric, is not inverted, and R P^T is symmetric (no torque).
+// Checks that P = F - R has the wanted metric, is not inverted, and that R P^T is symmetric (no
+// torque).
 static void assert_projected(double f[3][3], double r[3][3], double wanted[3][3])
 {
 	double p[3][3], k[3][3], turned[3][3], turn[3][3];
@@ -71,11 +72,11 @@ static void test_target_is_the_nearest_of_its_metric(void **state)
 	rig_finish(&r);
 }
 
-// The first material axis is the fibre's: T = I + (t_00 - 1) a a^T.
+// The first material axis is the fibre direction: T = I + (t_00 - 1) a a^T.
 static void test_target_follows_the_fibre(void **state)
 {
 	(void)state;
-	static const double FIBRE[3] = {0.48, -0.6, 0.64}; // of length 1
+	static const double FIBRE[3] = {0.48, -0.6, 0.64}; // has length 1
 	rig r;
 	cau_layer_def *layer = begin(&r, CAU_LIMIT_TARGET);
 	memcpy(layer->fibre, FIBRE, sizeof FIBRE);
@@ -141,7 +142,7 @@ static void test_range_is_the_nearest_of_each_limit(void **state)
 		double f[3][3], got[3][3], expected[3][3];
 		rig_random_gradient(&random, i % 2 ? 0.4 : 0.04, f);
 		residual(&r, f, got);
-		if (range_residual(&limits, f, expected)) { // what is left is rounding of the known stress
+		if (range_residual(&limits, f, expected)) { // the rest is rounding of the known stress
 			inside++;
 			assert_near(mat_distance(got, expected), 0, RESIDUAL_TOLERANCE);
 		} else {

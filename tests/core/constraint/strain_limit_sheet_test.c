@@ -21,7 +21,7 @@ static double weight_of(const rig *r)
 	return material->limit_stiffness_pa * material->thickness_m * r->tissue.triangle_area[0];
 }
 
-// A random placement of the triangle: F in its axes, third column across.
+// Draws a random F of the triangle in its axes; the third column is perpendicular.
 static void draw(uint64_t *random, double size, double f[3][3])
 {
 	double turn[3][3], axis[3];
@@ -34,7 +34,7 @@ static void draw(uint64_t *random, double size, double f[3][3])
 	mat_multiply(turn, f, f);
 }
 
-// Residual R = F - P of the law, dimensionless.
+// Computes the residual R = F - P of the law, dimensionless.
 static void residual(rig *r, double f[3][3], double out[3][3])
 {
 	element_answer(r, 1, f, out);
@@ -52,7 +52,8 @@ static void metric(double f[3][3], double k[3])
 	}
 }
 
-// P = F - R has the wanted metric and is the nearest such: R P^T is symmetric (no torque).
+// Checks that P = F - R has the wanted metric and is the nearest such matrix: R P^T is symmetric
+// (no torque).
 static void assert_projected(double f[3][3], double r[3][3], const double wanted[3])
 {
 	double p[3][3], k[3];
@@ -87,7 +88,7 @@ static void test_target_is_the_polar_factor(void **state)
 		assert_projected(f, got, TARGET);
 		mat_multiply(f, root, q);
 		if (!(mat_determinant(f) > 0))
-			continue; // turned over: a rotation of the sheet, not of f as drawn
+			continue; // reversed: the polar factor is a rotation of the sheet, not of f as drawn
 		mat_polar(q, q);
 		mat_multiply(q, root, p);
 		for (int k = 0; k < 9; k++)
@@ -98,7 +99,8 @@ static void test_target_is_the_polar_factor(void **state)
 	rig_finish(&r);
 }
 
-// The unordered pairs of eq. 12, each once: R = sum of C (dC/dF) / |dC/dF|^2, C = f_a.f_b - t_ab.
+// The unordered pairs of eq. 12, each once: R = sum of C (dC/dF) / |dC/dF|^2, with C = f_a.f_b -
+// t_ab.
 static void test_linearised_is_equation_13(void **state)
 {
 	(void)state;
@@ -167,8 +169,7 @@ static void test_range_is_the_nearest_of_each_limit(void **state)
 	rig_finish(&r);
 }
 
-// Columns that are parallel, or vanish, have no one nearest pair: what comes is finite all the
-// same.
+// If columns are parallel or zero, the nearest pair is not unique. The result must still be finite.
 static void test_range_of_what_is_flat_is_finite(void **state)
 {
 	(void)state;
@@ -185,13 +186,14 @@ static void test_range_of_what_is_flat_is_finite(void **state)
 		for (int e = 0; e < 6; e++)
 			size += fabs(flat[k][e / 3][e % 3]);
 		for (int e = 0; e < 9; e++)
-			if (!(fabs(got[e / 3][e % 3]) <= 1 + 2 * size)) // no farther than the set is
+			// at most as far as the set of admissible F
+			if (!(fabs(got[e / 3][e % 3]) <= 1 + 2 * size))
 				fail_msg("case %zu: %g", k, got[e / 3][e % 3]);
 	}
 	rig_finish(&r);
 }
 
-// Collapsed to a line, a sheet's Q is not defined: the last one is kept.
+// If a sheet collapses to a line, Q is not defined. The last Q is kept.
 static void test_lost_rank_keeps_the_last_rotation(void **state)
 {
 	(void)state;
@@ -202,10 +204,10 @@ static void test_lost_rank_keeps_the_last_rotation(void **state)
 	cau_symmetric_power2(TARGET, 0.5, 0, root3);
 	root[0][0] = root3[0], root[1][1] = root3[1], root[0][1] = root[1][0] = root3[2];
 	mat_rotation((double[]){1, -2, 0.5}, 1.1, turn);
-	residual(&r, turn, got); // F is orthonormal and T^(1/2) symmetric: Q is F here
+	residual(&r, turn, got); // F is orthonormal and T^(1/2) symmetric, so Q is F
 	mat_multiply(turn, root, p);
 	assert_projected(turn, got, TARGET);
-	for (int pass = 0; pass < 2; pass++) { // a line, then a point
+	for (int pass = 0; pass < 2; pass++) { // first a line, then a point
 		flat[0][0] = pass ? 0 : 0.7, flat[0][1] = pass ? 0 : 0.3;
 		residual(&r, flat, got);
 		for (int k = 0; k < 9; k++)

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscosity against a stress written by hand, and its potential against the work of that stress.
+// Viscosity against a stress computed here, and its potential against the work of that stress.
 #include "core/constraint/element.h"
 
 enum { DRAWS = 40 };
 
 static const double viscosity_s = 0.004, young_pa = 4000, poisson = 0.41, sheet_pa = 2e4;
-// Of the largest stress: some ten roundings of D_m^-1, as in fat_energy_test.c.
+// Relative to the largest stress: about ten roundings of D_m^-1, as in fat_energy_test.c.
 static const double TOLERANCE = 1e-11;
-// Simpson's rule over 200 parts of a straight path is exact for powers up to three, as here.
+// Simpson's rule over 200 parts of a straight path. It is exact for powers up to three, which is
+// enough here.
 static const double WORK_TOLERANCE = 1e-10;
 
 static void make(rig *r, int triangle)
@@ -28,14 +29,15 @@ static void strain_of(double f[3][3], double e[3][3])
 		e[k / 3][k % 3] = (e[k / 3][k % 3] - (k % 4 == 0)) / 2;
 }
 
-// R becomes the strain at f, or goes that share of the way to it.
+// Sets R to the strain at f, or moves R by `share` of the way to it.
 static void take_strain(rig *r, int triangle, double f[3][3], double share)
 {
 	element_place(r, triangle, f, r->solver.position);
 	cau_solver_take_strain(&r->solver, share);
 }
 
-// What viscosity adds to the element's stress times volume at f; *potential_j.
+// Computes viscosity's part of the element's stress times volume at f, and its potential in
+// *potential_j.
 static void viscous_answer(rig *r, int triangle, double f[3][3], double stress[3][3],
                            double *potential_j)
 {
@@ -50,7 +52,7 @@ static void viscous_answer(rig *r, int triangle, double f[3][3], double stress[3
 		stress[k / 3][k % 3] -= law[k / 3][k % 3];
 }
 
-// F C : (E - R) t / h, times volume; of a triangle E and R have two axes.
+// F C : (E - R) t / h, times volume. For a triangle E and R have two axes.
 static void expected_stress(const rig *r, int triangle, double f[3][3], double from[3][3],
                             double out[3][3])
 {
@@ -84,7 +86,7 @@ static void check_stress(int triangle)
 		rig_random_gradient(&random, 0.4, b);
 		rig_random_gradient(&random, 0.4, f);
 		take_strain(&r, triangle, a, 1);
-		take_strain(&r, triangle, b, 2.4); // as in a second substep
+		take_strain(&r, triangle, b, 2.4); // a share above 1, as in a second substep
 		strain_of(a, from);
 		strain_of(b, to);
 		for (int k = 0; k < 9; k++)
@@ -103,7 +105,7 @@ static void test_stress_by_hand(void **state)
 	check_stress(1);
 }
 
-// Along F = F_0 + s H the potential grows by the work of the stress.
+// Along F = F_0 + s H, the potential grows by the work of the stress.
 static void check_work(int triangle)
 {
 	enum { PARTS = 200 };
@@ -137,8 +139,8 @@ static void test_potential_is_the_work_done(void **state)
 	check_work(1);
 }
 
-// An element that has only turned since R was taken has no stress: rounding, of the stress that it
-// would have had R been taken at rest.
+// If an element has only rotated since R was taken, its stress is 0 up to rounding. The rounding is
+// relative to the stress with R at rest.
 static void test_turning_is_not_damped(void **state)
 {
 	(void)state;

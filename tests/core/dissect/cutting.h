@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edges parted by hand: exposed as a tool would have, without one.
+// Parts edges without a tool: sets their exposure as a tool would.
 #pragma once
 
 #include "core/rig/rig.h"
@@ -14,7 +14,8 @@ static inline void expose_by_hand(cau_dissection *dissection, int32_t edge, doub
 	}
 }
 
-// One tick: `count` random edges are exposed beyond anything that burns, then parted.
+// One tick: raises the exposure of `count` random edges above every ignition temperature, then
+// parts them. Returns the layers that lost an edge, as bits.
 static inline uint32_t cut_random_edges(rig *r, uint64_t *random, int count)
 {
 	uint32_t layers = 0;
@@ -26,7 +27,7 @@ static inline uint32_t cut_random_edges(rig *r, uint64_t *random, int count)
 	return layers;
 }
 
-// A membrane on fat, fascia above it with bending, links between.
+// Adds a membrane on fat, fascia above it with bending, and links between the fascia and the fat.
 static inline void add_all_layers(rig *r)
 {
 	rig_add_slab(r, 6, 5, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Share counts, removed elements and drawn faces against a recount from the parted edges alone.
+// Edge counts, removed elements and drawn faces, against a recount from the parted edges alone.
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static void make(rig *r)
 	assert_true(r->tissue.link_count > 50 && r->tissue.hinge_count > 50);
 }
 
-// Whether edge e has parted in the layer, by its number.
+// True if the edge between vertices a and b has parted in the layer.
 static int parted(const cau_dissection *d, int32_t a, int32_t b, int32_t layer)
 {
 	return d->parted[cau_edge_table_find(&d->tissue->edges, a, b)] >> layer & 1;
@@ -67,8 +67,8 @@ static int has_vertices(const int32_t *element, int count, const int32_t *face)
 	return found == 3;
 }
 
-// A sheet's face is drawn while its triangle lives; a fat face while exactly one live tetrahedron
-// has its three vertices and no live triangle has.
+// A sheet's face is drawn while its triangle lives. A face of fat is drawn while exactly one live
+// tetrahedron has its three vertices, and no live triangle has them.
 static int is_drawn(const rig *r, int32_t face)
 {
 	const cau_tissue *t = &r->tissue;
@@ -119,13 +119,13 @@ static void test_counts_after_random_cuts(void **state)
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++)
 		for (int32_t e = 0; e < cau_tissue_element_count(&r.tissue, kind); e++)
 			dead += !r.dissection.alive.element[kind][e];
-	assert_int_equal(removed, dead); // each was reported once
+	assert_int_equal(removed, dead); // each removed element was reported once
 	assert_int_equal(r.dissection.elements_removed, dead);
 	assert_true(dead > 200);
 	rig_finish(&r);
 }
 
-// A restore knows the parted edges only.
+// A restore has only the parted edges.
 static void test_recount_gives_the_same(void **state)
 {
 	(void)state;
@@ -150,8 +150,8 @@ static void test_recount_gives_the_same(void **state)
 	rig_finish(&b);
 }
 
-// An edge parts in a layer when xi times its exposure passes that layer's ignition: membrane and
-// fat share edges and part one after the other.
+// An edge parts in a layer when xi times its exposure exceeds that layer's ignition temperature.
+// Membrane and fat share edges and part one after the other.
 static void test_each_layer_has_its_own_ignition(void **state)
 {
 	(void)state;
@@ -176,13 +176,14 @@ static void test_each_layer_has_its_own_ignition(void **state)
 		assert_int_equal(r.dissection.parted[edge], expected[k]);
 		assert_int_equal(layers, k ? expected[k] & ~expected[k - 1] : 0);
 		assert_counts(&r);
-		double charred = fmin(1, exposure[k] / fat_at); // the first layer to go shows most
+		// the layer that ignites first determines the value
+		double charred = fmin(1, exposure[k] / fat_at);
 		assert_near(cau_dissection_heated(&r.dissection, edge), charred, 1e-12);
 	}
 	rig_finish(&r);
 }
 
-// Where the material has bundles, the middle of an edge at rest says when it parts.
+// If the material has bundles, the middle of an edge at rest determines when the edge parts.
 static void test_bundles_part_by_place(void **state)
 {
 	(void)state;
@@ -216,7 +217,8 @@ static void test_bundles_part_by_place(void **state)
 	rig_finish(&r);
 }
 
-// The membrane burnt off, the fat's surface shows; the tetrahedron burnt off, the face under it.
+// After the membrane parts, the fat's surface is drawn. After a tetrahedron parts, the face under
+// it is drawn.
 static void test_what_lies_under_shows(void **state)
 {
 	(void)state;
@@ -233,15 +235,15 @@ static void test_what_lies_under_shows(void **state)
 	rig_finish(&r);
 }
 
-// Exposure by a hot sphere that holds a few edges: integral of the mean temperature over the time,
-// only where the tool is, only on edges that something lives on.
+// Exposure by a hot sphere that contains a few edges: the integral of the mean temperature over the
+// time. Only edges inside the tool and with a live element are exposed.
 static void test_exposure_by_a_tool(void **state)
 {
 	(void)state;
 	rig r;
 	make(&r);
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
-	tool.hot_radius_m = 0.012; // holds both ends of some edges
+	tool.hot_radius_m = 0.012; // contains both ends of some edges
 	tool.grid_step_m = 0.003;
 	cau_pose pose = pose_at(0.011, 0.007, 0.004);
 	cau_heat_grid grid;
@@ -266,7 +268,8 @@ static void test_exposure_by_a_tool(void **state)
 	}
 	assert_true(exposed > 0 && exposed == r.dissection.touched_count);
 	assert_true(taken > 0);
-	double before = r.dissection.exposure[r.dissection.touched[0]]; // and nothing once all is dead
+	// no edge is exposed once all elements are removed
+	double before = r.dissection.exposure[r.dissection.touched[0]];
 	int32_t first = r.dissection.touched[0];
 	for (int32_t e = 0; e < r.tissue.edges.edge_count; e++)
 		r.dissection.parted[e] = 0xffff;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements that part one by one (core/dissect/doses.c): what a drawn cut takes does not depend on
-// the mesh, a thin instrument still divides a sheet, and books are those of a recount.
+// Elements that part one by one (core/dissect/doses.c). The volume that a cut removes does not
+// depend on the mesh. A thin instrument still divides a sheet. The bookkeeping agrees with a
+// recount.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,12 +13,12 @@
 enum { OFFSETS = 8 };
 static const double step_s = 1.0 / 60, ambient_c = 37;
 
-typedef struct drag { // of a hot ball, straight, through tissue that stands still
+typedef struct drag { // straight motion of a hot ball through tissue at rest
 	double radius_m, temperature_c, speed_m_s;
 	double from[3], to[3];
 } drag;
 
-// Nothing has ever been hot.
+// Resets all exposure and restores all elements.
 static void heal(rig *r)
 {
 	cau_dissection *d = &r->dissection;
@@ -73,14 +74,14 @@ static double volume_taken_m3(const rig *r)
 	return taken;
 }
 
-// ---- what a cut takes
+// ---- volume of a cut
 
 static const double resolutions[] = {0.5, 1, 1.5, 2};
-// Under sanitizers the two coarse ones: the others would take a minute, and walk the same path.
+// With sanitizers only the two coarse ones: the others would take a minute, and run the same code.
 enum { RESOLUTIONS = CAU_TEST_SANITIZED ? 2 : sizeof resolutions / sizeof *resolutions };
 
-// A cut of 60 mm by a ball of 6 mm along the top of a slab of 4 mm cells at resolution 1: mean
-// volume over ways that lie otherwise in the cells.
+// Returns the mean volume of a cut of 60 mm, by a ball of 6 mm along the top of a slab, over paths
+// with different offsets in the cells. At resolution 1 the cells are 4 mm.
 static double mean_volume_m3(double resolution, int parting, double spread_c)
 {
 	rig r;
@@ -96,8 +97,7 @@ static double mean_volume_m3(double resolution, int parting, double spread_c)
 	heat->absorption_per_s = 0.6;
 	rig_build(&r, NULL, 1);
 	double sum = 0;
-	for (int i = 0; i < OFFSETS;
-	     i++) { // by the golden ratio over a cell, so that none lies on another
+	for (int i = 0; i < OFFSETS; i++) { // golden ratio over a cell, so that all paths differ
 		double share = fmod(0.618034 * i, 1), cell = 0.004 / resolution;
 		drag way = {.radius_m = 0.006, .temperature_c = 90, .speed_m_s = 0.004};
 		memcpy(way.from, (double[]){-0.03 + cell * i / OFFSETS, cell * share, 0}, sizeof way.from);
@@ -126,7 +126,7 @@ static void what_a_cut_takes_is_not_the_meshs(void **state)
 	}
 }
 
-// The paper's rule, by the same measure: the test above can tell.
+// With the paper's rule, the volume depends on the mesh. This shows that the test above can fail.
 static void by_edges_it_is(void **state)
 {
 	(void)state;
@@ -138,7 +138,8 @@ static void by_edges_it_is(void **state)
 
 // ---- a thin instrument
 
-// The vertices that are reached from vertex `first` over live triangles.
+// Marks the vertices that are connected with vertex `first` by live triangles. Returns their
+// number.
 static int32_t reached_from(const rig *r, int32_t first, uint8_t *reached)
 {
 	int32_t count = 1;
@@ -173,8 +174,8 @@ static int32_t corner_at(const rig *r, double sign)
 	return -1;
 }
 
-// A tip of 1 mm through cells of 5 mm, along whatever way across: the halves hang together nowhere,
-// and what went is a strip of a cell or two.
+// A tip of 1 mm cuts through cells of 5 mm, along any path across. The halves are separated, and
+// the removed strip is one or two cells wide.
 static void a_thin_tip_divides_a_sheet(void **state)
 {
 	(void)state;
@@ -182,7 +183,7 @@ static void a_thin_tip_divides_a_sheet(void **state)
 	uint64_t random = 5;
 	rig_begin(&r);
 	r.scene->parting = CAU_PARTING_ELEMENTS;
-	rig_add_sheet(&r, 20, 16)->sheet[0].heat.absorption_per_s = 40; // it burns at once
+	rig_add_sheet(&r, 20, 16)->sheet[0].heat.absorption_per_s = 40; // the tissue parts at once
 	rig_build(&r, NULL, 1);
 	uint8_t *reached = malloc((size_t)r.tissue.vertex_count);
 	assert_non_null(reached);
@@ -204,7 +205,7 @@ static void a_thin_tip_divides_a_sheet(void **state)
 	rig_finish(&r);
 }
 
-// ---- books
+// ---- bookkeeping
 
 static void books_are_those_of_a_recount(void **state)
 {
@@ -219,7 +220,8 @@ static void books_are_those_of_a_recount(void **state)
 	memcpy(way.from, (double[]){-0.05, 0, 0}, sizeof way.from);
 	memcpy(way.to, (double[]){0.05, 0.01, 0.002}, sizeof way.to);
 	run(&r, &way);
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) { // of each kind some have gone, and some live
+	// of each kind, some elements are removed and some live
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
 		int32_t lost = 0, count = cau_tissue_element_count(&r.tissue, p);
 		uint8_t *shares = malloc((size_t)count), *alive = malloc((size_t)count);
 		assert_true(shares && alive);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boxes of the broad phase find whatever brute force finds, however the tissue has moved.
+// The boxes of the broad phase find all that a search over all elements finds, however the tissue
+// has moved.
 #include <string.h>
 
 #include "core/dissect/cutting.h"
 
-// Distance of a point from a segment.
+// Returns the distance of a point from a segment.
 static double segment_distance(cau_vec3 p, cau_vec3 a, cau_vec3 b)
 {
 	cau_vec3 along = cau_sub(b, a);
@@ -90,7 +91,7 @@ static void test_boxes_find_what_brute_force_finds(void **state)
 			}
 		}
 	}
-	assert_true(found > 100 && left_out > 1000); // it finds, and it leaves out
+	assert_true(found > 100 && left_out > 1000); // some are found, and some are left out
 	rig_finish(&r);
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shrinkage of what a cut lays bare, or heat has denatured, against T' = T^(1/2) R^T diag(S) R
-// T^(1/2) by hand, its ramp, and that it is set once.
+// Shrinkage of tissue that a cut exposes, or that heat has denatured: against T' = T^(1/2) R^T
+// diag(S) R T^(1/2). Also tests the ramp, and that a target is set only once.
 #include <string.h>
 
 #include "base/symmetric.h"
 #include "core/dissect/cutting.h"
 
 static const double RAMP_S = 0.2, STEP_S = 1.0 / 60;
-// Ten roundings through two roots of numbers between 0.01 and 1.
+// Ten roundings, and two square roots of numbers between 0.01 and 1.
 static const double TARGET_TOLERANCE = 1e-12;
 static const double SHEET_SHRINK[2] = {0.1, 0.3}, FAT_SHRINK[3] = {0.1, 0.6, 0.9};
 static const double SHEET_TARGET[3] = {0.4, 0.7, 0.1};
@@ -38,7 +38,8 @@ static void make(burnt *b, int fat, int targeted)
 	b->pose = pose_at(0.003, -0.002, fat ? -0.012 : 0.001);
 }
 
-// Parts the edge between the two vertices nearest to the tool, and exposes what is left.
+// Parts the edge between the two vertices nearest to the tool, and starts the shrinkage of the
+// exposed elements.
 static void burn(burnt *b)
 {
 	const double *x = b->r.solver.position;
@@ -62,7 +63,7 @@ static void burn(burnt *b)
 	                  &b->r.solver.elements, &b->r.solver.slots);
 }
 
-// Live elements that share a face (an edge) with a removed one, by their vertices.
+// True if an element shares a face or an edge with a removed element, found by their vertices.
 static int is_exposed(const burnt *b, int kind, int32_t element)
 {
 	int vertices = kind == CAU_ELEMENT_TRIANGLE ? 3 : 4;
@@ -98,7 +99,7 @@ static void test_exposed_elements_and_no_others(void **state)
 	}
 }
 
-// F of an element by the map of the system.
+// Computes F of an element by its map in the system.
 static void gradient_of(const burnt *b, int kind, int32_t element, double f[3][3])
 {
 	cau_element_map map;
@@ -110,7 +111,7 @@ static void gradient_of(const burnt *b, int kind, int32_t element, double f[3][3
 				f[row][c] += map.coefficient[c][i] * b->r.solver.position[3 * map.vertex[i] + row];
 }
 
-// N_c: for a sphere, the direction from its centre to the element's.
+// Computes N_c: for a sphere, the direction from its centre to the element's centroid.
 static void contact_normal(const burnt *b, int kind, int32_t element, double n[3])
 {
 	cau_element_map map;
@@ -126,7 +127,7 @@ static void contact_normal(const burnt *b, int kind, int32_t element, double n[3
 		n[c] /= sqrt(length);
 }
 
-// First axis: the normalised F^T N_c.
+// Computes the first axis: the normalised F^T N_c.
 static void first_axis(const burnt *b, int kind, int32_t element, double axis[3])
 {
 	double f[3][3], n[3], length = 0;
@@ -157,8 +158,8 @@ static void assert_triangle_target(const cau_shrinking *active, int targeted, co
 	assert_near(mat_distance(got, s), 0, TARGET_TOLERANCE);
 }
 
-// The second axis depends on the face laid bare; what does not: det T' = det T S_x S_y S_z, and the
-// length along the first axis.
+// The second axis depends on the exposed face. The test checks values that do not: the trace and
+// determinant of R^T diag(S) R, and its value along the first axis.
 static void assert_tetrahedron_target(const cau_shrinking *active, int targeted,
                                       const double axis[3])
 {
@@ -207,9 +208,9 @@ static void test_targets_by_hand(void **state)
 		}
 }
 
-// ---- what heat has denatured
+// ---- denatured tissue
 
-// Heats the first `count` edges of the element by `share`, and offers it to the shrinkage in a
+// Heats the first `count` edges of the element to `share`. Then calls cau_shrink_denatured with a
 // temperature that rises along `axis` at rest.
 static void denature(burnt *b, int kind, int32_t element, int count, double share,
                      const double axis[3])
@@ -228,7 +229,8 @@ static void denature(burnt *b, int kind, int32_t element, int count, double shar
 	                     &b->r.solver.elements, &b->r.solver.slots);
 }
 
-// From half of an element on all of it shrinks, by the gradient of the temperature.
+// If half of an element is denatured, the whole element shrinks, along the gradient of the
+// temperature.
 static void test_denatured_elements(void **state)
 {
 	(void)state;
@@ -238,12 +240,13 @@ static void test_denatured_elements(void **state)
 			burnt b;
 			make(&b, fat, targeted);
 			int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE, edges = fat ? 6 : 3;
-			denature(&b, kind, 7, edges, 0.24, AXIS[fat]); // 0.5: coagulated
+			// an edge heated by 0.5 counts as coagulated, so 0.24 is less than half
+			denature(&b, kind, 7, edges, 0.24, AXIS[fat]);
 			assert_int_equal(b.r.shrink.active_count, 0);
 			denature(&b, kind, 7, edges, 0.26, AXIS[fat]);
 			assert_int_equal(b.r.shrink.active_count, 1);
 			assert_target(&b.r.shrink.active[0], targeted, AXIS[fat]);
-			denature(&b, kind, 7, edges, 1, AXIS[fat]); // once for ever
+			denature(&b, kind, 7, edges, 1, AXIS[fat]); // an element gets its target only once
 			assert_int_equal(b.r.shrink.active_count, 1);
 			rig_finish(&b.r);
 		}
@@ -269,11 +272,11 @@ static void test_ramp(void **state)
 			            TARGET_TOLERANCE);
 		assert_true(ticks < 100);
 	}
-	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // one tick's rounding
+	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // within one tick of the ramp's time
 	rig_finish(&b.r);
 }
 
-// Once for ever: a second cut beside it, and new materials, leave the target.
+// A second cut beside the element, or new materials, leave its target unchanged.
 static void test_set_once(void **state)
 {
 	(void)state;
@@ -301,7 +304,7 @@ static void test_set_once(void **state)
 	}
 }
 
-// Elements that find no room on the way are at their targets at once.
+// Elements beyond the capacity get their targets at once.
 static void test_no_room(void **state)
 {
 	(void)state;

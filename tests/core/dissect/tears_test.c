@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tears (core/dissect/tears.c): at which stretch an element is over what it bears, how long it has
-// to be, which of neighbours goes, and that books are those of a recount.
+// Tears (core/dissect/tears.c): the stretch at which an element is overloaded, how long it must be
+// overloaded, which of several neighbours tears, and that the bookkeeping agrees with a recount.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +9,9 @@
 #include "dissect/dissection_internal.h"
 
 static const double stiffness_pa = 1e6, tear_j_m2 = 200;
-static const double band_share = 0.4;  // of what an element at a tip stores: tears.c
-static const double near_share = 1e-6; // to either side of where an element is over
+// share of the released energy that an element at a tip stores: tears.c
+static const double band_share = 0.4;
+static const double near_share = 1e-6; // relative distance from the limit stretch, to either side
 
 static double *stretched(const rig *r, double x, double y, double z)
 {
@@ -23,7 +24,7 @@ static double *stretched(const rig *r, double x, double y, double z)
 	return position;
 }
 
-// Two converged ticks at this stretch; how many elements go in the second.
+// Runs two converged ticks at this stretch. Returns the number of elements torn in the second.
 static int32_t torn_at(rig *r, double x, double y, double z)
 {
 	cau_dissection *d = &r->dissection;
@@ -52,14 +53,14 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 		cau_sheet_material *sheet = rig_add_sheet(&r, 5, 4)->sheet; // cells of 20 mm
 		sheet->limit_stiffness_pa = stiffness_pa;
 		sheet->heat.tear_energy_j_m2 = tear_j_m2;
-		sheet->target[0] = sheet->target[1] = 0.1; // taut, which does not count
+		sheet->target[0] = sheet->target[1] = 0.1; // taut at rest, which does not count
 		sheet->limit = ranged ? CAU_LIMIT_RANGE : CAU_LIMIT_TARGET;
-		sheet->strain_max[0] = 0.3; // nor does what a range lets go
+		sheet->strain_max[0] = 0.3; // stretch within the range does not count
 		build(&r, CAU_PARTING_ELEMENTS);
 		double beyond = sqrt(2 * band_share * tear_j_m2 / 0.02 / stiffness_pa);
 		double least = (ranged ? 1.3 : 1) + beyond;
 		assert_int_equal(torn_at(&r, 1, 1, 1), 0);
-		assert_int_equal(torn_at(&r, 0.2, 0.2, 1), 0); // pushed together
+		assert_int_equal(torn_at(&r, 0.2, 0.2, 1), 0); // compressed
 		assert_int_equal(torn_at(&r, least * (1 - near_share), 0.5, 1), 0);
 		assert_true(torn_at(&r, least * (1 + near_share), 0.5, 1) > 0);
 		rig_finish(&r);
@@ -71,7 +72,7 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 static void coagulated_tissue_bears_less(void **state)
 {
 	(void)state;
-	for (int quarters = 0; quarters <= 8; quarters++) { // of an exposure of 0.5
+	for (int quarters = 0; quarters <= 8; quarters++) { // quarters of an exposure of 0.5
 		rig r;
 		rig_begin(&r);
 		cau_layer_def *layer = rig_add_sheet(&r, 5, 4);
@@ -94,7 +95,7 @@ static void fat_and_links_bear_what_their_parameters_say(void **state)
 	(void)state;
 	rig r;
 	rig_begin(&r);
-	cau_fat_material *fat = rig_add_slab(&r, 5, 4, 3)->fat; // 20 x 20 x 10 mm
+	cau_fat_material *fat = rig_add_slab(&r, 5, 4, 3)->fat; // cells of 20 x 20 x 10 mm
 	fat->young_modulus_pa = stiffness_pa;
 	fat->heat.tear_energy_j_m2 = tear_j_m2;
 	build(&r, CAU_PARTING_ELEMENTS);
@@ -108,7 +109,8 @@ static void fat_and_links_bear_what_their_parameters_say(void **state)
 	rig_add_sheet(&r, 5, 4);
 	rig_add_sheet(&r, 5, 4);
 	r.scene->meshes[1].translate_m[2] = 0.004;
-	cau_link_material *link = &rig_add_links(&r, 1, 0, 0.005)->link; // straight up: one each
+	// straight up: one link for each vertex
+	cau_link_material *link = &rig_add_links(&r, 1, 0, 0.005)->link;
 	link->young_modulus_pa = stiffness_pa;
 	link->heat.tear_energy_j_m2 = tear_j_m2;
 	build(&r, CAU_PARTING_ELEMENTS);
@@ -118,7 +120,7 @@ static void fat_and_links_bear_what_their_parameters_say(void **state)
 	rig_finish(&r);
 }
 
-// Where a scene says nothing, nothing tears.
+// Tissue does not tear if the scene has no tear energy.
 static void what_has_no_energy_does_not_tear(void **state)
 {
 	(void)state;
@@ -139,12 +141,12 @@ static void one_overshoot_tears_nothing(void **state)
 	build(&r, CAU_PARTING_EDGES);
 	cau_dissection *d = &r.dissection;
 	double *far = stretched(&r, 3, 1, 1), *near = stretched(&r, 1, 1, 1);
-	for (int k = 0; k < 4; k++) { // every other tick
+	for (int k = 0; k < 4; k++) { // overloaded in every other tick
 		cau_dissection_tear(d, far, true, r.solver.pool);
 		cau_dissection_tear(d, near, true, r.solver.pool);
 	}
 	assert_int_equal(d->tears.elements_torn, 0);
-	for (int k = 0; k < 5; k++) // ticks that have not converged, one after the other
+	for (int k = 0; k < 5; k++) // consecutive ticks that have not converged
 		cau_dissection_tear(d, far, false, r.solver.pool);
 	assert_int_equal(d->tears.elements_torn, 0);
 	cau_dissection_tear(d, far, false, r.solver.pool);
@@ -154,8 +156,8 @@ static void one_overshoot_tears_nothing(void **state)
 	rig_finish(&r);
 }
 
-// Of those over, each that goes touches none that goes in the same tick; by edges, but for those
-// that share its edge.
+// Of the overloaded elements, no two that tear in one tick share a vertex. If edges part, elements
+// at the same edge tear together.
 static void neighbours_wait(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a frame tells a viewer against everything counted anew.
+// The frame's changes against a full recount.
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,7 +67,8 @@ static void test_mask_and_visible_vertices_after_cuts(void **state)
 	for (int tick = 0; tick < 20; tick++) {
 		cut_random_edges(&f.r, &random, 1 + tick);
 		cau_frame_update(&f.frame, &f.r.dissection, t->rest, t->rest);
-		for (int32_t k = 0; k < f.frame.mask_changed_count; k++) { // a viewer follows by the words
+		// A viewer applies the changed words.
+		for (int32_t k = 0; k < f.frame.mask_changed_count; k++) {
 			int32_t w = f.frame.mask_changed[k];
 			assert_true(!k || w > f.frame.mask_changed[k - 1]);
 			assert_true(known[w] != f.r.dissection.face_mask[w]);
@@ -85,7 +86,8 @@ static void test_mask_and_visible_vertices_after_cuts(void **state)
 	rig_finish(&f.r);
 }
 
-// The largest exposure over ignition of a vertex's edges; a rebuild finds the same.
+// Exposure of a vertex is the largest exposure over ignition of its edges. A rebuild finds the
+// same.
 static void test_exposure_of_vertices(void **state)
 {
 	(void)state;
@@ -118,13 +120,14 @@ static void test_exposure_of_vertices(void **state)
 	}
 	assert_true(charred > 50);
 	cau_frame_rebuild(&f.frame, &f.r.dissection);
-	for (int32_t v = 0; v < t->vertex_count; v++) // expose_by_hand may have set an edge back
+	// The helper expose_by_hand may have lowered an edge's exposure.
+	for (int32_t v = 0; v < t->vertex_count; v++)
 		assert_true(f.frame.exposure[v] <= expected[v]);
 	rig_finish(&f.r);
 }
 
-// Of each vertex's edges those that have parted, in one layer or several; counted anew from all
-// edges.
+// Charring is the share of a vertex's edges that have parted, in one layer or several. It is
+// counted again from all edges.
 static void test_charring_is_the_share_of_parted_edges(void **state)
 {
 	(void)state;
@@ -136,7 +139,7 @@ static void test_charring_is_the_share_of_parted_edges(void **state)
 	uint64_t random = 193;
 	int32_t *edges = cau_arena_array(&f.r.arena, n, sizeof *edges);
 	int32_t *parted = cau_arena_array(&f.r.arena, n, sizeof *parted);
-	int32_t between = 0; // values that are neither 0 nor 1
+	int32_t between = 0; // values strictly between 0 and 1
 	for (int tick = 0; tick < 20; tick++) {
 		cut_random_edges(&f.r, &random, 1 + tick);
 		cau_frame_update(&f.frame, d, t->rest, t->rest);
@@ -154,12 +157,12 @@ static void test_charring_is_the_share_of_parted_edges(void **state)
 	assert_true(between > 100);
 	float *before = cau_arena_array(&f.r.arena, n, sizeof *before);
 	memcpy(before, f.frame.charring, n * sizeof *before);
-	cau_frame_rebuild(&f.frame, d); // as a restore does
+	cau_frame_rebuild(&f.frame, d); // a restore does the same
 	assert_memory_equal(f.frame.charring, before, n * sizeof *before);
 	rig_finish(&f.r);
 }
 
-// Heat that parts nothing exposes, and chars nothing.
+// Heat below ignition raises the exposure, but not the charring.
 static void test_heat_below_ignition_chars_nothing(void **state)
 {
 	(void)state;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress channel against closed forms of a uniform strain.
+// The stress channel against closed forms for uniform strain.
 #include <string.h>
 
 #include "core/rig/rig.h"
 #include "frame/frame_state.h"
 
-static const double STRESS_TOLERANCE = 1e-5; // floats summed over two dozen tetrahedra
+static const double STRESS_TOLERANCE = 1e-5; // rounding of float sums over two dozen tetrahedra
 
 typedef struct framed {
 	rig r;
@@ -22,7 +22,8 @@ static void make(framed *f)
 	                 CAU_OK);
 }
 
-// Von Mises stress at F everywhere; 0 if a vertex of live fat differs from the rest.
+// Returns the von Mises stress at the uniform deformation gradient F. Returns 0 if a vertex of
+// living fat has another stress than the others.
 static double uniform_stress(framed *f, double map[3][3])
 {
 	uint64_t random = 1;
@@ -41,15 +42,15 @@ static void test_closed_forms(void **state)
 	make(&f);
 	double lambda, mu, e = 0.02, s = 0.1;
 	cau_fat_lame(&f.r.tissue.layer[0].def.fat[0], &lambda, &mu);
-	// Green strain e along one axis alone: 2 mu e
+	// Green strain e along one axis only gives 2 mu e.
 	double stretch[3][3] = {{sqrt(1 + 2 * e), 0, 0}, {0, 1, 0}, {0, 0, 1}};
 	assert_near(uniform_stress(&f, stretch), 2 * mu * e, STRESS_TOLERANCE * 2 * mu * e);
-	// equal in all directions, and a turn: none
+	// Equal stretch in all directions, and a rotation, give no stress.
 	double grow[3][3] = {{1.2, 0, 0}, {0, 1.2, 0}, {0, 0, 1.2}}, turn[3][3];
 	mat_rotation((double[]){1, 2, 3}, 1, turn);
 	assert_near(uniform_stress(&f, grow), 0, STRESS_TOLERANCE * mu);
 	assert_near(uniform_stress(&f, turn), 0, STRESS_TOLERANCE * mu);
-	// simple shear s: E_01 = s/2, E_11 = s^2/2
+	// Simple shear s: E_01 = s/2, E_11 = s^2/2.
 	double shear[3][3] = {{1, s, 0}, {0, 1, 0}, {0, 0, 1}};
 	double expected = 2 * mu * sqrt(s * s * s * s / 4 + 3 * s * s / 4);
 	assert_near(uniform_stress(&f, shear), expected, STRESS_TOLERANCE * expected);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The temperature channel against what the grids hold: the tool's temperature inside the hot part,
-// the grid's interpolation around it, ambient beyond.
+// The temperature channel against the heat grids: the tool's temperature inside the hot part, the
+// grid's interpolation around it, ambient outside the grid.
 #include <string.h>
 
 #include "core/rig/rig.h"
@@ -9,7 +9,7 @@
 
 static const double AMBIENT_C = 37;
 static const double TICK_S = 1.0 / 60;
-static const double FLOAT_C = 1e-4; // of sums of eight floats around 200 degC
+static const double FLOAT_C = 1e-4; // rounding of sums of eight floats around 200 degC
 
 typedef struct heated {
 	rig r;
@@ -21,7 +21,7 @@ static void make(heated *h)
 {
 	memset(h, 0, sizeof *h);
 	rig_begin(&h->r);
-	rig_add_sheet(&h->r, 100, 80); // 1 mm apart
+	rig_add_sheet(&h->r, 100, 80); // vertices are 1 mm apart
 	rig_build(&h->r, NULL, 1);
 	assert_int_equal(cau_frame_create(&h->frame, &h->r.tissue, &h->r.dissection, &h->r.arena, NULL),
 	                 CAU_OK);
@@ -69,18 +69,20 @@ static void test_hot_inside_ambient_beyond(void **state)
 	heated h;
 	make(&h);
 	cau_tool_def tool = sphere_at(0.0002, -0.0003);
-	tool.grid_cells = 8; // so that there is something beyond
+	tool.grid_cells = 8; // a small grid, so that some vertices are outside
 	cau_heat_grid grid = burning(&tool, 60);
 	heat(&h, &grid);
 	cau_vec3 least, most;
 	cau_heat_grid_box(&grid, &least, &most);
-	const double corner = sqrt(3) * grid.field[0].step_m, on_m = 1e-9; // of vertices on the box
+	// Tolerance for vertices on the box.
+	const double corner = sqrt(3) * grid.field[0].step_m, on_m = 1e-9;
 	int inside = 0, between = 0, beyond = 0;
 	for (int32_t v = 0; v < h.r.tissue.vertex_count; v++) {
 		cau_vec3 at = place_of(&h, v);
 		double distance = cau_length(cau_sub(at, cau_vec3_of(tool.pose.position_m)));
 		double now = (double)h.frame.temperature[v];
-		if (distance < tool.hot_radius_m - corner) { // all nodes around it are held
+		// All nodes around the vertex are inside the hot part.
+		if (distance < tool.hot_radius_m - corner) {
 			assert_near(now, tool.temperature_c, FLOAT_C);
 			inside++;
 		} else if (at.x < least.x - on_m || at.y < least.y - on_m || at.x > most.x + on_m ||
@@ -96,7 +98,7 @@ static void test_hot_inside_ambient_beyond(void **state)
 	rig_finish(&h.r);
 }
 
-// A field that is linear in space comes out of trilinear interpolation as it is.
+// Trilinear interpolation reproduces a field that is linear in space.
 static void test_a_linear_field_is_read_as_it_is(void **state)
 {
 	(void)state;
@@ -117,7 +119,7 @@ static void test_a_linear_field_is_read_as_it_is(void **state)
 	cau_heat_grid_take_over(&grid, &tool, &tool.pose, 0, 0);
 	uint64_t random = 5;
 	double turned[3][3];
-	mat_rotation((double[]){1, 0.3, 0}, 0.2, turned); // out of the plane of the nodes
+	mat_rotation((double[]){1, 0.3, 0}, 0.2, turned); // rotated out of the plane of the nodes
 	rig_deform(&h.r, turned, 2e-4, &random, h.r.solver.position);
 	cau_near_refit(&h.near, h.r.solver.position);
 	heat(&h, &grid);
@@ -140,7 +142,8 @@ static void test_a_linear_field_is_read_as_it_is(void **state)
 	rig_finish(&h.r);
 }
 
-// Of two grids the one further from ambient is read, in whichever order they come; tools may cool.
+// Where two grids overlap, the value farther from ambient is taken, in any order of the tools.
+// Tools may also cool.
 static void test_the_hotter_of_two_tools_stands(void **state)
 {
 	(void)state;
@@ -167,7 +170,7 @@ static void test_the_hotter_of_two_tools_stands(void **state)
 		double c = cau_heat_grid_at(&grids[2], place_of(&h, v));
 		double hotter = fmax(a, b), away = fmax(AMBIENT_C - c, hotter - AMBIENT_C);
 		double expected = AMBIENT_C - c > hotter - AMBIENT_C ? c : hotter;
-		if (away > FLOAT_C) { // where two are equally far as floats, either may stand
+		if (away > FLOAT_C) { // of two values equally far from ambient, either may be taken
 			assert_true(h.frame.temperature[v] == (float)expected);
 			assert_true(h.frame.temperature[v] == first[v]);
 		}
@@ -180,7 +183,8 @@ static void test_the_hotter_of_two_tools_stands(void **state)
 	rig_finish(&h.r);
 }
 
-// What the grid has left is at ambient again, and so is everything once the tool has cooled.
+// Vertices that the grid has left are at ambient again. All vertices are at ambient once the tool
+// has cooled.
 static void test_left_vertices_are_at_ambient(void **state)
 {
 	(void)state;

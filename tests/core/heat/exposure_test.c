@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exposure of edges by a dwelling tool, where it must be zero, and the parts of a swept tick.
+// Tests the exposure of edges near a tool at rest, cases in which it must be zero, and the parts of
+// a swept tick.
 #include "heat/exposure.h"
 
 #include <setjmp.h>
@@ -13,7 +14,7 @@
 
 static const double AMBIENT_C = 37;
 static const double TICK_S = 1.0 / 60;
-// An edge wholly inside the hot ball, where all nodes around it are held.
+// An edge that is wholly inside the hot ball, so all nodes around it are held.
 static const cau_vec3 A = {-4e-4, 2e-4, 1e-4}, B = {5e-4, -3e-4, 2e-4};
 
 static cau_heat_grid create(const cau_tool_def *tool)
@@ -24,8 +25,8 @@ static cau_heat_grid create(const cau_tool_def *tool)
 	return grid;
 }
 
-// Time (s) until the exposure of A-B exceeds `delta_c` under an energized ball of 3 mm on a 1 mm
-// grid.
+// Returns the time (s) until the exposure of A-B exceeds `delta_c`, with an energized ball of 3 mm
+// on a 1 mm grid.
 static double time_to_part(double temperature_c, double absorption_per_s, double delta_c)
 {
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
@@ -44,7 +45,7 @@ static double time_to_part(double temperature_c, double absorption_per_s, double
 static void test_time_to_part(void **state)
 {
 	(void)state;
-	// delta / (xi u), and a tick because exposure is looked at once a tick
+	// delta / (xi u); the tolerance is a tick, because exposure is checked once per tick
 	assert_near(time_to_part(170, 0.4, 160), 160 / (0.4 * 170), TICK_S); // fascia, 2.35 s
 	assert_near(time_to_part(90, 0.6, 78), 78 / (0.6 * 90), TICK_S);     // fat, 1.44 s
 }
@@ -68,7 +69,7 @@ static void test_no_exposure_below_living(void **state)
 	cau_heat_grid_finish(&grid);
 }
 
-// Warm nodes alone do not char: the edge must meet the hot shape.
+// Warm nodes alone do not char an edge. The edge must meet the hot shape.
 static void test_no_exposure_outside_the_shape(void **state)
 {
 	(void)state;
@@ -80,15 +81,16 @@ static void test_no_exposure_outside_the_shape(void **state)
 	double mean = (cau_heat_grid_at(&grid, near) + cau_heat_grid_at(&grid, by)) / 2;
 	assert_true(mean > 100);
 	assert_true(cau_exposure_gain(&grid, &tool, &tool.pose, 0, near, by, 0.4, TICK_S) == 0);
-	cau_vec3 across = {-3.1e-3, 1e-3, 0}; // ends outside, passes through the ball
+	// Both ends are outside, the edge passes through the ball.
+	cau_vec3 across = {-3.1e-3, 1e-3, 0};
 	assert_true(cau_exposure_gain(&grid, &tool, &tool.pose, 0, near, across, 0.4, TICK_S) > 0);
-	cau_pose lifted = pose_at(0, 0, 5e-3); // the tool leaves, its heat lags behind
+	cau_pose lifted = pose_at(0, 0, 5e-3); // the tool has left, and its heat is still there
 	assert_true(cau_exposure_gain(&grid, &tool, &tool.pose, 0, A, B, 0.4, TICK_S) > 0);
 	assert_true(cau_exposure_gain(&grid, &tool, &lifted, 0, A, B, 0.4, TICK_S) == 0);
 	cau_heat_grid_finish(&grid);
 }
 
-// Greatest way of any point of the hot part between two poses of the path.
+// Returns the greatest distance that any point of the hot part moves between two poses.
 static double greatest_way(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
 {
 	uint64_t random = 41;
@@ -129,7 +131,8 @@ static void test_parts(void **state)
 	assert_int_equal(cau_exposure_parts(&grasper, &from, &to), 1);
 }
 
-// As many as half a cell asks for, no more than four of those; never fewer than what is swept.
+// The number of parts follows from half a cell, up to four. It is never less than the number for
+// the swept shape.
 static void test_heating_parts(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nested fields: what one takes from the one around it and gives to it, and what comes in as it
-// moves. A field that is linear in space must come through all of it as it is.
+// Tests nested fields: values that a field takes from the next wider field, values that it gives
+// back, and new values after a move. A field that is linear in space must stay unchanged.
 #include "heat/heat_field.h"
 
 #include <setjmp.h>
@@ -14,9 +14,9 @@
 #include "core/tool/tools.h"
 
 enum { NODES = 12, COUNT = NODES * NODES * NODES };
-static const double ROUNDING_C = 1e-4; // of sums of eight floats near 100
+static const double ROUNDING_C = 1e-4; // rounding of sums of eight floats near 100
 
-typedef struct pair { // a field and the one around it
+typedef struct pair { // a field, and the next wider field
 	cau_heat_field field[2];
 	float room[4][COUNT];
 } pair;
@@ -40,7 +40,7 @@ static int is_outer(int i)
 	return x * y * z == 0 || x == last || y == last || z == last;
 }
 
-// Both are linear but for the innermost's outer nodes, which are at `boundary`.
+// Makes two linear fields. The outer nodes of the inner field have the value `boundary`.
 static void make(pair *p, int64_t x, int64_t y, int64_t z, float boundary)
 {
 	for (int k = 0; k < 2; k++)
@@ -53,7 +53,8 @@ static void make(pair *p, int64_t x, int64_t y, int64_t z, float boundary)
 				!k && is_outer(i) ? boundary : (float)linear(place_of(&p->field[k], i));
 }
 
-// Odd and even, above and below zero: every way for the two to lie in one another.
+// Odd and even origins, above and below zero, so that all relative positions of the two fields
+// occur.
 static const int64_t ORIGIN[][3] = {{0, 0, 0}, {-7, 3, 12}, {5, -4, -9}, {-1000001, 6, -2}};
 enum { ORIGINS = sizeof ORIGIN / sizeof *ORIGIN };
 
@@ -87,7 +88,7 @@ static void test_boundary(void **state)
 	}
 }
 
-// Its inner nodes and no others, to the bit.
+// Only the inner nodes are copied, to the bit.
 static void test_inner_nodes_are_given(void **state)
 {
 	(void)state;
@@ -110,7 +111,7 @@ static void test_inner_nodes_are_given(void **state)
 			assert_true(p.field[1].temperature[i] == 1000 + (float)from);
 			taken++;
 		}
-		assert_int_equal(taken, 5 * 5 * 5); // of ten inner nodes along an axis every other one
+		assert_int_equal(taken, 5 * 5 * 5); // every second one of ten inner nodes along each axis
 	}
 }
 
@@ -138,7 +139,7 @@ static void test_what_comes_in(void **state)
 	}
 }
 
-// Without one around: the nearest node's value.
+// Without a wider field, new nodes have the value of the nearest node.
 static void test_the_outermost_goes_on_as_it_ends(void **state)
 {
 	(void)state;
@@ -154,7 +155,7 @@ static void test_the_outermost_goes_on_as_it_ends(void **state)
 			assert_true(p.field[0].temperature[i + x] == 50);
 }
 
-// A field that falls with the distance from the middle is what the open boundary takes it for.
+// The open boundary is exact for a field that falls with the distance from the middle.
 static void test_open_boundary(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The heat grid against solutions of the heat equation, its stability limit, its held nodes, and
-// its following of the tool.
+// Tests the heat grid: against solutions of the heat equation, at its stability limit, its held
+// nodes, and its motion with the tool.
 #include "heat/heat_grid.h"
 
 #include <setjmp.h>
@@ -25,7 +25,8 @@ static cau_heat_grid create(const cau_tool_def *tool, const cau_pose *pose)
 	return grid;
 }
 
-// After the innermost field was written: as a restored snapshot of it goes on.
+// Completes the grid after the innermost field was written, as after a restored snapshot of that
+// field.
 static void go_on_from(cau_heat_grid *grid, const cau_tool_def *tool)
 {
 	cau_heat_grid_fill_outer(grid);
@@ -37,7 +38,7 @@ static int64_t node_count(const cau_heat_grid *grid)
 	return (int64_t)grid->nodes * grid->nodes * grid->nodes;
 }
 
-// World position of node `index` along x, y, z.
+// Returns the world position of node `index`.
 static cau_vec3 node_position(const cau_heat_grid *grid, int64_t index)
 {
 	int64_t n = grid->nodes;
@@ -46,16 +47,18 @@ static cau_vec3 node_position(const cau_heat_grid *grid, int64_t index)
 	                  (double)(grid->field[0].origin[2] + index / (n * n)) * grid->field[0].step_m};
 }
 
-// A point source of heat that has spread for `time` (s): 100 degC at the centre at SPREAD_S. Its
-// standard deviation is then 2.9 steps of 1 mm, and the boundary stays 4.7 of them away.
+// A point source of heat that has spread for `time` (s), with 100 degC at the centre at SPREAD_S.
+// At SPREAD_S its standard deviation is 2.9 steps of 1 mm. The boundary is 4.7 standard deviations
+// away.
 static const double SPREAD_S = 1.0;
 static double gaussian(const cau_heat_grid *grid, cau_vec3 p, double time)
 {
 	return 100 * pow(SPREAD_S / time, 1.5) * exp(-cau_dot(p, p) / (4 * grid->diffusivity * time));
 }
 
-// Greatest error, relative to the solution's peak, after the Gaussian has spread for a time that is
-// 8 parts of exactly dl^2 / (6 alpha) at 1 mm and 32 at 0.5 mm, so that dt is scaled with dl^2.
+// Returns the greatest error, relative to the solution's peak, after the Gaussian has spread. The
+// time is 8 parts of exactly dl^2 / (6 alpha) at 1 mm and 32 parts at 0.5 mm, so dt is scaled with
+// dl^2.
 static double gaussian_error(double step_m, int nodes)
 {
 	static const double DURATION_S = 8 * 1e-6 / (6 * 4.2e-6);
@@ -83,7 +86,8 @@ static void test_gaussian(void **state)
 {
 	(void)state;
 	static const double ONE_PERCENT = 0.01;
-	static const double SECOND_ORDER = 4, HIGHER_TERMS = 0.3; // of order dl^4 at 1 mm
+	// HIGHER_TERMS: terms of order dl^4 at 1 mm.
+	static const double SECOND_ORDER = 4, HIGHER_TERMS = 0.3;
 	double coarse = gaussian_error(1e-3, 32);
 	double fine = gaussian_error(0.5e-3, 64);
 	print_message("gaussian: %.3g at 1 mm, %.3g at 0.5 mm, ratio %.3f\n", coarse, fine,
@@ -103,12 +107,13 @@ static void test_substeps(void **state)
 	assert_int_equal(cau_heat_grid_substeps(1e-3, 0, 1000), 1);
 }
 
-// At exactly the limit every new value is a mean of the six around it: noise stays within its
-// extremes and dies out. A step 5 % beyond would let the finest noise grow by 1.1 a part.
+// At exactly the limit every new value is a mean of the six values around. So noise stays within
+// its extremes and decays. A step 5 % beyond would make the finest noise grow by a factor of 1.1 in
+// each part.
 static void test_stable_at_the_limit(void **state)
 {
 	(void)state;
-	static const double ROUNDING_C = 1e-4; // of float means near 100, over 64 parts
+	static const double ROUNDING_C = 1e-4; // rounding of float means near 100, over 64 parts
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_heat_grid grid = create(&tool, &tool.pose);
 	uint64_t random = 21;
@@ -155,9 +160,9 @@ static void test_refusals(void **state)
 	                 CAU_OK);
 	cau_heat_grid_finish(&grid);
 	expect_refusal(&tool, 64.001 * limit, "grid_step_m");
-	tool.grid_step_m = tool.hot_radius_m * 1.001; // the hot part would fall between the nodes
+	tool.grid_step_m = tool.hot_radius_m * 1.001; // the hot part would fit between the nodes
 	expect_refusal(&tool, TICK_S, "grid_step_m");
-	tool = tool_with_defaults(CAU_TOOL_SPATULA); // thinner than its hot radius
+	tool = tool_with_defaults(CAU_TOOL_SPATULA); // a spatula is thinner than its hot radius
 	tool.grid_step_m = tool.hot_radius_m / 2;
 	expect_refusal(&tool, TICK_S, "grid_step_m");
 	tool.grid_step_m = NAN;
@@ -170,13 +175,14 @@ static void test_refusals(void **state)
 	expect_refusal(&tool, TICK_S, "diffusivity_m2_s");
 }
 
-// Exactly the nodes within the hot part hold, for every shape, turned, at any jaw angle; the rest
-// of the field lies between ambient and the tool, strictly so where it is not at the surface.
+// Exactly the nodes inside the hot part are held: for every shape, rotated, at any jaw angle. All
+// other values are between ambient and the tool's temperature. Away from the surface they are
+// strictly below the tool's temperature.
 static void test_hot_nodes_hold(void **state)
 {
 	(void)state;
-	static const double AT_THE_SURFACE =
-		0.05; // cells: a node's value may round to the tool's there
+	// Cells: nearer to the surface, a node's value may round to the tool's temperature.
+	static const double AT_THE_SURFACE = 0.05;
 	for (int shape = 0; shape < CAU_TOOL_GRASPER; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		tool.pose = pose_turned((cau_vec3){0.0123, -0.0234, 0.0011}, (cau_vec3){1, -2, 0.5}, 0.7);
@@ -201,8 +207,8 @@ static void test_hot_nodes_hold(void **state)
 	}
 }
 
-// Nodes keep their values to the bit; those that come in are at ambient, as the field around is
-// there; the outer ones take its values.
+// Nodes that stay keep their values to the bit. New nodes are at ambient, because the wider field
+// is at ambient there. Outer nodes take the values of the wider field.
 static void test_shift_keeps_values(void **state)
 {
 	(void)state;
@@ -240,7 +246,7 @@ static void test_shift_keeps_values(void **state)
 	}
 }
 
-// Steps below a cell leave the grid where it is; a turn about the tip of a sphere too.
+// Motions of less than a cell do not move the grid. Nor does a rotation about the tip of a sphere.
 static void test_follows_in_whole_cells(void **state)
 {
 	(void)state;
@@ -260,12 +266,13 @@ static void test_follows_in_whole_cells(void **state)
 	cau_heat_grid_finish(&grid);
 }
 
-// What a tool leaves behind is in the outer fields: a second after the burn, its place is as warm
-// whether the tool has stayed there or has gone 20 mm, beyond the innermost field.
+// Heat that a tool leaves behind is stored in the outer fields. One case keeps the tool in place
+// for a second after heating. In the other case the tool moves 20 mm away, beyond the innermost
+// field. The tissue is about as warm in both cases.
 static void test_heat_that_is_left_behind_stays(void **state)
 {
 	(void)state;
-	static const double COARSER = 0.1; // cells of 4 mm tell no more of a spot of 8 mm
+	static const double COARSER = 0.1; // relative; cells of 4 mm resolve a spot of 8 mm no better
 	double left_c[2];
 	for (int goes = 0; goes < 2; goes++) {
 		cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
@@ -300,7 +307,7 @@ static void test_leap_leaves_the_heat_behind(void **state)
 	cau_heat_grid_finish(&grid);
 }
 
-// Energy off: the field cools, comes to rest at ambient, and from then on no node is touched.
+// With energy off, the field cools and comes to rest at ambient. From then on no node is changed.
 static void test_comes_to_rest(void **state)
 {
 	(void)state;
@@ -314,18 +321,20 @@ static void test_comes_to_rest(void **state)
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0, TICK_S);
 		assert_true(cau_heat_grid_warmest(&grid) <= previous);
 		previous = cau_heat_grid_warmest(&grid);
-		assert_true(ticks < 60 * 30); // the slowest mode's time is 1.8 s; ln(133 / 0.01) of them
+		// The slowest mode decays in 1.8 s; ln(133 / 0.01) such times are needed.
+		assert_true(ticks < 60 * 30);
 	}
 	assert_true(ticks > 60);
 	float *field = grid.field[0].temperature;
-	grid.field[0].next[0] = 99; // would reach the field with the next swap
+	grid.field[0].next[0] = 99; // would reach the field with the next exchange
 	cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0, TICK_S);
 	assert_ptr_equal(field, grid.field[0].temperature);
 	assert_true(grid.field[0].temperature[0] == (float)AMBIENT_C);
 	cau_heat_grid_finish(&grid);
 }
 
-// A pose that is not a number holds nothing and heats nothing, now and when the tool is back.
+// A pose that is not a number holds no node and heats nothing, neither now nor after the tool is
+// back.
 static void test_survives_a_bad_pose(void **state)
 {
 	(void)state;
@@ -342,7 +351,7 @@ static void test_survives_a_bad_pose(void **state)
 static void test_interpolation(void **state)
 {
 	(void)state;
-	static const double ROUNDING_C = 1e-4; // of floats near 100
+	static const double ROUNDING_C = 1e-4; // rounding of floats near 100
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_pose pose = pose_at(0.5, -0.25, 0.125);
 	cau_heat_grid grid = create(&tool, &pose);
@@ -365,7 +374,7 @@ static void test_interpolation(void **state)
 	cau_heat_grid_finish(&grid);
 }
 
-// A tool colder than the body cools it; a shape without hot part never heats.
+// A tool colder than the body cools the field. A shape without a hot part never heats.
 static void test_cold_tools(void **state)
 {
 	(void)state;

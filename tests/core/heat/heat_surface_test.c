@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field around a hot part whose surface lies between the nodes: against the solution around a
-// ball, and against finer grids where the ball moves.
+// Tests the field around a hot part whose surface is between the nodes: against the solution around
+// a ball, and against finer grids for a moving ball.
 #include "heat/heat_surface.h"
 
 #include <setjmp.h>
@@ -16,7 +16,7 @@
 static const double AMBIENT_C = 37;
 static const double TICK_S = 1.0 / 60;
 static const double RADIUS_M = 3e-3;
-// What is asked: 2 % of the tool's excess over ambient at cells of a sixth of the radius.
+// Required accuracy: 2 % of the tool's excess over ambient, with cells of a sixth of the radius.
 static const double ASKED = 0.02;
 
 static cau_tool_def ball_of(double step_m, int cells)
@@ -25,7 +25,7 @@ static cau_tool_def ball_of(double step_m, int cells)
 	tool.hot_radius_m = RADIUS_M;
 	tool.grid_step_m = step_m;
 	tool.grid_cells = cells;
-	tool.pose = pose_at(0.23e-3, -0.41e-3, 0.37e-3); // on no node
+	tool.pose = pose_at(0.23e-3, -0.41e-3, 0.37e-3); // the middle is on no node
 	return tool;
 }
 
@@ -37,7 +37,8 @@ static cau_heat_grid create(const cau_tool_def *tool)
 	return grid;
 }
 
-// Outside a ball that is held at 1 from time 0 on, in an infinite medium at 0 (Carslaw and Jaeger).
+// Returns the field outside a ball that is held at 1 from time 0 on, in an infinite medium at 0
+// (Carslaw and Jaeger).
 static double around_ball(double r, double time_s, double diffusivity)
 {
 	return RADIUS_M / r * erfc((r - RADIUS_M) / (2 * sqrt(diffusivity * time_s)));
@@ -54,8 +55,8 @@ static cau_vec3 direction(uint64_t *random)
 	}
 }
 
-// Greatest error, relative to the tool's excess, from the surface to ten radii, against the
-// solution at `against_s`.
+// Returns the greatest error from the surface to ten radii, relative to the tool's excess, against
+// the solution at `against_s`.
 static double worst_around_ball(const cau_tool_def *tool, int parts, double part_s,
                                 double against_s)
 {
@@ -65,7 +66,8 @@ static double worst_around_ball(const cau_tool_def *tool, int parts, double part
 	double worst = 0, excess = tool->temperature_c - AMBIENT_C;
 	uint64_t random = 19;
 	for (int i = 0; i < 4000; i++) {
-		double r = RADIUS_M * (1 + 9 * pow(random_between(&random, 0, 1), 3)); // most of them near
+		// Most of the points are near the surface.
+		double r = RADIUS_M * (1 + 9 * pow(random_between(&random, 0, 1), 3));
 		cau_vec3 at = cau_add_scaled(cau_vec3_of(tool->pose.position_m), r, direction(&random));
 		double u = (cau_heat_grid_at(&grid, at) - AMBIENT_C) / excess;
 		worst = fmax(worst, fabs(u - around_ball(r, against_s, tool->diffusivity_m2_s)));
@@ -82,7 +84,7 @@ static void test_around_a_ball(void **state)
 		int parts;
 		double part_s;
 	} run[] = {{60, 1.0 / 60}, {600, 1.0 / 60}, {600, 0.1}, {300, 1}, {600, 1}};
-	size_t runs = CAU_TEST_SANITIZED ? 1 : sizeof run / sizeof *run; // the same code in each
+	size_t runs = CAU_TEST_SANITIZED ? 1 : sizeof run / sizeof *run; // all runs use the same code
 	for (size_t k = 0; k < runs; k++) {
 		double time_s = run[k].parts * run[k].part_s;
 		double worst = worst_around_ball(&tool, run[k].parts, run[k].part_s, time_s);
@@ -91,7 +93,7 @@ static void test_around_a_ball(void **state)
 	}
 }
 
-// A smaller box settles sooner: nothing grows any more after twenty minutes.
+// A smaller grid settles sooner. After twenty minutes the field no longer changes.
 static void test_steady_around_a_ball(void **state)
 {
 	(void)state;
@@ -101,7 +103,8 @@ static void test_steady_around_a_ball(void **state)
 	assert_true(worst < ASKED);
 }
 
-// Halving the cells, from those of a tool with the defaults, leaves less than half of the error.
+// Cells of half the length, compared with those of a default tool, have less than half of the
+// error.
 static void test_finer_is_better(void **state)
 {
 	(void)state;
@@ -115,9 +118,9 @@ static void test_finer_is_better(void **state)
 	assert_true(at_a_sixth < at_a_third / 2);
 }
 
-// In the first half second what is warm is hardly a cell or two thick: at 0.1 s cells of a sixth of
-// the radius are too coarse, ticks are not. Cells of half the length leave less than a third of the
-// error; ticks of an eighth leave more than four fifths of it.
+// In the first half second the warm layer is only a cell or two thick. At 0.1 s cells of a sixth of
+// the radius are too coarse, but ticks are short enough. Cells of half the length have less than a
+// third of the error. Ticks of an eighth have more than four fifths of the error.
 static void test_soon_after_the_beginning(void **state)
 {
 	(void)state;
@@ -135,8 +138,8 @@ static void test_soon_after_the_beginning(void **state)
 
 // ---- a ball that moves
 
-// The field a second after the ball has set off at `speed`, obliquely to the axes; each tick in so
-// many parts, 0: as sessions cut them.
+// Returns the field a second after the ball has started to move at `speed_m_s`, obliquely to the
+// axes. Each tick has `parts` parts; 0 means as many as sessions use.
 static cau_heat_grid after_a_way(cau_tool_def *tool, double speed_m_s, int parts)
 {
 	cau_heat_grid grid = create(tool);
@@ -155,8 +158,8 @@ static cau_heat_grid after_a_way(cau_tool_def *tool, double speed_m_s, int parts
 	return grid;
 }
 
-// Root mean square of the differences, from the surface to 3 mm from it or, if `cube`, over the
-// cube of 14 mm about the ball; relative to the excess.
+// Returns the root mean square of the differences of two fields, relative to the excess. The points
+// are between the surface and 3 mm from it or, if `cube`, in the cube of 14 mm around the ball.
 static double difference(const cau_tool_def *tool, const cau_heat_grid *a, const cau_heat_grid *b,
                          bool cube)
 {
@@ -177,9 +180,9 @@ static double difference(const cau_tool_def *tool, const cau_heat_grid *a, const
 	return sqrt(sum / POINTS) / (tool->temperature_c - AMBIENT_C);
 }
 
-// Faster than any cut is made: 50 mm/s, in whose field the surface's layer is thinner than a cell
-// of a sixth of the radius, so that it is held over the cube alone. The reference has half the
-// cells' length and eighths of the ticks.
+// 50 mm/s is faster than any cut. At this speed the warm layer is thinner than a cell of a sixth of
+// the radius, so the accuracy is required only over the cube. The reference has cells of half the
+// length and eighths of the ticks.
 static void test_a_moving_ball(void **state)
 {
 	(void)state;
@@ -200,12 +203,13 @@ static void test_a_moving_ball(void **state)
 	}
 }
 
-// With steps of exactly dl^2 / (6 alpha) and the surface anywhere between the nodes, on them too,
-// nothing leaves the range from ambient to the tool, and what is held is at the tool's temperature.
+// With steps of exactly dl^2 / (6 alpha), and the surface anywhere between the nodes or on them,
+// all values stay between ambient and the tool's temperature. Held points are at the tool's
+// temperature.
 static void test_stable_wherever_the_surface_is(void **state)
 {
 	(void)state;
-	static const float ROUNDING_C = 1e-3F; // of floats near 200
+	static const float ROUNDING_C = 1e-3F; // rounding of floats near 200
 	cau_tool_def tool = ball_of(1e-3, 16);
 	double limit = 1e-6 / (6 * tool.diffusivity_m2_s);
 	uint64_t random = 29;
@@ -227,9 +231,9 @@ static void test_stable_wherever_the_surface_is(void **state)
 	}
 }
 
-// At the surface the field is that of the tool, where linear interpolation between the nodes would
-// be off by a quarter of what it falls in a cell. Within it is so to the bit from the first tick
-// on, when the nodes outside are cold still.
+// At the surface the field has the tool's temperature. Linear interpolation between the nodes would
+// have an error of a quarter of the fall in a cell. Inside the surface the temperature is exact to
+// the bit from the first tick on, while outer nodes are still cold.
 static void test_read_up_to_the_surface(void **state)
 {
 	(void)state;
@@ -258,8 +262,8 @@ int main(void)
 		cmocka_unit_test(test_stable_wherever_the_surface_is),
 		cmocka_unit_test(test_read_up_to_the_surface),
 	};
-	// The same code for longer; sanitizers see fields move in heat_field_test.c and
-	// heat_grid_test.c.
+	// These tests run the same code for longer. Sanitizers test moving fields in heat_field_test.c
+	// and heat_grid_test.c.
 	const struct CMUnitTest figures[] = {
 		cmocka_unit_test(test_steady_around_a_ball),
 		cmocka_unit_test(test_finer_is_better),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ignition temperatures drawn at random: their statistics, their cut, and that they depend on the
-// seed, the layer and the edge alone; in bundles, on the place instead of the edge.
+// Tests random ignition temperatures: their statistics, their limits, and that they depend only on
+// the seed, the layer and the edge. In bundles they depend on the position instead of the edge.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,13 +12,13 @@
 #include "heat/exposure.h"
 
 enum { DRAWS = 100000 };
-static const double MEAN_C = 172, SPREAD_C = 17; // fascia
+static const double MEAN_C = 172, SPREAD_C = 17; // of fascia
 
 static void test_statistics(void **state)
 {
 	(void)state;
-	// A wrong draw has a chance of 1e-6 within five standard errors; the cut takes 0.2 % of the
-	// spread.
+	// A correct draw is outside five standard errors with a probability of 1e-6. The limit at 3
+	// takes 0.2 % of the spread.
 	const double error = SPREAD_C / sqrt(DRAWS);
 	double sum = 0, squares = 0, product = 0, previous = 0, beyond = 0;
 	for (int32_t edge = 0; edge < DRAWS; edge++) {
@@ -32,8 +32,8 @@ static void test_statistics(void **state)
 	}
 	assert_near(sum / DRAWS * SPREAD_C, 0, 5 * error);
 	assert_near(sqrt(squares / DRAWS) * SPREAD_C, SPREAD_C, 5 * error / sqrt(2) + 0.002 * SPREAD_C);
-	assert_near(product / DRAWS, 0, 5 / sqrt(DRAWS));                 // neighbours are unrelated
-	assert_near(beyond / DRAWS, 0.05, 5 * sqrt(0.05 * 0.95 / DRAWS)); // normal, not merely spread
+	assert_near(product / DRAWS, 0, 5 / sqrt(DRAWS));                 // neighbours are independent
+	assert_near(beyond / DRAWS, 0.05, 5 * sqrt(0.05 * 0.95 / DRAWS)); // the distribution is normal
 }
 
 static void test_depends_on_its_arguments_alone(void **state)
@@ -59,14 +59,14 @@ static void test_cut(void **state)
 		at_floor += wide == 0.1 * MEAN_C;
 		at_cut += wide == MEAN_C + 3 * (10 * MEAN_C);
 	}
-	assert_true(at_floor > DRAWS / 3); // both limits are reached, and rarely the upper one
+	assert_true(at_floor > DRAWS / 3); // both limits are reached, the upper one rarely
 	assert_true(at_cut > 0 && at_cut < DRAWS / 300);
 }
 
 // ---- bundles
 static const double BUNDLE_M = 0.003;
 
-// The draw of layer 2 at a place, with fibres along `fibre`.
+// Returns the draw of layer 2 at a position, with fibres along `fibre`.
 static double bundle_draw(uint64_t seed, cau_vec3 place, cau_vec3 fibre)
 {
 	return (cau_ignition_in_bundles(MEAN_C, SPREAD_C, seed, 2, place, fibre, BUNDLE_M) - MEAN_C) /
@@ -76,7 +76,7 @@ static double bundle_draw(uint64_t seed, cau_vec3 place, cau_vec3 fibre)
 static void test_bundles_are_normal_everywhere(void **state)
 {
 	(void)state;
-	// One place, many seeds: in the middle of a cell of the lattice as on its corner.
+	// One position, many seeds: in the middle of a cell of the lattice, and on its corner.
 	const cau_vec3 places[] = {{0, 0, 0}, {0.0131, -0.0447, 0.0029}, {0.0015, 0.0015, 0.0015}};
 	for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
 		double sum = 0, squares = 0;
@@ -91,7 +91,7 @@ static void test_bundles_are_normal_everywhere(void **state)
 	}
 }
 
-// Mean product of draws at two places a way apart.
+// Returns the mean product of draws at two positions that are `way` apart.
 static double likeness(cau_vec3 way, cau_vec3 fibre)
 {
 	double product = 0;
@@ -107,7 +107,7 @@ static void test_bundles_run_along_the_fibres(void **state)
 	(void)state;
 	const cau_vec3 x = {1, 0, 0}, y = {0, 1, 0}, aside = {BUNDLE_M, 0, 0};
 	assert_true(likeness(aside, x) > 0.9); // an eighth of a bundle's length
-	assert_true(likeness(aside, y) < 0.6); // its whole width
+	assert_true(likeness(aside, y) < 0.6); // the whole width of a bundle
 	assert_near(likeness(cau_scale(3, aside), y), 0, 5 / sqrt(DRAWS));
 	assert_near(likeness(cau_scale(24, aside), x), 0, 5 / sqrt(DRAWS));
 }

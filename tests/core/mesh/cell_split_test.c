@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells that share a quadrangle split it alike, whatever corner each begins with; polygons are cut
-// without folds.
+// Tests that cells that share a quadrangle divide it in the same way, whichever corner each cell
+// lists first. Polygons are cut without folds.
 #include "mesh_fixture.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 
 enum { SIDE = 4, POINTS = SIDE * SIDE * SIDE };
 
-// One of the 24 ways in which a hexahedron may be turned, or their mirrors (48 in all).
+// Turns a hexahedron in one of 24 ways, or mirrors it too (48 ways in all).
 static void turn(int32_t vertex[8], unsigned way)
 {
 	static const int quarter[8] = {1, 2, 3, 0, 5, 6, 7, 4}, roll[8] = {3, 2, 6, 7, 0, 1, 5, 4};
@@ -29,8 +29,8 @@ static void turn(int32_t vertex[8], unsigned way)
 	}
 }
 
-// A block of 3 x 3 x 3 cells, its vertices numbered in an order that `seed` mixes. `wedges`: every
-// second column is of wedges.
+// Makes a block of 3 x 3 x 3 cells. `seed` mixes the order of its vertices. If `wedges`, every
+// second column is made of wedges.
 static void make_block(cau_mesh_builder *builder, unsigned seed, bool wedges)
 {
 	int32_t number[POINTS];
@@ -54,7 +54,7 @@ static void make_block(cau_mesh_builder *builder, unsigned seed, bool wedges)
 		const int step[8] = {0, 1, 1 + SIDE, SIDE, 16, 17, 17 + SIDE, 16 + SIDE};
 		for (int i = 0; i < 8; i++)
 			v[i] = number[at + step[i]];
-		// Wedges fill whole columns, as their triangles fit no hexahedron.
+		// Wedges fill whole columns, because their triangles do not match the faces of hexahedra.
 		bool column = wedges && (cell % 3 + cell / 3 % 3) % 2;
 		seed = seed * 1664525u + 1013904223u;
 		if (!column) {
@@ -95,13 +95,13 @@ static void cells_side_by_side_fit(void **state)
 		assert_int_equal(cau_face_table_make(&primitives, &faces, NULL), CAU_OK);
 		for (int32_t f = 0; f < faces.face_count; f++)
 			outside += faces.owner[2 * f + 1] < 0;
-		assert_int_equal(outside, 6 * 9 * 2); // a pair that does not fit leaves faces inside
+		assert_int_equal(outside, 6 * 9 * 2); // cells that do not match leave faces inside
 		cau_face_table_finish(&faces);
 		cau_mesh_builder_finish(&builder);
 	}
 }
 
-// A comb of teeth: the fan round its first corner would fold.
+// The polygon is a comb with teeth. A fan around its first corner would fold.
 static void a_polygon_that_is_not_convex_has_no_folds(void **state)
 {
 	(void)state;

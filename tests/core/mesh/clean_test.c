@@ -5,7 +5,8 @@
 
 #include "mesh/mesh_memory.h"
 
-// A mesh with these arrays (copied), regions 10, 11, ... and 20, 21, ...
+// Makes a mesh with copies of these arrays. Its triangles have the regions 10, 11, ..., its
+// tetrahedra 20, 21, ...
 static cau_mesh copy_of(int32_t vertices, const double *position, int32_t triangles,
                         const int32_t *triangle, int32_t tetrahedra, const int32_t *tetrahedron)
 {
@@ -22,7 +23,7 @@ static cau_mesh copy_of(int32_t vertices, const double *position, int32_t triang
 	for (int32_t i = 0; i < tetrahedra; i++)
 		mesh.tetrahedron_region[i] = 20 + i;
 	for (int32_t i = 0; i < 6 * triangles; i++)
-		mesh.texture[i] = i * i; // of triangles with an area
+		mesh.texture[i] = i * i; // points on a curve, so texture triangles are not flat
 	return mesh;
 }
 
@@ -47,7 +48,8 @@ static void a_clean_mesh_stays_as_it_is(void **state)
 	cau_mesh_finish(&same);
 }
 
-// Two triangles of a square that do not share vertices, one of them 1e-10 away, and two idle ones.
+// Two triangles of a square without shared vertices. One vertex is 1e-10 away from its partner. Two
+// more vertices are unused.
 static void unused_and_duplicate_vertices_go(void **state)
 {
 	(void)state;
@@ -71,12 +73,12 @@ static void vertices_a_little_farther_stay(void **state)
 	cau_mesh mesh = copy_of(5, position, 2, (int32_t[]){0, 1, 2, 4, 2, 3}, 0, NULL);
 	cau_mesh_report report = {0};
 	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
-	assert_int_equal(report.duplicate_vertices, 0); // 1e-5 of the diagonal sqrt(2)
+	assert_int_equal(report.duplicate_vertices, 0); // the limit is 1e-5 of the diagonal sqrt(2)
 	assert_int_equal(mesh.vertex_count, 5);
 	cau_mesh_finish(&mesh);
 }
 
-// Whatever the place of two vertices within the cells of the hash.
+// Two near vertices merge at any position within the cells of the hash.
 static void vertices_merge_across_cells(void **state)
 {
 	(void)state;
@@ -134,7 +136,7 @@ static void refuse(cau_mesh mesh, const char *part)
 	cau_mesh_finish(&mesh);
 }
 
-// What is left of the triangles, and how many were left out.
+// Cleans the mesh. Expects `left` triangles, and `degenerate` removed ones.
 static void leave_out_triangles(cau_mesh mesh, int32_t left, int32_t degenerate)
 {
 	cau_mesh_report report = {0};
@@ -153,14 +155,15 @@ static void degenerate_triangles_are_left_out(void **state)
 	int32_t good_then[] = {0, 1, 2, 0, 1, 4};
 	leave_out_triangles(copy_of(6, position, 2, good_then, 0, NULL), 1, 1);
 	leave_out_triangles(copy_of(6, position, 2, (int32_t[]){0, 1, 2, 0, 5, 2}, 0, NULL), 1, 1);
-	position[13] = 3e-6; // a height of 1.5e-6 / 2 of the longest edge
+	position[13] = 3e-6; // a height of 1.5e-6 / 2 relative to the longest edge
 	leave_out_triangles(copy_of(6, position, 2, good_then, 0, NULL), 1, 1);
-	position[13] = 1e-4; // twenty-five times the least height that stays
+	position[13] = 1e-4; // twenty-five times the least height that is kept
 	leave_out_triangles(copy_of(6, position, 2, good_then, 0, NULL), 2, 0);
 	refuse(copy_of(6, position, 1, (int32_t[]){2, 1, 1}, 0, NULL), "every element is degenerate");
 }
 
-// The measure is relative: thin is left out at every size, small is not thin.
+// The measure is relative to the element's size. Thin elements are removed at every size, small
+// elements are kept.
 static void the_measure_does_not_depend_on_size(void **state)
 {
 	(void)state;
@@ -185,14 +188,14 @@ static void degenerate_tetrahedra_are_left_out(void **state)
 	cau_mesh_report report = {0};
 	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
 	assert_int_equal(report.degenerate_tetrahedra, 2);
-	assert_int_equal(report.unused_vertices, 1); // of what was left out
+	assert_int_equal(report.unused_vertices, 1); // a vertex of the removed elements
 	assert_int_equal(mesh.tetrahedron_count, 1);
 	assert_int_equal(mesh.tetrahedron_region[0], 21);
 	assert_int_equal(mesh.vertex_count, 4);
 	cau_mesh_finish(&mesh);
 }
 
-// It becomes zeros, from which no direction is taken; the triangle stays.
+// A flat texture triangle becomes zeros, which give no direction. The triangle itself stays.
 static void degenerate_texture_triangles_are_left_out(void **state)
 {
 	(void)state;
@@ -231,7 +234,7 @@ static void impossible_numbers_are_refused(void **state)
 	refuse(copy_of(3, far, 1, triangle, 0, NULL), "3e+06 m from the origin");
 	const double tiny[] = {0, 0, 0, 1e-10, 0, 0, 0, 1e-10, 0};
 	refuse(copy_of(3, tiny, 1, triangle, 0, NULL), "check unit_m");
-	// The first is all that is left of these two, and as tiny.
+	// the second triangle is removed, and the first alone is too small
 	const double long_[] = {0, 0, 0, 5e-10, 0, 0, 0, 5e-10, 0, 4e-5, 0, 0, 2e-5, 0, 0};
 	refuse(copy_of(5, long_, 2, (int32_t[]){0, 1, 2, 0, 3, 4}, 0, NULL), "check unit_m");
 	const double point[] = {1, 2, 3, 1, 2, 3, 1, 2, 3};

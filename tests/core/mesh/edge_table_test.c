@@ -10,8 +10,8 @@ static int times_listed(const cau_edge_table *table, int kind, int32_t e, int32_
 	return times;
 }
 
-// Every primitive is listed once at each of its edges, those edges have its vertices, and the rows
-// hold nothing else.
+// Checks that every primitive is listed once at each of its edges, that these edges have its
+// vertices, and that the lists hold nothing else.
 static void recount(const cau_edge_table *table, int kind, int32_t count, int corners,
                     const int32_t *corner, int slots, const int (*end)[2])
 {
@@ -60,8 +60,9 @@ static void sheet_keeps_eulers_characteristic(void **state)
 	cau_edge_table table;
 	assert_int_equal(cau_edge_table_make(&primitives, layer, &table, NULL), CAU_OK);
 	check_table(&primitives, &table);
-	assert_int_equal(mesh.vertex_count - table.edge_count + mesh.triangle_count, 1); // a disc
-	assert_int_equal(table.hinge_count, table.edge_count - 2 * (60 + 50)); // all but the rim
+	assert_int_equal(mesh.vertex_count - table.edge_count + mesh.triangle_count, 1); // of a disc
+	// All edges except the rim.
+	assert_int_equal(table.hinge_count, table.edge_count - 2 * (60 + 50));
 	cau_edge_table_finish(&table);
 	cau_mesh_finish(&mesh);
 	free(layer);
@@ -81,14 +82,14 @@ static void slab_keeps_eulers_characteristic(void **state)
 	check_table(&primitives, &table);
 	assert_int_equal(mesh.vertex_count - table.edge_count + faces.face_count -
 	                     mesh.tetrahedron_count,
-	                 1); // a ball
+	                 1); // of a ball
 	assert_int_equal(table.hinge_count, 0);
 	cau_face_table_finish(&faces);
 	cau_edge_table_finish(&table);
 	cau_mesh_finish(&mesh);
 }
 
-// A tetrahedron, two triangles on its faces 012 and 013, and links along and off its edges.
+// A tetrahedron, two triangles on its faces 012 and 013, and links on its edges and elsewhere.
 static void kinds_share_edges(void **state)
 {
 	(void)state;
@@ -115,7 +116,7 @@ static void kinds_share_edges(void **state)
 	cau_edge_table_finish(&table);
 }
 
-// Five triangles round the edge 01; the layers decide which of them fold against each other.
+// Five triangles at the edge 01. A hinge exists where exactly two of them have the same layer.
 static void hinges_need_exactly_two_of_a_layer(void **state)
 {
 	(void)state;

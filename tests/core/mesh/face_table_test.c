@@ -18,7 +18,8 @@ static void check_outward(const cau_mesh *mesh, const cau_face_table *faces)
 	}
 }
 
-// Face k of a tetrahedron has its other three vertices and names it as an owner.
+// Checks that face k of a tetrahedron has the other three vertices and has the tetrahedron as an
+// owner.
 static void check_owners(const cau_primitives *p, const cau_face_table *faces)
 {
 	int32_t uses = 0;
@@ -103,8 +104,8 @@ static void triangles_cover_faces_with_their_vertices(void **state)
 	int32_t opposite_0 = faces.tetrahedron_face[0], opposite_3 = faces.tetrahedron_face[3];
 	assert_int_equal(faces.triangle_covers[0], -1);
 	assert_int_equal(faces.triangle_covers[1], opposite_0);
-	assert_int_equal(faces.triangle_covers[2], opposite_0); // two sheets on one face:
-	assert_int_equal(faces.cover[opposite_0], 1);           // the lower number is its cover
+	assert_int_equal(faces.triangle_covers[2], opposite_0); // two sheets cover one face
+	assert_int_equal(faces.cover[opposite_0], 1); // the triangle of lower index is the cover
 	assert_int_equal(faces.triangle_covers[3], opposite_3);
 	assert_int_equal(faces.cover[opposite_3], 3);
 	assert_int_equal(faces.cover[faces.tetrahedron_face[1]], -1);

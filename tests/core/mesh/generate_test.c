@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Rounding of a sum of 30,000 terms of the size of the whole.
+// Relative rounding of a sum of 30,000 terms.
 static const double sum_tolerance = 1e-12;
 
 static void sheet_of_the_fascia_scene_has_its_counts(void **state)
@@ -48,7 +48,7 @@ static void texture_turns_against_the_mesh(void **state)
 		def.texture_turn_rad = turns[i];
 		cau_mesh mesh;
 		assert_int_equal(cau_mesh_make_sheet(&def, &mesh, NULL), CAU_OK);
-		// A point one unit along the turned u axis has UV (1, 0): u = x . (cos, sin).
+		// A point one unit along the turned u axis has UV (1, 0), so u = x . (cos, sin).
 		for (int corner = 0; corner < 3 * mesh.triangle_count; corner++) {
 			const double *x = mesh.position + 3 * mesh.triangle[corner];
 			double u = x[0] * cos(turns[i]) + x[1] * sin(turns[i]);
@@ -73,7 +73,7 @@ static void slab_of_the_fat_scene_has_its_counts(void **state)
 	double volume = 0, cell = 0.12 * 0.10 * 0.008 / (50 * 25 * 4);
 	for (int t = 0; t < mesh.tetrahedron_count; t++) {
 		double volume6 = fixture_volume6(mesh.position, mesh.tetrahedron + 4 * t);
-		assert_true(fabs(volume6 / cell - 1) < 1e-9); // all six alike, and positive
+		assert_true(fabs(volume6 / cell - 1) < 1e-9); // all six have the same positive volume
 		volume += volume6 / 6;
 	}
 	assert_true(fabs(volume / (0.12 * 0.10 * 0.008) - 1) < sum_tolerance);
@@ -84,7 +84,7 @@ static void slab_of_the_fat_scene_has_its_counts(void **state)
 	int boundary = 0;
 	for (int f = 0; f < faces.face_count; f++)
 		boundary += faces.owner[2 * f + 1] < 0;
-	assert_int_equal(boundary, 6200); // conforming: no face inside is lonely
+	assert_int_equal(boundary, 6200); // conforming: no face inside has only one owner
 	cau_face_table_finish(&faces);
 	cau_mesh_finish(&mesh);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One tetrahedron and one triangle in every Gmsh format, with sparse node numbers.
+// Reads one tetrahedron and one triangle in every Gmsh format, with sparse node numbers.
 #include "mesh_text.h"
 
 static const double corners[12] = {0, 0, 0, 1.5, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -126,7 +126,7 @@ static void binary_versions_are_read_in_both_byte_orders(void **state)
 static void unfinished_files_are_refused(void **state)
 {
 	(void)state;
-	// Only the line's end behind the last word can be missing.
+	// Only the end of line after the last word can be missing.
 	refuse_beginnings("a.msh", version_1, strlen(version_1), strlen(version_1) - 1);
 	refuse_beginnings("a.msh", version_2, strlen(version_2), strlen(version_2) - 1);
 	refuse_beginnings("a.msh", version_4, strlen(version_4), strlen(version_4) - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small things that the tests of meshes share.
+// Functions that several tests of meshes use.
 #pragma once
 
 // clang-format off
@@ -17,7 +17,7 @@
 #include "mesh/edge_table.h"
 #include "mesh/mesh.h"
 
-// A generated mesh of this many cells; the size 12 x 10 x 0.8 cm.
+// Returns the definition of a generated mesh with this many cells and a size of 12 x 10 x 0.8 cm.
 static inline cau_mesh_def fixture_def(int32_t x, int32_t y, int32_t z)
 {
 	cau_mesh_def def;
@@ -36,7 +36,7 @@ static inline cau_primitives fixture_primitives(const cau_mesh *mesh)
 	                        .tetrahedron = mesh->tetrahedron};
 }
 
-// Six times the volume of a tetrahedron.
+// Returns six times the volume of a tetrahedron.
 static inline double fixture_volume6(const double *position, const int32_t *t)
 {
 	double e[3][3];
@@ -48,7 +48,7 @@ static inline double fixture_volume6(const double *position, const int32_t *t)
 	       e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
-// (b - a) x (c - a) of a face.
+// Computes (b - a) x (c - a) of a face.
 static inline void fixture_normal(const double *position, const int32_t *f, double normal[3])
 {
 	double e[2][3];

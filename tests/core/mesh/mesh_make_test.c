@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Rounding of one product and one sum of numbers near 1.
+// Rounding of one product and one sum, for numbers near 1.
 static const double place_tolerance = 1e-15;
 
 static const char triangle_file[] = "v 0 0 0\nv 10 0 0\nv 0 20 0\nv 5 5 5\nf 1 2 3\n";
@@ -89,7 +89,7 @@ static void files_are_found_from_the_directory(void **state)
 		{"here", "b.obj", CAU_IO, "No such file"},
 		{"here", ".", CAU_IO, "not a regular file"},
 		{"here", "p.obj", CAU_IO, "not a regular file"},
-		{"here", "a.stl", CAU_OK, ""}, // a name says nothing of the format
+		{"here", "a.stl", CAU_OK, ""}, // the ending of a name does not decide the format
 	};
 	char other[80];
 	snprintf(other, sizeof other, "%s/a.stl", directory);

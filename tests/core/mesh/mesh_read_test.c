@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meshes that others made, from the folder that the variable CAUTERY_MESHES names. Skipped, saying
-// so, where there is none.
+// Reads meshes from other programs. The variable CAUTERY_MESHES names their folder. Without this
+// folder the test prints a message and is skipped.
 #include "mesh_fixture.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh files made in a test: text, or bytes put together number by number.
+// Mesh files that a test makes: text, or bytes that are appended number by number.
 #pragma once
 
 #include "mesh_fixture.h"
@@ -11,7 +11,7 @@ static inline cau_status read_text(const char *name, const char *text, cau_mesh 
 	return cau_mesh_read(name, text, strlen(text), mesh, NULL, error);
 }
 
-// The text is refused with this status, and the reason holds `part`.
+// Expects that the text is refused with this status, and that the reason contains `part`.
 static inline void refuse_text(const char *name, const char *text, cau_status status,
                                const char *part)
 {
@@ -24,8 +24,8 @@ static inline void refuse_text(const char *name, const char *text, cau_status st
 	cau_mesh_finish(&mesh);
 }
 
-// Every beginning of the file but those that `least` bytes or more make whole is refused; none
-// crashes (the bytes are copied so that a sanitizer sees a read past their end).
+// Reads every beginning of the file. Expects that each one shorter than `least` bytes is refused,
+// and that none crashes. The bytes are copied so that a sanitizer finds a read past their end.
 static inline void refuse_beginnings(const char *name, const void *bytes, size_t byte_count,
                                      size_t least)
 {
@@ -46,7 +46,7 @@ static inline void refuse_beginnings(const char *name, const void *bytes, size_t
 typedef struct byte_file {
 	unsigned char bytes[4096];
 	size_t count;
-	int turned; // numbers in the byte order that is not this machine's
+	int turned; // numbers have the other byte order than this machine
 } byte_file;
 
 static inline void put_text(byte_file *file, const char *text)
@@ -72,7 +72,7 @@ static inline void put_ints(byte_file *file, const int32_t *number, size_t count
 		put_number(file, number + i, sizeof *number);
 }
 
-// Numbers of 4 or 8 bytes.
+// Appends numbers of 4 or 8 bytes.
 static inline void put_sizes(byte_file *file, size_t bytes, const int64_t *number, size_t count)
 {
 	for (size_t i = 0; i < count; i++) {

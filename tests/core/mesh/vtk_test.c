@@ -141,7 +141,7 @@ static void bytes_without_sign_stay_so(void **state)
 static void unfinished_files_are_refused(void **state)
 {
 	(void)state;
-	// Whole as soon as the last type of cell is there: data may be absent.
+	// The file is complete after the last type of cell, because data may be absent.
 	size_t least = (size_t)(strstr(grid, "CELL_DATA") - grid) - 1;
 	refuse_beginnings("a.vtk", grid, least, least - 1);
 	refuse_beginnings("a.vtk", grid, strlen(grid), 0);

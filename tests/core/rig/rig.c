@@ -65,7 +65,7 @@ cau_layer_def *rig_add_slab(rig *r, int32_t x, int32_t y, int32_t z)
 	return layer;
 }
 
-// A text the scene may borrow until it is built.
+// Allocates a text that the scene borrows until it is built.
 static char *borrow_text(rig *r, cau_mesh_def *mesh, const char *name)
 {
 	char *text = cau_arena_array(&r->arena, TEXT_BYTES, 1);
@@ -204,7 +204,7 @@ double rig_energy_of(const rig *r, int work_kind)
 	return energy;
 }
 
-// What the kernels weight an element of a kind with, and where they add its gradient up.
+// The kernels' weights of a kind of element, and the records to which its gradient is added.
 typedef struct weights_of {
 	void *weight[2]; // real
 	int count;

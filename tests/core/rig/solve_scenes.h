@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes of systems that the solver must serve.
+// Systems of different shapes for tests of the solver.
 #pragma once
 
 #include "core/rig/rig.h"
@@ -12,9 +12,9 @@ typedef struct solve_scene {
 enum { SOLVE_SCENES = 6 };
 extern const solve_scene solve_scenes[SOLVE_SCENES];
 
-// x = A^-1 b (n x 3 by vertex) through the factor in double; fixed rows come out zero.
+// x = A^-1 b (n x 3 by vertex) by the factor in double. Fixed vertices get 0.
 void solve_by_factor(rig *r, const double *b, double *x);
-// The same through the packed sweeps.
+// x = A^-1 b by the packed sweeps.
 void solve_by_sweep(rig *r, const double *b, double *x);
-// Live A, dense: by vertices, (n x n), pinned rows and columns zero.
+// Dense A of the live elements, by vertices (n x n). Rows and columns of pinned vertices are 0.
 void solve_dense_matrix(const rig *r, double *a);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a step is off the same step, converged: measured here, estimated by solve/accuracy.h.
+// Measures the error of a step against the same step after convergence. solve/accuracy.h estimates
+// this error.
 #pragma once
 
 #include <math.h>
 
 #include "session/session_internal.h"
 
-// |x - exact| over the free vertices of [first, last) in the norm of mass, relative to their motion
-// in the step. `accuracy` is the error that is wanted: half a micrometre is no more than that,
-// however little moves. 0 where no vertex is free.
+// Returns the error of the step over the free vertices of [first, last), in the mass norm, relative
+// to their motion. The motion counts as at least 0.5 um / `accuracy`, so that an error of half a
+// micrometre never exceeds `accuracy`. Returns 0 if no vertex is free.
 static inline double step_error_part(const cau_session *session, const double *exact, int32_t first,
                                      int32_t last, double accuracy)
 {
@@ -27,7 +28,8 @@ static inline double step_error_part(const cau_session *session, const double *e
 	return mass > 0 ? sqrt(off / mass) / fmax(sqrt(motion / mass), least_error_m / accuracy) : 0;
 }
 
-// Of the whole, or of a chunk of vertices, whichever is worst. `exact` (n x 3, m).
+// Returns the largest error of all vertices together and of each chunk of vertices. `exact` (n x 3,
+// m) is the converged step.
 static inline double step_error(const cau_session *session, const double *exact, double accuracy)
 {
 	int32_t n = session->tissue.vertex_count;

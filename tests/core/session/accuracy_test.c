@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps that end when they are right: what they are off the same step, converged from the same
-// state, is what they may be, and what they say that it is.
+// Steps that end when they reach the wanted accuracy. Each sampled step is compared with the same
+// step, converged from the same state: its true error must be as wanted, and close to the reported
+// error.
 #include "core/session/stage.h"
 
 #include "core/rig/step_error.h"
 #include "session/session_internal.h"
 
 enum { CONVERGED = 300, MOST = 60, MOST_SAMPLES = 400 };
-static const double converged_residual = 1e-7; // relative, of the norm in which steps are long
+// Relative residual, in the norm in which steps are measured.
+static const double converged_residual = 1e-7;
 
 // ---- scenes
 
-// A taut sheet, pinned at its rim, into which a hook is pressed and drawn.
+// A taut sheet, pinned at its rim, with a hook that is pressed in and drawn.
 static cau_scene_def *make_taut(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
@@ -21,7 +23,7 @@ static cau_scene_def *make_taut(void)
 	return scene;
 }
 
-// A block of fat on its floor, likewise.
+// A block of fat on a pinned floor, with a hook that is pressed in and drawn.
 static cau_scene_def *make_block(void)
 {
 	const double size[3] = {0.06, 0.04, 0.01}, least[3] = {-1, -1, -0.0101},
@@ -36,7 +38,7 @@ static cau_scene_def *make_block(void)
 	return scene;
 }
 
-// A sheet that hangs free from one edge: its slow modes hardly converge.
+// A sheet that hangs free from one edge. Its slow modes hardly converge.
 static cau_scene_def *make_free(void)
 {
 	const double least[3] = {-1, 0.0249, -1}, most[3] = {1, 1, 1};
@@ -49,7 +51,7 @@ static cau_scene_def *make_free(void)
 
 // ---- errors
 
-// Force on the first tool, relative to itself.
+// Error of the force on the first tool, relative to the exact force.
 static double force_error(const cau_session *session, const cau_session *exact)
 {
 	double off = 0, force = 0;
@@ -58,7 +60,7 @@ static double force_error(const cau_session *session, const cau_session *exact)
 		force += of * of;
 		off += pow(session->tool[0].state.raw_force_n[c] - of, 2);
 	}
-	return force > 1e-6 ? sqrt(off / force) : 0; // of a millinewton and more
+	return force > 1e-6 ? sqrt(off / force) : 0; // forces below a millinewton are not compared
 }
 
 typedef struct sampled {
@@ -81,7 +83,8 @@ static void sample(cau_session *session, cau_session *exact, sampled *of)
 	of->iterations += frame.statistics.iterations;
 }
 
-// The tool comes down in half a second and is drawn on at a centimetre a second, unlit.
+// Runs a scene. Its tool comes down in half a second, then moves sideways at a centimetre a second,
+// with energy off.
 static sampled run(cau_scene_def *scene, int32_t most, int ticks, int every)
 {
 	sampled of = {0};
@@ -95,7 +98,7 @@ static sampled run(cau_scene_def *scene, int32_t most, int ticks, int every)
 			stage_move(session, "hook", 1.6e-4 * fmax(k - 30, 0), 0,
 			           0.03 - 0.0285 * fmin(k / 30.0, 1));
 		else
-			stage_gravity(session, 0, 0, -9.81); // stay awake
+			stage_gravity(session, 0, 0, -9.81); // keeps the tissue awake
 		if (k % every == 0)
 			sample(session, exact, &of);
 		else
@@ -121,8 +124,9 @@ static double quantile(const double *values, int32_t count, double share)
 	return sorted[(int32_t)(share * (count - 1))];
 }
 
-// Share of samples whose true error is more than three times what was told, and of those told more
-// than `most` times what it is. Below a hundredth of what is wanted neither matters to anybody.
+// *flattered gets the share of samples with a true error of more than three times the reported
+// error. *blackened gets the share with a reported error of more than `most` times the true error.
+// Errors below a hundredth of the wanted accuracy do not count.
 static void compare_told(const sampled *of, double most, double *flattered, double *blackened)
 {
 	const double nothing = 1e-4;
@@ -165,8 +169,8 @@ static void a_taut_sheet_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 40 : 120, CAU_TEST_SANITIZED ? 8 : 2);
 		expect_right("taut", &of);
-		assert_true(of.iterations <=
-		            10 * of.count); // points of faces go with the tool: 3 for vertices
+		// 3 for vertices alone: contact points of faces move with the tool
+		assert_true(of.iterations <= 10 * of.count);
 	}
 }
 
@@ -178,12 +182,13 @@ static void fat_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 36 : 100, CAU_TEST_SANITIZED ? 12 : 3);
 		expect_right("fat", &of);
-		assert_true(of.iterations <= 17 * of.count); // 14 for vertices alone
+		// 14 for vertices alone: contact points of faces move with the tool.
+		assert_true(of.iterations <= 17 * of.count);
 	}
 }
 
-// A push that stays as it was takes no second increment to tell its force by; one that jumps does,
-// in that very tick, since what steady steps have taught says nothing of a blow.
+// A steady push needs no second increment to report its force. A push that jumps needs one in the
+// same tick, because a blow differs from the steady steps from which the solver learned.
 static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 {
 	(void)state;
@@ -196,7 +201,7 @@ static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 	exact->solver.iterations = CONVERGED;
 	exact->solver.tolerance = converged_residual;
 	for (int k = 0; k < PRESSED + HELD; k++) {
-		stage_gravity(session, 0, 0, -9.81 - 1e-3 * (k % 2)); // stay awake
+		stage_gravity(session, 0, 0, -9.81 - 1e-3 * (k % 2)); // keeps the tissue awake
 		stage_move(session, "hook", 0, 0, 0.03 - 0.0285 * fmin(k / 30.0, 1));
 		if (k < PRESSED) {
 			stage_step(session, 1);
@@ -210,7 +215,8 @@ static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 	assert_true(of.iterations <= 1.5 * of.count);
 	assert_true(quantile(of.force, of.count, 1) <= 0.02);
 	session->solver.accuracy.amplification[0] = 1e-9;
-	session->solver.accuracy.shallow_steps = 0; // nor is it time to learn
+	// The solver does not measure its errors in this step.
+	session->solver.accuracy.shallow_steps = 0;
 	stage_move(session, "hook", 0, 0, -0.003);
 	sample(session, exact, &blow);
 	assert_true(blow.iterations >= 2);
@@ -220,7 +226,8 @@ static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 	free(scene);
 }
 
-// A free sheet does not come to 1 % in so few iterations: it takes all that there are, and says so.
+// A free sheet does not reach 1 % in so few iterations. It uses all iterations, and reports its
+// error.
 static void what_is_not_reached_is_told(void **state)
 {
 	(void)state;
@@ -233,7 +240,7 @@ static void what_is_not_reached_is_told(void **state)
 		assert_true(of.error[k] <= 0.03 || of.told[k] > 0.01);
 }
 
-// ---- its number of iterations
+// ---- number of iterations
 
 static void without_accuracy_each_step_takes_as_many(void **state)
 {
@@ -243,7 +250,7 @@ static void without_accuracy_each_step_takes_as_many(void **state)
 	scene->iterations = 7;
 	cau_session *session = stage_open(scene, 1);
 	for (int k = 0; k < 20; k++) {
-		stage_gravity(session, 0, 0, -9.81 - k); // else it would rest
+		stage_gravity(session, 0, 0, -9.81 - k); // keeps the tissue awake
 		stage_step(session, 1);
 		assert_int_equal(stage_frame(session).statistics.iterations, 7);
 		assert_true(stage_frame(session).statistics.error == 0);
@@ -252,7 +259,7 @@ static void without_accuracy_each_step_takes_as_many(void **state)
 	free(scene);
 }
 
-// A tolerance is what is wanted of whoever gives one.
+// A scene's tolerance takes precedence over its accuracy.
 static void a_tolerance_goes_before_accuracy(void **state)
 {
 	(void)state;
@@ -266,7 +273,7 @@ static void a_tolerance_goes_before_accuracy(void **state)
 	free(scene);
 }
 
-// One of another accuracy is read, and goes on otherwise than it would have.
+// A snapshot of another accuracy can be restored, but later ticks differ.
 static void a_snapshot_of_another_accuracy_is_not_exact(void **state)
 {
 	(void)state;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must hold whatever the speed: forces and torques of elements sum to
-// nothing, momentum stays, rest stays at rest, a free body falls as bodies fall.
+// Laws that hold at any speed: the forces and torques of elements sum to 0, momentum is conserved,
+// tissue at rest stays at rest, a free body falls with g.
 #include "core/session/stage.h"
 
 #include <stdio.h>
 
-static const double balance_tolerance = 1e-6; //: of the sum of |f_i|
+static const double balance_tolerance = 1e-6; // times the sum of |f_i|
 // Rounding of sums over a few hundred vertices and ticks, relative to the momentum.
 static const double momentum_tolerance_double = 1e-9, momentum_tolerance_single = 1e-4;
-static const double rest_tolerance = 1e-9; //: of an edge
-// Rounding of a step's increment, relative to the way fallen.
+static const double rest_tolerance = 1e-9; // times an edge length
+// Rounding of a step's increment, relative to the fallen height.
 static const double fall_tolerance_double = 1e-9, fall_tolerance_single = 1e-5;
 
 enum { CONVERGED = 300 };
 
-// ---- every law
+// ---- every material law
 typedef struct law {
 	int kind, model, limit, projection;
 } law;
@@ -63,7 +63,7 @@ static cau_selection half(int sign)
 	return stage_box(least, most);
 }
 
-// Pulls, shears and twists the body by forces on its halves until it has found its shape.
+// Pulls, shears and twists the body by forces on its halves until it is in equilibrium.
 static void strain(cau_session *session, double force_n, int ticks)
 {
 	stage_force(session, half(1), force_n, force_n / 2, force_n / 4);
@@ -75,8 +75,8 @@ static void check_balance(const law *l)
 {
 	cau_scene_def *scene = scene_of_law(l);
 	cau_session *session = stage_open(scene, 1);
-	// Nothing resists in the plane of a sheet without limits: a few ticks later it is drawn out
-	// beyond what any tissue can be, and the session faults, as it should.
+	// A sheet without limits does not resist in its plane. After a few more ticks it would be
+	// stretched beyond any possible tissue, and the session would fault, as it should.
 	bool unlimited = l->kind == CAU_LAYER_FASCIA && l->limit == CAU_LIMIT_NONE;
 	strain(session, l->kind == CAU_LAYER_FAT ? 4e-3 : 2e-3, unlimited ? 3 : 40);
 	cau_balance b = stage_balance(session);
@@ -86,7 +86,7 @@ static void check_balance(const law *l)
 		"kind %d model %d limit %d projection %d: force %.1e, torque %.1e; %d iterations\n",
 		l->kind, l->model, l->limit, l->projection, net / b.force_sum, turn / b.torque_sum,
 		frame.statistics.iterations);
-	assert_true(b.force_sum > 1e-4); // it is strained
+	assert_true(b.force_sum > 1e-4); // the body is strained
 	if (!(net <= balance_tolerance * b.force_sum && turn <= balance_tolerance * b.torque_sum))
 		fail_msg(
 			"kind %d model %d limit %d projection %d: net force %g of %g N, torque %g of %g N m",
@@ -132,7 +132,7 @@ static void check_momentum(int precision, double tolerance)
 {
 	cau_scene_def *scene = free_layers(precision);
 	cau_session *session = stage_open(scene, 1);
-	// a push that gives it a momentum and sets it vibrating
+	// A push gives the body a momentum and makes it vibrate.
 	stage_force(session, half(1), 2e-3, 1e-3, -1e-3);
 	stage_step(session, 5);
 	stage_force(session, half(1), 0, 0, 0);
@@ -185,7 +185,7 @@ static void rest_stays_at_rest(void **state)
 	check_rest(CAU_PRECISION_SINGLE);
 }
 
-// Implicit Euler falls g dt^2 (1 + 2 + ... + n) in n ticks.
+// With implicit Euler a body falls g dt^2 (1 + 2 + ... + n) in n ticks.
 static void check_fall(int precision, double tolerance)
 {
 	enum { TICKS = 60 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cutting with the paper's own parameters: when the first edge parts, and that a taut tissue gapes.
+// Cuts with the paper's parameters: the time at which the first edge parts, and the gaping of taut
+// tissue.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -7,14 +8,16 @@
 #include "session/session_internal.h"
 
 enum { MOST_TICKS = 400 };
-static const double drawn_s = 6, drawn_m = 0.012; // at the scenes' 2 mm/s
-// Under sanitizers, where a step takes thirty times as long, fascia is cut just far enough that its
-// lips can be measured. Fat's do not part before the trench is long: that is left to other builds.
+// Duration and length of the cut, at the scenes' 2 mm/s.
+static const double drawn_s = 6, drawn_m = 0.012;
+// Under sanitizers a step takes thirty times as long. There fascia is cut just far enough to
+// measure its lips. The lips of fat need a long trench, so only other builds test them.
 static const double drawn_under_sanitizers_s = 0.5;
 enum { COLD_TICKS = CAU_TEST_SANITIZED ? 60 : 600 };
-// Mean way of the lips beyond that of the same tissue without tension, in edge lengths. Fascia
-// opens wide: measured 2.8, and 2.0 after the short cut. Fat's tension (k_limit 1 kPa) pulls
-// against five times its stiffness and a pinned bottom: the ends of the trench draw back by 0.12.
+// Least mean displacement of the lips beyond that of the same tissue without tension, in edge
+// lengths. Fascia opens wide: measured 2.8, and 2.0 after the short cut. Fat's tension (k_limit 1
+// kPa) pulls against five times its stiffness and a pinned bottom: the ends of its trench draw back
+// by 0.12.
 static const double fascia_opens_edges = CAU_TEST_SANITIZED ? 1.5 : 2, fat_opens_edges = 0.05;
 
 typedef struct cut_run {
@@ -22,8 +25,9 @@ typedef struct cut_run {
 	cau_session *session;
 	cau_session_info info;
 	double edge_m;
-	double *uncut;                  // m, (vertex_count x 3), at rest with its tension
-	int contact_tick, parting_tick; // first exposure, first parted edge
+	// m, (vertex_count x 3): positions at rest, with tension, before the cut.
+	double *uncut;
+	int contact_tick, parting_tick; // tick of the first exposure; tick of the first parted edge
 } cut_run;
 
 static int anything_exposed(const cut_run *run)
@@ -35,7 +39,7 @@ static int anything_exposed(const cut_run *run)
 	return 0;
 }
 
-// So that lips move by tension alone: nothing falls and nothing shrinks.
+// Removes gravity and shrinkage, so that lips move by tension alone.
 static void leave_tension_alone(cau_scene_def *scene)
 {
 	memset(scene->gravity_m_s2, 0, sizeof scene->gravity_m_s2);
@@ -54,7 +58,7 @@ static void slacken(cau_scene_def *scene)
 	}
 }
 
-// The tool arrives hot, dwells until something parts, then is drawn for `seconds`.
+// The hot tool arrives, stays until something parts, then moves along the cut for `seconds`.
 static cut_run cut(cau_scene_def *scene, double seconds)
 {
 	cut_run run = {.scene = scene, .contact_tick = -1, .parting_tick = -1};
@@ -97,7 +101,7 @@ static void finish(cut_run *run)
 	free(run->scene);
 }
 
-// Elements of one kind, as the lips' measure wants them.
+// The elements of one kind, for the measurement of the lips.
 typedef struct element_list {
 	int corners;
 	int32_t count;
@@ -117,9 +121,9 @@ static element_list tetrahedra(const cut_run *run)
 	                      run->session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON]};
 }
 
-// Mean way along `axis`, away from the middle of the cut, of the vertices that lost an element and
-// are still held by another, in edge lengths; those nearer to the middle than `beyond_m` are not
-// counted.
+// Mean displacement along `axis`, away from the middle of the cut, in edge lengths. It is taken
+// over the vertices that lost an element and still have another. Vertices nearer to the middle than
+// `beyond_m` do not count.
 static double drawn_back_edges(const cut_run *run, element_list list, size_t axis, double beyond_m)
 {
 	cau_frame frame = stage_frame(run->session);
@@ -148,7 +152,7 @@ static void expect_parting_after(const cut_run *run, double expected_s)
 		fail_msg("%g s instead of %g", dwelt, expected_s);
 }
 
-// How much farther the lips draw back than the same tissue's without tension.
+// Returns how much farther the lips draw back than those of the same tissue without tension.
 static double opening_edges(const char *name, element_list (*list)(const cut_run *run), size_t axis,
                             double beyond_m)
 {
@@ -189,7 +193,7 @@ static void fascia_gapes_because_it_was_taut(void **state)
 	assert_true(opening_edges("fascia", triangles, 1, 0) >= fascia_opens_edges);
 }
 
-// Its tension is along the cut, so that the ends of the trench draw back.
+// Fat's tension is along the cut, so the ends of the trench draw back.
 static void fat_gapes_because_it_was_taut(void **state)
 {
 	(void)state;
@@ -198,7 +202,7 @@ static void fat_gapes_because_it_was_taut(void **state)
 	assert_true(opening_edges("fat", tetrahedra, 0, drawn_m / 2) >= fat_opens_edges);
 }
 
-// A cold tool, and one at body temperature, parts nothing however long it stays.
+// A tool at body temperature parts nothing, however long it stays.
 static void a_cold_tool_parts_nothing(void **state)
 {
 	(void)state;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small scene in which everything happens at once: fascia tied by links to a slab of fat in its
-// membrane, built-in tension, plasticity, bending, shrinkage, ignition drawn by seed, a hook that
-// cuts faster than downdates can follow, a grasper that pulls, gravity that turns.
+// A small scene in which all mechanisms act at once: fascia tied by links to a slab of fat with its
+// membrane, built-in tension, plasticity, bending, shrinkage, random ignition temperatures, a hook
+// that cuts faster than downdates can follow, a grasper that pulls, and rotating gravity.
 #pragma once
 
 #include "core/session/stage.h"
@@ -10,7 +10,7 @@ enum { BUSY_TICKS = 90 };
 
 static inline void busy_heat(cau_heat_material *heat)
 {
-	heat->absorption_per_s = 8; // parts within ticks instead of seconds
+	heat->absorption_per_s = 8; // tissue parts within ticks instead of seconds
 	heat->ignition_spread_c = 10;
 }
 
@@ -47,7 +47,8 @@ static inline cau_scene_def *busy_scene(void)
 	return scene;
 }
 
-// Tissue tears as well, also after the commands have ended, so not every test wants it.
+// Makes all tissue able to tear. Tissue then tears also after the commands have ended, so not every
+// test wants it.
 static inline void busy_tear(cau_scene_def *scene)
 {
 	const double tear_j_m2 = 50;
@@ -57,7 +58,7 @@ static inline void busy_tear(cau_scene_def *scene)
 				scene->layers[i].link.heat.tear_energy_j_m2 = tear_j_m2;
 }
 
-// The commands of the tick that comes next: the same for every session at that tick.
+// Submits the commands of the next tick. They are the same for every session at the same tick.
 static inline void busy_commands(cau_session *session)
 {
 	uint64_t tick = stage_frame(session).tick;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever comes from outside ends in a clear error, with a path, or in a bounded step: never in a
-// crash, a poisoned session or a hang.
+// Any input ends in a clear error with a path, or in a bounded step. It never causes a crash, a
+// corrupt session or a hang.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -106,7 +106,8 @@ static void absurd_generated_meshes(void **state)
 		def.scene = scene;
 		cau_session *session = NULL;
 		error = (cau_error){0};
-		cau_error checked = {0}; // what is made of the cells is foreseen before they are meshed
+		// The check counts the vertices and elements of the cells before they are meshed.
+		cau_error checked = {0};
 		assert_int_not_equal(cau_scene_check(scene, &checked), CAU_OK);
 		assert_string_equal(checked.path, "meshes[1].cells");
 		assert_int_not_equal(cau_session_create(&def, &session, &error), CAU_OK);
@@ -116,7 +117,7 @@ static void absurd_generated_meshes(void **state)
 	}
 }
 
-// Each count of cells alone is one that a mesh can have; what they come to is beyond 64 bits.
+// Each count of cells is allowed for one axis. Their product does not fit into 64 bits.
 static void more_cells_than_can_be_counted(void **state)
 {
 	(void)state;
@@ -156,7 +157,7 @@ static void materials_outside_their_theory(void **state)
 	stage_refuse(scene, CAU_BAD_VALUE, &error);
 	assert_string_equal(error.path, "layers[1].poisson_ratio");
 	scene->layers[1].fat[0].poisson_ratio = 0.3;
-	const double indefinite[6] = {1, 1, 1, 1.01, 0, 0}; // eigenvalue -0.01
+	const double indefinite[6] = {1, 1, 1, 1.01, 0, 0}; // its least eigenvalue is -0.01
 	memcpy(scene->layers[1].fat[0].target, indefinite, sizeof indefinite);
 	stage_refuse(scene, CAU_BAD_VALUE, &error);
 	assert_string_equal(error.path, "layers[1].target");
@@ -175,7 +176,7 @@ static void names_and_references(void **state)
 	strcpy(scene->layers[2].of, "nothing");
 	stage_refuse(scene, CAU_NOT_FOUND, &error);
 	assert_string_equal(error.path, "layers[2].of");
-	strcpy(scene->layers[2].of, "fascia"); // not fat
+	strcpy(scene->layers[2].of, "fascia"); // the layer is no fat
 	stage_refuse(scene, CAU_NOT_FOUND, &error);
 	strcpy(scene->layers[2].of, "fat");
 	strcpy(scene->layers[3].to, "links");
@@ -221,9 +222,9 @@ static void everything_pinned_and_let_go(void **state)
 	stage_step(session, 60);
 	cau_session_info info = stage_info(session);
 	cau_frame frame = stage_frame(session);
-	double dt = info.step_s, way = 9.81 * dt * dt * 60 * 61 / 2; // it falls freely
+	double dt = info.step_s, way = 9.81 * dt * dt * 60 * 61 / 2; // the body falls freely
 	double fallen = stage_farthest(&frame, info.rest_position, info.vertex_count);
-	if (!(fabs(fallen - way) <= 1e-3 * way)) // single precision and links that swing
+	if (!(fabs(fallen - way) <= 1e-3 * way)) // tolerance for single precision and swinging links
 		fail_msg("fell %g m instead of %g", fallen, way);
 	cau_session_destroy(session);
 	free(scene);
@@ -261,14 +262,16 @@ static void bad_meshes(void **state)
 							   "3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n";
 	char text[512];
 	cau_error error;
-	snprintf(text, sizeof text, "%s1 4 0 1 3 2 4\n$EndElements\n", head); // inside out: turned
+	// Inverted: mending turns it.
+	snprintf(text, sizeof text, "%s1 4 0 1 3 2 4\n$EndElements\n", head);
 	open_mesh("t.msh", text, CAU_LAYER_FAT, CAU_OK, &error);
 	snprintf(text, sizeof text, "%s1 4 0 1 2 3 3\n$EndElements\n", head);
 	open_mesh("t.msh", text, CAU_LAYER_FAT, CAU_BAD_MESH, &error);
-	assert_true(strstr(error.reason, "0") != NULL); // names the element
+	assert_true(strstr(error.reason, "0") != NULL); // the error names the element
 	snprintf(text, sizeof text, "%s1 4 0 1 2 3 9\n$EndElements\n", head);
 	open_mesh("t.msh", text, CAU_LAYER_FAT, CAU_BAD_MESH, &error);
-	// a triangle without area, a fat without tetrahedra, no file at all
+	// A triangle without area, a fat without tetrahedra, a number that is none, and files without a
+	// mesh are refused.
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", CAU_LAYER_FASCIA, CAU_BAD_MESH,
 	          &error);
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", CAU_LAYER_FAT, CAU_BAD_MESH, &error);
@@ -279,7 +282,7 @@ static void bad_meshes(void **state)
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", CAU_LAYER_FASCIA, CAU_OK, &error);
 }
 
-// Texture that spans no area gives no material direction.
+// A texture without area gives no material direction, but is accepted.
 static void degenerate_texture(void **state)
 {
 	(void)state;
@@ -288,8 +291,8 @@ static void degenerate_texture(void **state)
 	          CAU_LAYER_FASCIA, CAU_OK, &error);
 }
 
-// A region that the layer's mesh does not have, in its definition and in a command, is refused with
-// those that exist. Region 0 is the default.
+// A region that the layer's mesh lacks is refused, in a definition and in a command. The error
+// lists the existing regions. Region 0 means the default.
 static void regions_that_no_mesh_has(void **state)
 {
 	(void)state;
@@ -326,20 +329,20 @@ static void regions_that_no_mesh_has(void **state)
 	free(scene);
 }
 
-// Sheets that lie on each other: their links have no length.
+// Links between sheets that lie on each other have no length.
 static void links_without_length(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = stage_layered();
 	scene->meshes[0].translate_m[2] = 0;
 	scene->meshes[0].cells[0] = 6;
-	scene->meshes[0].cells[1] = 5; // the slab's own cells: vertices coincide
+	scene->meshes[0].cells[1] = 5; // the same cells as the slab's, so vertices coincide
 	cau_session *session = stage_open(scene, 1);
 	cau_session_info info = stage_info(session);
-	assert_true(info.link_count >= 7 * 6); // each vertex is tied to the one it lies on
+	assert_true(info.link_count >= 7 * 6); // each vertex is linked to the vertex at its position
 	stage_step(session, 120);
 	cau_frame frame = stage_frame(session);
-	// the fascia lies on the slab: it sinks with it, by its own weight on 5 kPa
+	// The fascia sinks with the slab below it, by its own weight on 5 kPa.
 	double sunk = stage_farthest(&frame, info.rest_position, info.vertex_count);
 	if (!(sunk < 1e-3))
 		fail_msg("sank by %g m", sunk);
@@ -347,8 +350,8 @@ static void links_without_length(void **state)
 	free(scene);
 }
 
-// Ten layers of eight trusses a vertex, with a reach over the whole sheet: the search and the step
-// stay bounded, and pulled trusses hold the sheets together.
+// Ten layers of links between two sheets, each with eight links at a vertex and a reach over the
+// whole sheet. The search and the step stay bounded, and pulled links hold the sheets together.
 static void a_million_links(void **state)
 {
 	(void)state;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands: absurd ones are refused, extreme ones give bounded steps, a faulted session says so and
-// can be restored.
+// Commands: absurd commands are refused, extreme commands give bounded steps, and a faulted session
+// reports its fault and can be restored.
 #include "core/session/stage.h"
 
 #include <stdio.h>
 
 #include "session/session_internal.h"
 
-// Strays are stopped at 200 times the size of all tissue, here 5 to 8 cm.
+// Largest distance of a vertex. Strays are stopped at 200 times the size of all tissue, which is 5
+// to 8 cm here.
 static const double bounded_m = 16;
 
 static void expect_refused(cau_session *session, cau_command *command, double *field,
@@ -70,7 +71,7 @@ static void absurd_numbers_in_commands(void **state)
 	nothing.kind = CAU_COMMAND_COUNT;
 	cau_error error = {0};
 	assert_int_equal(cau_session_submit(session, &nothing, &error), CAU_BAD_VALUE);
-	// nothing of all this was queued
+	// None of these commands was queued.
 	stage_step(session, 3);
 	assert_int_equal(stage_frame(session).refusal_count, 0);
 	cau_session_destroy(session);
@@ -101,7 +102,8 @@ static void what_only_the_tick_can_tell(void **state)
 		strcpy(command.tool, "nobody");
 		expect_refusal_at_tick(session, command, CAU_NOT_FOUND);
 	}
-	expect_refusal_at_tick(session, stage_command(CAU_COMMAND_TOOL_GRASP), CAU_BAD_STATE); // a hook
+	// A hook cannot grasp.
+	expect_refusal_at_tick(session, stage_command(CAU_COMMAND_TOOL_GRASP), CAU_BAD_STATE);
 	cau_command add = stage_command(CAU_COMMAND_TOOL_ADD);
 	strcpy(add.as.definition.name, "jaws");
 	expect_refusal_at_tick(session, add, CAU_ALREADY_EXISTS);
@@ -110,7 +112,7 @@ static void what_only_the_tick_can_tell(void **state)
 	expect_refusal_at_tick(session, pin, CAU_NOT_FOUND);
 	expect_refusal_at_tick(session, force, CAU_NOT_FOUND);
 	cau_command material = stage_command(CAU_COMMAND_SET_MATERIAL);
-	strcpy(material.as.material.layer, "fat"); // a sheet's material
+	strcpy(material.as.material.layer, "fat"); // the material is for a sheet
 	expect_refusal_at_tick(session, material, CAU_BAD_VALUE);
 	strcpy(material.as.material.layer, "nobody");
 	expect_refusal_at_tick(session, material, CAU_NOT_FOUND);
@@ -127,8 +129,8 @@ static void what_only_the_tick_can_tell(void **state)
 	free(scene);
 }
 
-// A million commands: as many as the queue holds are kept, the rest refused at once, and a tick
-// works through all of them.
+// Of a million commands the queue accepts its capacity, and the others are refused at once. One
+// tick executes all queued commands.
 static void a_million_commands(void **state)
 {
 	(void)state;
@@ -146,12 +148,12 @@ static void a_million_commands(void **state)
 	assert_int_equal(taken + refused, 1000000);
 	stage_step(session, 1);
 	cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
-	stage_submit(session, &move); // there is room again
+	stage_submit(session, &move); // the queue has capacity again
 	cau_session_destroy(session);
 	free(scene);
 }
 
-// More refusals in a tick than a frame tells.
+// More commands are refused in a tick than a frame can list.
 static void many_refusals_in_a_tick(void **state)
 {
 	(void)state;
@@ -177,7 +179,8 @@ static double farthest(const cau_session *session)
 	return stage_farthest(&frame, info.rest_position, info.vertex_count);
 }
 
-// The step is done and bounded, or the session is faulted and says why.
+// Steps the session. Each step must be bounded, or fault the session with a reason. Returns 0 after
+// a fault.
 static int step_or_fault(cau_session *session, int ticks)
 {
 	cau_error error = {0};
@@ -186,7 +189,7 @@ static int step_or_fault(cau_session *session, int ticks)
 		if (status) {
 			assert_int_equal(status, CAU_NUMERICAL);
 			assert_true(error.reason[0]);
-			assert_true(farthest(session) < bounded_m); // what is shown is the last good state
+			assert_true(farthest(session) < bounded_m); // the frame shows the last good state
 			return 0;
 		}
 		assert_true(farthest(session) < bounded_m);
@@ -201,8 +204,8 @@ static void huge_forces_and_gravity(void **state)
 		cau_scene_def *scene = stage_layered();
 		cau_session *session = stage_open(scene, 1);
 		const double least[3] = {-1, -1, -0.009}, most[3] = {1, 1, 1};
-		if (what < 2)
-			stage_gravity(session, 0, what ? 100 : 0, what ? 0 : -100); // the most that is taken
+		if (what < 2) // the largest gravity that is accepted
+			stage_gravity(session, 0, what ? 100 : 0, what ? 0 : -100);
 		else // 1,000 N on each vertex of a few grams of tissue
 			stage_force(session, stage_box(least, most), 0, 0, what == 2 ? 1000 : -1000);
 		int done = step_or_fault(session, 60);
@@ -214,15 +217,15 @@ static void huge_forces_and_gravity(void **state)
 	}
 }
 
-// A body that nothing holds, beside one that is pinned: it is stopped far below, and its fall for
-// half a minute has not disturbed the other.
+// A free body beside a pinned body is stopped far below. Its fall of half a minute does not disturb
+// the pinned body.
 static void what_falls_for_ever_is_stopped(void **state)
 {
 	(void)state;
 	const double size[3] = {0.04, 0.03, 0.01}, least[3] = {-1, -1, -0.0101},
 				 most[3] = {1, 1, -0.0099};
 	const int32_t cells[3] = {6, 5, 2}, few[3] = {2, 2, 1};
-	const double at_rest_m_s = 1e-4; // half a micrometre a tick
+	const double at_rest_m_s = 1e-4; // half a micrometre a tick is at rest
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	cau_default_gravity(scene->gravity_m_s2);
 	scene->damping_per_s = 1;
@@ -259,8 +262,8 @@ static int32_t recount_frozen(const cau_session *session)
 	return count;
 }
 
-// Pins are no frozen vertices, whatever they were before; let go, one without an element is frozen
-// again, and one that had only gone too far is free.
+// A pinned vertex does not count as frozen, even if it was frozen before. After unpinning, a vertex
+// without an element is frozen again, and a vertex that had only moved too far is free.
 static void pins_take_frozen_vertices_over(void **state)
 {
 	(void)state;
@@ -277,7 +280,8 @@ static void pins_take_frozen_vertices_over(void **state)
 	session->frozen_count = 2;
 	cau_command command = stage_command(CAU_COMMAND_PIN);
 	command.as.selection = stage_everything();
-	for (int round = 0; round < 3; round++) { // a count that drifts would fall below zero
+	// A wrong count would fall below zero after some rounds.
+	for (int round = 0; round < 3; round++) {
 		command.kind = CAU_COMMAND_PIN;
 		stage_submit(session, &command);
 		stage_step(session, 1);
@@ -293,7 +297,7 @@ static void pins_take_frozen_vertices_over(void **state)
 	free(scene);
 }
 
-// A tool that leaps a metre through the body is followed at its speed.
+// A tool whose command is a metre away moves through the body at its greatest speed.
 static void a_tool_that_leaps(void **state)
 {
 	(void)state;
@@ -314,7 +318,7 @@ static void a_tool_that_leaps(void **state)
 			assert_true(farthest(session) < 0.5);
 		}
 	}
-	// once they are gone it comes back to rest
+	// Once both tools are gone, the tissue returns to rest.
 	stage_move(session, "hook", 0, 0, 0.9);
 	stage_move(session, "jaws", 0, 0, 0.9);
 	stage_step(session, 400);
@@ -331,14 +335,14 @@ static void a_faulted_session_waits_for_a_snapshot(void **state)
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	stage_step(session, 10);
 	stage_bytes shot = stage_snapshot(session);
-	session->velocity[100] = NAN; // what no command can do
+	session->velocity[100] = NAN; // no command can cause this
 	cau_error error = {0};
 	assert_int_equal(cau_session_step(session, &error), CAU_NUMERICAL);
 	assert_true(error.reason[0]);
 	assert_true(isfinite(farthest(session)));
 	for (int k = 0; k < 3; k++)
 		assert_int_equal(cau_session_step(session, &error), CAU_FAULTED);
-	// a snapshot of it is of a faulted session
+	// A snapshot of a faulted session restores a faulted session.
 	stage_bytes faulted = stage_snapshot(session);
 	bool exact;
 	assert_int_equal(cau_session_restore(other, faulted.bytes, faulted.count, &exact, &error),
@@ -356,7 +360,7 @@ static void a_faulted_session_waits_for_a_snapshot(void **state)
 	free(scene);
 }
 
-// ---- supports that move
+// ---- moving supports
 static void only_pinned_vertices_are_driven(void **state)
 {
 	(void)state;
@@ -386,13 +390,13 @@ static void only_pinned_vertices_are_driven(void **state)
 	for (int32_t k = 0; k < frame.moved_count; k++)
 		told |= frame.moved[k] == pinned;
 	assert_true(told);
-	stage_step(session, 1); // and there it stays
+	stage_step(session, 1); // the vertex stays there
 	assert_memory_equal(stage_frame(session).position + 3 * (size_t)pinned, at, sizeof at);
 	cau_session_destroy(session);
 	free(scene);
 }
 
-// Pins that come and go do not add up.
+// Repeated pinning and unpinning does not increase the session's memory.
 static void pinning_does_not_grow_the_session(void **state)
 {
 	(void)state;
@@ -415,7 +419,8 @@ static void pinning_does_not_grow_the_session(void **state)
 	free(scene);
 }
 
-// What is pinned at run time stays where it is, to the bit; let go, it moves again.
+// Vertices that are pinned at run time keep their position to the bit. Unpinned vertices move
+// again.
 static void pinned_on_the_way(void **state)
 {
 	(void)state;
@@ -425,11 +430,11 @@ static void pinned_on_the_way(void **state)
 	size_t bytes = 3 * (size_t)info.vertex_count * sizeof(double);
 	double *before = malloc(bytes);
 	assert_non_null(before);
-	stage_step(session, 7); // it moves: the fascia swings on its links
+	stage_step(session, 7); // the fascia swings on its links
 	cau_command pin;
 	cau_default_command(&pin, CAU_COMMAND_PIN);
 	pin.as.selection = stage_everything();
-	pin.as.selection.least_m[0] = 0; // half of it
+	pin.as.selection.least_m[0] = 0; // half of the tissue
 	stage_submit(session, &pin);
 	memcpy(before, stage_frame(session).position, bytes);
 	stage_step(session, 20);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session that is made in stages: what is known at each border, that a refusal at any of them
-// leaves nothing behind, that whoever takes a session over mid-cut changes none of its bits, and
-// that neither does who begins with a snapshot.
+// Creation of a session in stages. The counts at each border are right. A refusal at any border
+// leaves no memory behind. A session that another thread takes over during a cut keeps its bits. So
+// does a session that begins with a snapshot.
 #include "core/session/busy_scene.h"
 
 #include <pthread.h>
 
 #include "session/session_internal.h"
 
-// What the creation of a session said at its borders, and where it was told to stop.
+// What a session's creation reported at its borders, and the border at which it must stop.
 typedef struct borders {
-	int stop_at; // CAU_BUILD_*, or -1
+	int stop_at; // a CAU_BUILD_* to refuse, or -1
 	cau_status refusal;
 	int count;
 	cau_build_border seen[CAU_BUILD_STAGE_COUNT];
@@ -50,7 +50,7 @@ static void borders_come_in_order_and_know_ever_more(void **state)
 	for (int k = 0; k < noted.count; k++) {
 		const cau_build_border *border = &noted.seen[k];
 		assert_int_equal(border->next, k);
-		// its meshes are generated: their vertices are known before there is one
+		// Meshes are generated here, so their vertices are known before the meshes exist.
 		assert_int_equal(border->vertex_count, info.vertex_count);
 		assert_true(border->bytes > 0);
 		assert_int_equal(border->factor_entries > 0, k >= CAU_BUILD_FACTOR);
@@ -63,7 +63,7 @@ static void borders_come_in_order_and_know_ever_more(void **state)
 	free(scene);
 }
 
-// What a step makes room for later is asked for, too.
+// The estimate at a border includes the memory that a step allocates later.
 static void newtons_room_is_asked_for(void **state)
 {
 	(void)state;
@@ -84,7 +84,7 @@ static void newtons_room_is_asked_for(void **state)
 	assert_true(last[1].bytes >= last[0].bytes + 96 * (size_t)last[1].factor_entries);
 }
 
-// With helper threads and without; the address sanitizer looks for what is left behind.
+// Tested with and without helper threads. The address sanitizer finds memory that is left behind.
 static void a_refusal_at_any_border_leaves_nothing(void **state)
 {
 	(void)state;
@@ -96,14 +96,14 @@ static void a_refusal_at_any_border_leaves_nothing(void **state)
 			cau_error error = {0};
 			assert_int_equal(create(scene, threads, &noted, &session, &error), CAU_LIMIT);
 			assert_null(session);
-			assert_int_equal(noted.count, stage + 1); // and no border after it
+			assert_int_equal(noted.count, stage + 1); // no border follows the refused one
 			assert_int_equal(error.status, CAU_LIMIT);
 			assert_string_equal(error.path, "scene");
 		}
 	free(scene);
 }
 
-// ---- taken over
+// ---- a session taken over by another thread
 enum { TICKS = 60 };
 
 static void hash_run(cau_session *session, int from, int to, uint64_t *hash)
@@ -118,10 +118,10 @@ typedef struct takeover {
 	cau_session *session;
 	int from, to;
 	uint64_t *hash;
-	bool in_the_making; // a factor was being made when it was taken over
+	bool in_the_making; // a factor was being computed at the takeover
 } takeover;
 
-// The thread that takes the session over makes its helpers and steps it from then on.
+// The thread that takes the session over creates its helpers, and steps the session from then on.
 static void *take_over(void *context)
 {
 	takeover *work = context;
@@ -139,8 +139,8 @@ static void hand_over(takeover *work)
 	assert_int_equal(pthread_join(thread, NULL), 0);
 }
 
-// At every tenth tick another thread takes the session over, and at every tick where a factor is
-// being made in the background.
+// Another thread takes the session over at every tenth tick, and at every tick in which a factor is
+// being computed in the background.
 static void a_session_taken_over_mid_cut_keeps_its_bits(void **state)
 {
 	(void)state;
@@ -188,7 +188,7 @@ static void expect_restored(cau_session *session, stage_bytes shot)
 	assert_true(exact);
 }
 
-// A hook is lit in the middle of the tissue.
+// Cuts with an energized hook in the middle of the tissue.
 static uint64_t hash_of_burning(cau_session *session, int ticks)
 {
 	const cau_cut_def *cut = &session->scene->cut;
@@ -210,13 +210,13 @@ static void what_begins_with_a_snapshot_need_not_settle(void **state)
 		stage_bytes first = stage_snapshot(settled);
 		cau_error error = {0};
 		assert_int_equal(cau_session_step(begun, &error), CAU_FAULTED);
-		assert_true(cau_session_hash(begun) !=
-		            cau_session_hash(settled)); // its tension is built in
+		// the session without a restore lacks its built-in tension
+		assert_true(cau_session_hash(begun) != cau_session_hash(settled));
 		expect_restored(begun, first);
 		assert_int_equal(cau_session_hash(begun), cau_session_hash(settled));
 		uint64_t reached = hash_of_burning(settled, 100);
 		assert_int_equal(hash_of_burning(begun, 100), reached);
-		// and one that starts where the other has come to
+		// A session can also begin with the later state of the other session.
 		stage_bytes later = stage_snapshot(settled);
 		cau_session *joined = open_unsettled(scene);
 		expect_restored(joined, later);
@@ -232,7 +232,7 @@ static void what_begins_with_a_snapshot_need_not_settle(void **state)
 	}
 }
 
-// A mesh's file may give an element another material and change nothing else.
+// A mesh file may give an element another material and be otherwise equal.
 static void tissue_is_known_by_its_materials_too(void **state)
 {
 	(void)state;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nothing crosses (core/DECISIONS.md, "Contact"): balls smaller and larger than the mesh's cells,
-// pressed into a sheet and a slab slowly and so fast that a tick takes them to the other side.
+// No tissue crosses a tool (core/DECISIONS.md, "Contact"). Balls smaller and larger than the
+// elements are pressed into a sheet and a slab, slowly, and so fast that one tick takes them to the
+// other side.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -26,11 +27,11 @@ static const press presses[] = {
 	{"13 mm ball, slab of 2.5 mm cells, 0.1 m/s", true, 6.5e-3, 2.5e-3, 0.1, 4e-3},
 	{"80 mm ball, slab of 2.5 mm cells, 0.1 m/s", true, 40e-3, 2.5e-3, 0.1, 4e-3},
 	{"80 mm ball, slab of 2 mm cells, 0.1 m/s", true, 40e-3, 2e-3, 0.1, 4e-3},
-	// more vertices touch than there are whole columns for
+	// More vertices touch than there are whole columns.
 	{"80 mm ball, slab of 1.25 mm cells, 0.1 m/s", true, 40e-3, 1.25e-3, 0.1, 4e-3},
 };
 
-static const double most_m = 1e-4; // how deep a face may be in it when it stands still
+static const double most_m = 1e-4; // greatest depth of a face in a ball at rest
 static const double wide_ball_m = 0.04;
 
 static cau_scene_def *press_scene(const press *p)
@@ -54,7 +55,7 @@ static cau_scene_def *press_scene(const press *p)
 		for (int i = 0; i < 4; i++)
 			stage_pin_box(scene, sides[i][0], sides[i][1]);
 	}
-	// off the lines of the mesh, so that no vertex lies below it
+	// The ball is beside the lines of the mesh, so that no vertex is below it.
 	cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0.27 * p->cell_m,
 	                                    0.31 * p->cell_m, p->radius_m + 1e-3);
 	ball->hot_radius_m = p->radius_m;
@@ -64,7 +65,7 @@ static cau_scene_def *press_scene(const press *p)
 	return scene;
 }
 
-// ---- what is seen of it, by sampling: nothing of the code under test
+// ---- depth and crossing, measured by sampling, independently of the code under test
 
 static cau_vec3 corner(const cau_session *session, int32_t face, int k)
 {
@@ -77,7 +78,8 @@ static bool is_drawn(const cau_session *session, int32_t face)
 	return !(session->dissection.face_mask[face >> 5] >> (face & 31) & 1);
 }
 
-// Whether the way by which the ball came, straight up from its middle, meets the face.
+// Whether the vertical line up from the ball's middle, which is the path of the ball, meets the
+// face.
 static bool is_above(cau_vec3 from, cau_vec3 a, cau_vec3 b, cau_vec3 c)
 {
 	double ab = (b.x - a.x) * (from.y - a.y) - (b.y - a.y) * (from.x - a.x);
@@ -123,7 +125,8 @@ static seen look(const cau_session *session, const press *p)
 	return s;
 }
 
-// Presses and holds for a second. Returns whether nothing crossed, and what is right at the end.
+// Presses the ball in and holds it for a second. Returns whether nothing crossed and the end is
+// right. *end gets the measurements at the end.
 static bool holds(const press *p, seen *end)
 {
 	cau_scene_def *scene = press_scene(p);
@@ -153,22 +156,23 @@ static void nothing_crosses(void **state)
 	(void)state;
 	int failed = 0;
 	seen end = {0};
-	double wide_n = 0; // what the wide ball feels of the first tissue
+	double wide_n = 0; // force on the wide ball in the first tissue
 	for (size_t i = 0; i < sizeof presses / sizeof *presses; i++) {
 		failed += !holds(&presses[i], &end);
 		if (presses[i].radius_m < wide_ball_m)
 			continue;
 		wide_n = wide_n > 0 ? wide_n : end.force_n;
-		assert_true(fabs(end.force_n / wide_n - 1) < 0.1); // the same law in finer cells
+		assert_true(fabs(end.force_n / wide_n - 1) < 0.1); // the same law, in finer cells
 		assert_int_equal(end.left_out, 0);
 	}
 	assert_int_equal(failed, 0);
 	assert_true(wide_n > 0.5);
-	assert_true(end.rows > CAU_WHOLE_COLUMNS); // of the last: those beyond them work too
+	// In the last case: constraints without a whole column work too.
+	assert_true(end.rows > CAU_WHOLE_COLUMNS);
 }
 
-// On its side, nothing of a ball is left at the faces that it passes within a tick, as its shaft is
-// where it is pressed in upright.
+// A ball on its side has no part left at the faces that it passes within a tick. (A ball that is
+// pressed in upright has its shaft there.)
 static void what_a_tick_takes_past_a_face_is_held_too(void **state)
 {
 	(void)state;
@@ -176,12 +180,12 @@ static void what_a_tick_takes_past_a_face_is_held_too(void **state)
 	cau_scene_def *scene = press_scene(&quick);
 	scene->tools[0].shaft_length_m = 4e-3;
 	cau_pose pose = scene->tools[0].pose;
-	pose.rotation[0] = pose.rotation[2] = sqrt(0.5); // its shaft along x
+	pose.rotation[0] = pose.rotation[2] = sqrt(0.5); // the shaft is along x
 	scene->tools[0].pose = pose;
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 1);
 	pose.position_m[2] = -quick.depth_m;
-	stage_turn(session, "ball", &pose); // at 2 m/s at most: there within the tick
+	stage_turn(session, "ball", &pose); // at most 2 m/s, so the ball arrives within the tick
 	for (int tick = 0; tick < 30; tick++) {
 		stage_step(session, 1);
 		assert_false(look(session, &quick).crossed);
@@ -192,8 +196,8 @@ static void what_a_tick_takes_past_a_face_is_held_too(void **state)
 	free(scene);
 }
 
-// A press over threads and over a snapshot before each tick. Returns what is kept of contact after
-// each, summed.
+// Compares a press with the same press on two threads, restored from a snapshot before each tick.
+// Returns the number of ticks with contact memory, or for the wide ball the number of columns.
 static int32_t press_twice(const press *p, int ticks, int snapshots_from)
 {
 	cau_scene_def *scene = press_scene(p);
@@ -226,7 +230,7 @@ static int32_t press_twice(const press *p, int ticks, int snapshots_from)
 	return p->radius_m < wide_ball_m ? kept : columns;
 }
 
-// The sides of faces that are kept are part of the state.
+// The stored sides of faces are part of the state.
 static void sides_are_part_of_the_state(void **state)
 {
 	(void)state;
@@ -234,7 +238,7 @@ static void sides_are_part_of_the_state(void **state)
 	assert_true(press_twice(&presses[2], TICKS, 0) > TICKS / 2);
 }
 
-// And so are columns of which no more is kept than rows need.
+// Columns of which only the part for the constraints is stored are part of the state too.
 static void columns_are_part_of_the_state(void **state)
 {
 	(void)state;
@@ -242,8 +246,8 @@ static void columns_are_part_of_the_state(void **state)
 	assert_true(press_twice(&wide, 26, 18) > CAU_WHOLE_COLUMNS);
 }
 
-// Tissue that a tool begins to push from inside, as its energy goes off, has no side: it is let out
-// as it can, and nothing is thrown about.
+// When its energy goes off, a tool may begin to push from inside the tissue. Such tissue has no
+// side: it may leave in any direction, and nothing diverges.
 static void a_tool_that_begins_inside_throws_nothing(void **state)
 {
 	(void)state;
@@ -261,9 +265,9 @@ static void a_tool_that_begins_inside_throws_nothing(void **state)
 	free(scene);
 }
 
-// Drawn across tissue, pressed in, and over its rim, slowly and so fast that each tick takes it
-// past whole cells: what is behind it is not dragged along, and nothing is torn to where no tissue
-// is.
+// A tool is pressed in and drawn across the tissue and over its rim, slowly, and so fast that each
+// tick takes it past whole elements. The tissue behind it is not dragged along, and no tissue
+// diverges.
 static void what_is_drawn_across_drags_nothing_along(void **state)
 {
 	(void)state;
@@ -288,7 +292,7 @@ static void what_is_drawn_across_drags_nothing_along(void **state)
 		tool->max_speed_m_s = 2;
 		cau_session *session = stage_open(scene, 1);
 		cau_session_info info = stage_info(session);
-		double far = 0, reach_m = 0.09; // beyond the rim
+		double far = 0, reach_m = 0.09; // the motion ends beyond the rim
 		int ticks = 20 + (int)(60 * reach_m / ways[w].speed_m_s);
 		for (int tick = 0; tick < ticks; tick++) {
 			double in = fmin((tick + 1) * 1e-3, 1e-3 + depth_m);

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a drawn cut takes does not depend on the mesh, where elements part one by one: whole
-// sessions of `fat-neohookean`'s slab with its membrane, which the tool presses in, drags along and
-// burns, cut for 40 mm at the scene's speed. Mean of eight ways that lie otherwise in the cells:
-// within 15 % of that with the shipped cells for 1 to 2 times as many along an edge, within 30 %
-// for half as many.
+// The volume that a cut removes does not depend on the mesh, if elements part one by one. Whole
+// sessions cut a slab of `fat-neohookean` with its membrane, which the tool presses in, drags and
+// burns, for 40 mm at the scene's speed. The result is the mean of eight cuts at different
+// positions in the cells. Compared with the shipped cells it must agree within 15 % for 1 to 2
+// times as many cells along an edge, and within 30 % for half as many.
 //
-// The slab is as wide as the tool reaches, and steps are of 1/30 s, which take the same
-// (tests/paper/validation.md). By itself: the shipped cells and half of them. With `--long`:
-// finer ones.
+// The slab is as wide as the tool's effect, and steps are 1/30 s long, which removes the same
+// volume (tests/paper/validation.md). Without options: the shipped cells and half of them. With
+// `--long`: finer cells.
 #include <stdio.h>
 
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-enum { WAYS = CAU_TEST_SANITIZED ? 1 : 8 }; // all walk the same code, and steps take long there
+// Under sanitizers steps take long, and all cuts run the same code.
+enum { WAYS = CAU_TEST_SANITIZED ? 1 : 8 };
 static const double half_cut_m = 0.02, cell_m = 0.002, near_m = 1e-4;
 
-static const int32_t shipped_cells[3] = {26, 10, 4}; // of 2 mm; the ball's radius is 3 mm
+static const int32_t shipped_cells[3] = {26, 10, 4}; // cells of 2 mm; the ball's radius is 3 mm
 static const double step_s = 1.0 / 30;
 
-// Bottom and both short ends are held, as the shipped slab's are.
+// Pins the bottom and both short ends, as in the shipped slab.
 static void pin(cau_scene_def *scene, const double size_m[3])
 {
 	const double end = size_m[0] / 2 - near_m;
@@ -29,7 +30,8 @@ static void pin(cau_scene_def *scene, const double size_m[3])
 	stage_pin_box(scene, (double[]){end, -1, -1}, (double[]){1, 1, 1});
 }
 
-// The way `way` of WAYS, by the golden ratio over a cell, so that none lies on another.
+// Returns the scene of cut number `way`. Its position within a cell follows the golden ratio, so
+// that no two cuts have the same position.
 static cau_scene_def *scene_of(double fineness, int parting, int way)
 {
 	cau_scene_def *scene = stage_scene_named("fat-neohookean");
@@ -49,7 +51,7 @@ static cau_scene_def *scene_of(double fineness, int parting, int way)
 	return scene;
 }
 
-// Rest volume of the tetrahedra that the scene's cut takes.
+// Returns the rest volume of the tetrahedra that the scene's cut removes.
 static double volume_taken_m3(const cau_scene_def *scene)
 {
 	cau_session *session = stage_open(scene, 1);
@@ -92,7 +94,7 @@ static void assert_alike(double volume_m3, double shipped_m3, double fineness)
 		         100 * most);
 }
 
-// By the paper's rule half a cell all round goes too: the test can tell.
+// The paper's rule also removes half a cell all round. The test can detect that.
 static void half_the_cells_take_as_much(void **state)
 {
 	(void)state;
@@ -100,19 +102,20 @@ static void half_the_cells_take_as_much(void **state)
 	assert_true(half > 1e-7);
 	assert_true(mean_volume_m3(0.5, CAU_PARTING_EDGES) > 2 * half);
 	if (CAU_TEST_SANITIZED)
-		return; // one way's volume says nothing of the mesh
+		return; // one cut's volume says nothing about the mesh
 	double shipped = mean_volume_m3(1, CAU_PARTING_ELEMENTS);
 	assert_alike(half, shipped, 0.5);
 }
 
-// By the scene's step or half or twice it, by few iterations or many, whatever accuracy asks.
+// The volume is the same for the scene's step, half and twice that step, and for few and many
+// iterations.
 static void steps_and_iterations_take_as_much(void **state)
 {
 	(void)state;
 	static const double fineness = 0.5, alike = 0.1; // a cell is a fiftieth of the cut
 	static const struct {
 		double step_s;
-		int32_t iterations; // 0: as the scene has it
+		int32_t iterations; // 0: the scene's number
 	} other[] = {{1.0 / 60, 0}, {1.0 / 120, 0}, {1.0 / 30, 5}, {1.0 / 30, 20}};
 	enum { OTHERS = CAU_TEST_SANITIZED ? 1 : sizeof other / sizeof *other, OF_WAYS = 2 };
 	double usual = 0, taken[OTHERS] = {0};
@@ -136,7 +139,7 @@ static void steps_and_iterations_take_as_much(void **state)
 	}
 }
 
-// The scenes of the paper keep the paper's rule.
+// The scenes of the paper use the paper's rule.
 static void scenes_have_their_rule(void **state)
 {
 	(void)state;
@@ -154,7 +157,7 @@ static void scenes_have_their_rule(void **state)
 	}
 }
 
-// Minutes.
+// This test takes minutes.
 static void finer_cells_take_as_much(void **state)
 {
 	(void)state;

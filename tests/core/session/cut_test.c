@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// After any sequence of cuts (core/README.md, "What must hold, whatever the speed"): the books
-// agree with a recount, the system with a reassembly; what hangs on nothing is frozen, what is held
-// stays held, what is free falls.
+// States after any sequence of cuts (core/README.md, "What must hold, whatever the speed"). The
+// counters agree with a recount, and the system with a reassembly. Vertices without elements are
+// frozen, held tissue stays held, free tissue falls.
 #include "core/session/busy_scene.h"
 
 #include <stdio.h>
 
 #include "session/session_internal.h"
 
-// core/README.md, "What must hold, whatever the speed": whichever of the two is larger.
+// Relative error of the system's solution (core/README.md, "What must hold, whatever the speed").
+// The larger of the two bounds holds.
 static const double system_tolerance = 1e-10;
-static const double condition_tolerance = 1e-13; // of the condition
-// The most that waiting downdates may hold a falling strip back, of the way it has fallen.
+static const double condition_tolerance = 1e-13; // times the condition number
+// Greatest delay of a falling strip by waiting downdates, as a share of the fallen height.
 static const double fall_tolerance = 0.02;
 
-// One session is cut for four tests, which look at it one after another: first at its books, then,
-// after it has settled, at its system and at what has come loose.
+// One session is cut for four tests, which run in this order: first the counters are checked, then,
+// after the factor has settled, the system and the loose vertices.
 static struct {
 	cau_scene_def *scene;
 	cau_session *session;
@@ -38,7 +39,7 @@ static int drop_busy(void **state)
 	return 0;
 }
 
-// ---- the books
+// ---- the counters
 static void *copy_of(const void *array, size_t bytes)
 {
 	void *copy = malloc(bytes + 1);
@@ -82,7 +83,7 @@ static void shares_equal_a_recount(void **state)
 	}
 }
 
-// A share count by hand: edges of the element that have not parted in its layer.
+// Counts the shares by hand: the edges of an element that have not parted in its layer.
 static void shares_are_counts_of_whole_edges(void **state)
 {
 	(void)state;
@@ -115,7 +116,8 @@ static void the_system_equals_a_reassembly(void **state)
 	(void)state;
 	cau_session *session = busy.session;
 	settle_factor(session);
-	assert_true(stage_frame(session).statistics.factor_operations > 0); // not a canonical one
+	// The factor is not canonical.
+	assert_true(stage_frame(session).statistics.factor_operations > 0);
 	const cau_system *system = &session->solver.system;
 	size_t rows = (size_t)system->row_count, entries = (size_t)system->matrix.first[rows];
 	cau_matrix matrix = system->matrix;
@@ -187,22 +189,22 @@ static cau_scene_def *strip_scene(int fineness)
 	fascia->sheet[0].heat.absorption_per_s = 1000; // parts at once
 	fascia->sheet[0].limit_stiffness_pa = 1e5;
 	stage_pin_box(scene, least, most);
-	// above the strip's middle, over its whole width
+	// The needle is above the strip's middle, over its whole width.
 	cau_tool_def *needle = stage_add_tool(scene, "needle", CAU_TOOL_CAPSULE, 0, -0.006, 0.05);
 	needle->tip_length_m = 0.012;
 	needle->hot_radius_m = 0.002;
 	needle->drag_ns_m = 0;
-	needle->pose.rotation[0] = sqrt(0.5); // lies along y
+	needle->pose.rotation[0] = sqrt(0.5); // the needle lies along y
 	needle->pose.rotation[1] = -sqrt(0.5);
-	// comes from beyond the free end, opening along z
+	// The jaws come from beyond the free end, and open along z.
 	cau_tool_def *jaws = stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.024, 0, 0);
 	jaws->pose.rotation[0] = sqrt(0.5);
 	jaws->pose.rotation[2] = sqrt(0.5);
 	return scene;
 }
 
-// Cuts the strip through while `fresh` factors anew every tick; the grasper
-// holds its end or not.
+// Cuts the strip through. `fresh`: the system is factored again in every tick. `held`: the grasper
+// holds the strip's end.
 static cau_session *cut_strip(const cau_scene_def *scene, int held, int fresh)
 {
 	cau_session *session = stage_open(scene, 1);
@@ -213,8 +215,8 @@ static cau_session *cut_strip(const cau_scene_def *scene, int held, int fresh)
 	cau_pose pose = scene->tools[0].pose;
 	for (int tick = 0; tick < STRIP_TICKS; tick++) {
 		pose.position_m[2] = fmax(0, 0.05 - 0.008 * tick);
-		// free, it is pulled from its pins while it is being cut; held, away from the jaws
-		// afterwards
+		// Gravity pulls a free strip from its pins during the cut. It pulls a held strip away from
+		// the jaws after the cut.
 		if (tick == (held ? CUT_TICKS : 0))
 			stage_gravity(session, held ? -9.81 : 9.81, 0, 0);
 		stage_turn(session, "needle", &pose);
@@ -230,7 +232,7 @@ static cau_session *cut_strip(const cau_scene_def *scene, int held, int fresh)
 static void assert_falls_alike(int fineness, int by_new_factor)
 {
 	cau_scene_def *scene = strip_scene(fineness);
-	scene->tools[1].pose.position_m[2] = 0.5; // out of its way
+	scene->tools[1].pose.position_m[2] = 0.5; // the grasper is far away
 	cau_session *kept = cut_strip(scene, 0, 0), *fresh = cut_strip(scene, 0, 1);
 	cau_session_info info = stage_info(kept);
 	cau_frame a = stage_frame(kept), b = stage_frame(fresh);
@@ -253,8 +255,8 @@ static void assert_falls_alike(int fineness, int by_new_factor)
 static void a_strip_falls_as_with_a_fresh_factor(void **state)
 {
 	(void)state;
-	assert_falls_alike(1, 0); // downdates serve what is parted at once
-	assert_falls_alike(2, 1); // more is
+	assert_falls_alike(1, 0); // downdates suffice for the few elements that part at once
+	assert_falls_alike(2, 1); // more elements need a new factor
 }
 
 static double weight_beyond(const cau_session *session, double x_m)
@@ -273,18 +275,19 @@ static void a_grasped_strip_stays_held(void **state)
 	cau_session *session = cut_strip(scene, 1, 0);
 	cau_session_info info = stage_info(session);
 	assert_true(stage_frame(session).statistics.elements_removed > 40);
-	stage_step(session, 300); // it hangs still from the jaws
+	stage_step(session, 300); // the strip hangs still from the jaws
 	cau_frame frame = stage_frame(session);
 	const cau_tool_state *jaws = stage_tool(session, "jaws");
 	assert_true(jaws->grasping && jaws->grasped_vertices > 5);
 	for (int32_t v = 0; v < info.vertex_count; v++)
 		if (info.rest_position[3 * (size_t)v] > 0.005 && session->dissection.live_elements[v])
-			assert_true(frame.position[3 * (size_t)v] > -0.01); // hangs, does not fall
-	// the jaws carry what hangs from them: single precision and ten iterations leave 0.1 %
+			assert_true(frame.position[3 * (size_t)v] > -0.01); // the strip hangs and does not fall
+	// The jaws carry the hanging strip. Single precision and ten iterations leave an error of 0.1
+	// %.
 	double weight = weight_beyond(session, 0);
 	print_message("the jaws carry %.4g N of %.4g N\n", -jaws->raw_force_n[0], weight);
 	assert_true(fabs(-jaws->raw_force_n[0] - weight) <= 1e-3 * weight);
-	// let go, it falls
+	// The released strip falls.
 	stage_release(session, "jaws");
 	stage_step(session, 30);
 	assert_int_equal(stage_tool(session, "jaws")->grasped_vertices, 0);
@@ -295,7 +298,7 @@ static void a_grasped_strip_stays_held(void **state)
 	free(scene);
 }
 
-// The held end itself is burnt away: the jaws find themselves empty and say so.
+// The held end itself is burnt away. The jaws report that they are empty.
 static void burnt_out_of_the_jaws(void **state)
 {
 	(void)state;
@@ -320,7 +323,7 @@ static void burnt_out_of_the_jaws(void **state)
 }
 
 // ---- layers
-// A needle between fascia and fat parts the links and nothing else; then the fascia comes off.
+// A needle between fascia and fat parts only the links. Then the fascia can be lifted off.
 static void links_part_and_fascia_comes_off(void **state)
 {
 	(void)state;
@@ -346,7 +349,7 @@ static void links_part_and_fascia_comes_off(void **state)
 		needle->tip_length_m = 0.05;
 		needle->grid_cells = 64;
 		needle->pose.rotation[0] = sqrt(0.5);
-		needle->pose.rotation[1] = -sqrt(0.5); // along y, between the sheets
+		needle->pose.rotation[1] = -sqrt(0.5); // along y, between the layers
 		cau_session *session = stage_open(scene, 1);
 		stage_energize(session, "needle", cut);
 		cau_pose pose = needle->pose;
@@ -370,7 +373,7 @@ static void links_part_and_fascia_comes_off(void **state)
 			assert_int_equal(live_links, 0);
 		else
 			assert_int_equal(live_links, info.link_count);
-		// lift every vertex of the fascia a little: 60 mN in all
+		// Lifts every vertex of the fascia a little, with 60 mN in all.
 		cau_selection sheet = stage_everything();
 		strcpy(sheet.layer, "fascia");
 		stage_force(session, sheet, 0, 0, 0.06 / (21 * 17));
@@ -385,8 +388,8 @@ static void links_part_and_fascia_comes_off(void **state)
 	assert_true(lifted[1] > 0.1);
 }
 
-// A pivot below its bound makes a whole new factor inside the tick, after the columns of what a
-// tool touches were made: the step goes on, and a snapshot of it gives the same bits.
+// A pivot below its bound causes a whole new factor within the tick, after the columns of the
+// contacts were computed. The step continues, and a snapshot of it gives the same bits.
 static void a_new_factor_amid_contacts(void **state)
 {
 	(void)state;
@@ -421,7 +424,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(shares_are_counts_of_whole_edges),
-		cmocka_unit_test(shares_equal_a_recount), // its recount stays
+		cmocka_unit_test(shares_equal_a_recount), // the recount changes the session's counters
 		cmocka_unit_test(the_system_equals_a_reassembly),
 		cmocka_unit_test(isolated_vertices_are_frozen),
 		cmocka_unit_test(a_new_factor_amid_contacts),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes of a region and of what is outside it; and whether commands would be taken.
+// Damaged volumes inside and outside a region; and whether commands would be accepted.
 #include "core/session/stage.h"
 
 #include <string.h>
 
-static const double rounding = 1e-12; // of a volume, relative
+static const double rounding = 1e-12; // relative rounding of a volume
 
 static cau_session *burning(void)
 {
@@ -68,7 +68,7 @@ static void test_commands_are_checked_and_nothing_changes(void **state)
 	assert_int_equal(cau_session_waiting(session, "hook"), 0);
 	assert_true(cau_session_hash(session) == before);
 	commands[1].as.move.jaw = 0;
-	while (cau_session_submit(session, &commands[0], &error) == CAU_OK) // until the queue is full
+	while (cau_session_submit(session, &commands[0], &error) == CAU_OK) // fills the queue
 		;
 	assert_int_equal(cau_session_may_submit(session, commands, 1, &index, &error), CAU_LIMIT);
 	cau_session_destroy(session);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy `tissue`: a needle that cuts a taut sheet by its power, the ledger, what off does, and
-// that all of it is state.
+// Energy `tissue`: a needle that cuts a taut sheet by its power, the energy ledger, the effect of
+// energy off, and that all of this is part of the state.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
@@ -48,7 +48,8 @@ static int32_t parted(const cau_session *session)
 	return stage_frame(session).statistics.elements_removed;
 }
 
-// What goes in is found again, by sums that do not know each other; stored heat is counted anew.
+// The energy given equals the energy found. Both sums are independent; the stored heat is counted
+// again.
 static void assert_ledger_closes(const cau_session *session)
 {
 	cau_energy_ledger ledger;
@@ -62,7 +63,7 @@ static void assert_ledger_closes(const cau_session *session)
 	assert_true(fabs(ledger.delivered_j + ledger.blade_j - found) <= 1e-6 * ledger.delivered_j);
 }
 
-// No more is cut than the power can boil: a part of what was delivered went off as steam.
+// No more is cut than the power can boil: a part of the delivered energy left as steam.
 static void thirty_watts_cut_at_the_hand_s_speed(void **state)
 {
 	(void)state;
@@ -79,7 +80,7 @@ static void thirty_watts_cut_at_the_hand_s_speed(void **state)
 	cau_session_destroy(session);
 }
 
-// The lips of the cut, which lie in elements that are gone, move with elements that are there.
+// The cells at the lips of the cut belong to removed elements, and move with existing elements.
 static void lips_move_with_what_is_left(void **state)
 {
 	(void)state;
@@ -100,8 +101,8 @@ static void lips_move_with_what_is_left(void **state)
 	cau_session_destroy(session);
 }
 
-// Tissue that one watt does not part holds the needle up. Drawn on, a needle that is so thin for
-// such a mesh may pass through faces that are whole (.github/KNOWN_BUGS.md).
+// Tissue that one watt does not part holds the needle up. A needle that is thin for such a mesh,
+// and is drawn sideways, may pass through whole faces (.github/KNOWN_BUGS.md).
 static void one_watt_holds_the_needle_up(void **state)
 {
 	(void)state;
@@ -116,7 +117,8 @@ static void one_watt_holds_the_needle_up(void **state)
 	free(scene);
 }
 
-// Off ends the power in that tick. Stored heat still goes on; then all cools down, and rests.
+// Energy off ends the power in the same tick. Stored heat spreads further; then everything cools
+// down and rests.
 static void off_ends_the_power_and_not_the_heat(void **state)
 {
 	(void)state;
@@ -129,14 +131,16 @@ static void off_ends_the_power_and_not_the_heat(void **state)
 	assert_true(after.delivered_j == before.delivered_j);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);
 	assert_true(after.stored_j > 0);
-	// Beside the cut tissue is dead: less than a sheet of 0.5 mm has under 4 mm of the way.
+	// The tissue beside the cut is dead: less than a sheet of 0.5 mm thickness has under 4 mm
+	// around the path.
 	double dead_m3 = cau_session_coagulated(session);
 	assert_true(dead_m3 > 1e-10 && dead_m3 < 5e-4 * 4e-3 * 0.04);
 	assert_ledger_closes(session);
 	cau_session_destroy(session);
 }
 
-// The rate at which water leaves adds up to the energy that it took along. None leaves at rest.
+// The sum of the rate of vapour agrees with the energy that it carried away. No vapour leaves at
+// rest.
 static void vapour_adds_up_to_what_has_boiled(void **state)
 {
 	(void)state;
@@ -183,8 +187,8 @@ static void threads_and_a_restore_change_no_bit(void **state)
 	cau_session_destroy(restored);
 }
 
-// Below 200 V nothing sparks: tissue coagulates, and parts nowhere. The temperature channel shows
-// it, and ambient far away.
+// Below 200 V there are no sparks: tissue coagulates, and does not part. The temperature channel
+// shows the heat, and ambient temperature far away.
 static void soft_coagulation_heats_and_parts_nothing(void **state)
 {
 	(void)state;
@@ -209,7 +213,7 @@ static void soft_coagulation_heats_and_parts_nothing(void **state)
 	cau_session_destroy(session);
 }
 
-// Coagulated tissue shrinks by its layer's S, and fresh tissue does not.
+// Coagulated tissue shrinks by its layer's S; fresh tissue does not.
 static void coagulated_tissue_shrinks(void **state)
 {
 	(void)state;
@@ -222,7 +226,7 @@ static void coagulated_tissue_shrinks(void **state)
 	go(session, 0, DWELL_TICKS);
 	stage_energize(session, "hook", 0);
 	stage_step(session,
-	           60 + 12); // each element is looked at within a second, and shrinks for 0.2 s
+	           60 + 12); // each element is visited within a second, and shrinks for 0.2 s
 	int32_t shrunk = 0;
 	for (int32_t t = 0; t < session->tissue.triangle_count; t++) {
 		double root[6], share = cau_dissection_coagulated(&session->dissection, 0, t);
@@ -237,7 +241,8 @@ static void coagulated_tissue_shrinks(void **state)
 	cau_session_destroy(session);
 }
 
-// Cells are those of the thickness that the sheet was made with, also where it has changed since.
+// Cells have the thickness with which the sheet was created, even if the thickness has changed
+// since.
 static void a_changed_thickness_is_restored(void **state)
 {
 	(void)state;
@@ -260,12 +265,13 @@ static void a_changed_thickness_is_restored(void **state)
 	cau_session_destroy(restored);
 }
 
-// An instrument with jaws around the sheet's edge, closed and energized for a second.
+// Returns a session in which an instrument's closed jaws hold the sheet's edge and were energized
+// for a second.
 static cau_session *clamped(int shape)
 {
 	cau_scene_def *scene = needle_over_sheet(10);
 	scene->tools[0].shape = shape;
-	scene->tools[0].grid_step_m = 2e-4; // jaws are thin
+	scene->tools[0].grid_step_m = 2e-4; // the jaws are thin
 	scene->tools[0].peak_v = 190;
 	scene->tools[0].pose = (cau_pose){.position_m = {0, 0, -2e-3}, .rotation = {1, 0, 0, 0}};
 	cau_session *session = stage_open(scene, 1);
@@ -275,7 +281,7 @@ static cau_session *clamped(int shape)
 	return session;
 }
 
-// Current goes from jaw to jaw, and none leaves through the body.
+// Current flows from jaw to jaw, and none leaves through the body.
 static void bipolar_jaws_heat_what_lies_between(void **state)
 {
 	(void)state;
@@ -289,7 +295,7 @@ static void bipolar_jaws_heat_what_lies_between(void **state)
 	cau_session_destroy(session);
 }
 
-// Friction warms the blade, and the blade the tissue: no current.
+// Friction warms the blade, and the blade warms the tissue. There is no current.
 static void a_rubbing_blade_heats_tissue(void **state)
 {
 	(void)state;
@@ -310,7 +316,7 @@ static int32_t living_links(const cau_session *session)
 	return count;
 }
 
-// Links of the middle row lean to vertices 3 mm beside it.
+// The links of the middle row lead to vertices 3 mm beside it.
 static const double half_way_m = -1.5e-3;
 
 static void draw_between_layers(cau_session *session, int first, int end)
@@ -321,15 +327,15 @@ static void draw_between_layers(cau_session *session, int first, int end)
 	}
 }
 
-// A ball that is drawn between fascia and fat: current goes through the links, and they part. Their
-// cells are state.
+// A ball is drawn between fascia and fat. Current flows through the links, and they part. The
+// links' cells are part of the state.
 static void power_parts_links(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = stage_layered();
 	scene->energy = CAU_ENERGY_TISSUE;
 	scene->parting = CAU_PARTING_ELEMENTS;
-	scene->cell_m = 5e-4; // elements of the fat are 6 mm large: they would take all cells
+	scene->cell_m = 5e-4; // elements of the fat are 6 mm large and would use up all cells
 	scene->tools[0].shape = CAU_TOOL_SPHERE;
 	scene->tools[0].hot_radius_m = scene->tools[0].grid_step_m = 4e-4;
 	scene->tools[0].power_w = 30;
@@ -355,8 +361,8 @@ static void power_parts_links(void **state)
 	free(scene);
 }
 
-// A ball that coagulates in one place for a minute. Its heat goes on to tissue 6 mm away from it,
-// to which no tool has come.
+// A ball coagulates at one point for a minute. Its heat spreads to tissue 6 mm away, where no tool
+// has been.
 static void heat_goes_on_beyond_the_tool(void **state)
 {
 	(void)state;
@@ -405,7 +411,7 @@ static void edges_cannot_part_by_power(void **state)
 	free(scene);
 }
 
-// The blade is that of its shape where the definition says nothing, to the bit.
+// If the definition has no numbers for the blade, the blade is that of its shape, to the bit.
 static void the_same_blade_by_numbers_changes_no_bit(void **state)
 {
 	(void)state;
@@ -422,7 +428,7 @@ static void the_same_blade_by_numbers_changes_no_bit(void **state)
 	double tip_c = stage_tool(silent, "hook")->tip_temperature_c;
 	assert_true(tip_c == stage_tool(said, "hook")->tip_temperature_c);
 	assert_true(cau_session_hash(silent) == cau_session_hash(said));
-	// The tissue is much warmer than either blade, so both take about the same heat.
+	// The tissue is much warmer than both blades, so both take up about the same heat.
 	double rise = tip_c - 37, heavy_rise = stage_tool(heavy, "hook")->tip_temperature_c - 37;
 	assert_true(rise > 0.1 && heavy_rise > rise / 20 && heavy_rise < rise / 5);
 	cau_session_destroy(silent);
@@ -431,7 +437,7 @@ static void the_same_blade_by_numbers_changes_no_bit(void **state)
 	free(scene);
 }
 
-// A setting that changes the blade leaves it as warm as it is.
+// A new setting of the blade keeps the blade's temperature.
 static void a_new_blade_is_as_warm(void **state)
 {
 	(void)state;
@@ -487,7 +493,8 @@ static cau_session *sealing(double rise)
 	return session;
 }
 
-// Steps until no power is given; returns how many ticks gave some, and the least and last load.
+// Steps until no power is given. Returns the number of ticks with power; gives the least and the
+// last load.
 static int seal(cau_session *session, double *least_ohm, double *last_ohm)
 {
 	int ticks = 0;
@@ -502,7 +509,7 @@ static int seal(cau_session *session, double *least_ohm, double *last_ohm)
 }
 
 // Advanced bipolar: the power ends when the load has risen, and stays off until energy goes off and
-// on again. What it waits for is state.
+// on again. This is part of the state.
 static void power_ends_when_the_load_has_risen(void **state)
 {
 	(void)state;
@@ -519,7 +526,8 @@ static void power_ends_when_the_load_has_risen(void **state)
 	assert_true(cau_session_hash(session) == cau_session_hash(other));
 	stage_step(session, 30);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);
-	stage_energize(session, "hook", 1); // it is on already
+	// Energy is on already, so this does not count as off and on.
+	stage_energize(session, "hook", 1);
 	stage_step(session, 1);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);
 	stage_energize(session, "hook", 0);

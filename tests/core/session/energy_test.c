@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy that a step makes out of nothing: none at rest, none in steps that have converged,
-// whoever does work on the tissue, and some where ten iterations leave a hanging sheet far from its
-// step's solution.
+// The energy gain of a step. It is 0 at rest, and in converged steps, for any kind of work on the
+// tissue. It is not 0 if ten iterations leave a hanging sheet far from its step's solution.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -12,7 +11,7 @@ enum { FEW = 10, CONVERGED = 1000 };
 static const double ROUNDING = 1e-9;
 
 typedef struct tally {
-	double most_j, gained_j, sum_j; // largest gain of a tick; all gains; gains less losses
+	double most_j, gained_j, sum_j; // largest gain of a tick; sum of all gains; gains less losses
 } tally;
 
 static void run(cau_session *session, int ticks, tally *t)
@@ -27,7 +26,7 @@ static void run(cau_session *session, int ticks, tally *t)
 	}
 }
 
-// Held at its floor.
+// A block of fat on a pinned floor.
 static cau_scene_def *make_block(void)
 {
 	const double size[3] = {0.04, 0.03, 0.02};
@@ -57,7 +56,7 @@ static void rest_reads_nothing(void **state)
 	}
 }
 
-// A sheet of 6 cm that lies level, pinned along an edge, is let go.
+// A level sheet of 6 cm, pinned along an edge, begins to fall.
 static double hang(int iterations)
 {
 	const double least[3] = {-1, 0.0299, -1}, most[3] = {1, 1, 1};
@@ -78,8 +77,8 @@ static double hang(int iterations)
 	return t.gained_j;
 }
 
-// It weighs 20 mN: falling by a centimetre brings 0.2 mJ. Its few iterations are enough, because
-// Newton's method settles the loose sheet in each of them.
+// The sheet weighs 20 mN, so a fall of a centimetre gives 0.2 mJ. Few iterations are enough,
+// because Newton's method solves the loose sheet in each of them.
 static void a_hanging_sheet_gains_nothing(void **state)
 {
 	(void)state;
@@ -88,9 +87,9 @@ static void a_hanging_sheet_gains_nothing(void **state)
 	assert_true(hang(CONVERGED) < ROUNDING * fall_j);
 }
 
-// ---- work: the block is drawn out slowly, and what it has then was brought in. Implicit Euler
-// takes the force at a step's end for the whole step, so that of W = n steps the first 1 / n is
-// loss, and no step gains.
+// ---- work: the block is stretched slowly. Its energy must equal the work done on it. Implicit
+// Euler applies the force at a step's end during the whole step. So of the work of n steps a share
+// of 1 / n is lost, and no step gains energy.
 enum { PULL_TICKS = 40 };
 static const double LOSS_MOST = 0.1; // twice 2 / PULL_TICKS
 
@@ -134,7 +133,7 @@ static void a_led_support_brings_in_what_is_held(void **state)
 	free(scene);
 }
 
-// By grasping jaws, and by forces.
+// Work by grasping jaws, and by forces.
 static void tools_and_forces_bring_in_what_is_held(void **state)
 {
 	(void)state;
@@ -160,7 +159,7 @@ static void tools_and_forces_bring_in_what_is_held(void **state)
 	}
 }
 
-// Restored, it goes on from what it was.
+// A restored session continues with the same energies.
 static void a_snapshot_changes_nothing(void **state)
 {
 	(void)state;
@@ -187,7 +186,7 @@ static void a_snapshot_changes_nothing(void **state)
 	free(scene);
 }
 
-// A layered body is cut and shrinks: the energy that heat puts in by shrinking is not gained.
+// A layered body is cut and shrinks. The energy that heat adds by shrinking is no gain.
 static void what_shrinks_does_not_count(void **state)
 {
 	(void)state;
@@ -195,7 +194,7 @@ static void what_shrinks_does_not_count(void **state)
 	scene->precision = CAU_PRECISION_DOUBLE;
 	scene->iterations = 300;
 	scene->tolerance = 1e-7;
-	scene->layers[0].sheet[0].heat.absorption_per_s = 20; // soon through
+	scene->layers[0].sheet[0].heat.absorption_per_s = 20; // the layer parts soon
 	scene->layers[0].sheet[0].shrink[0] = 0.1;
 	scene->layers[0].sheet[0].shrink[1] = 0.3;
 	scene->tools[0].temperature_c = 600;
@@ -211,7 +210,7 @@ static void what_shrinks_does_not_count(void **state)
 	print_message("%d elements removed: holds %.3g J, gained %.3g J, lost %.3g J\n", removed,
 	              balance.elastic_j, t.gained_j, t.gained_j - t.sum_j);
 	assert_true(removed > 10);
-	assert_true(t.gained_j < 1e-6 * balance.elastic_j); // what the tolerance of the steps leaves
+	assert_true(t.gained_j < 1e-6 * balance.elastic_j); // error left by the tolerance of the steps
 	cau_session_destroy(session);
 	free(scene);
 }

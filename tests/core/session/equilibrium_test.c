@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole sessions against finite elements: every case of tests/reference is
-// run to static equilibrium and compared with the committed solution on the same mesh. Of an
-// indentation that has vertices outside the ball alone: it is solved on with faces, too.
+// Whole sessions against finite elements. Every case of tests/reference runs to static equilibrium
+// and is compared with the stored solution on the same mesh. The stored solution of an indentation
+// keeps only vertices outside the ball. It is solved further here with contact of faces.
 #include "core/session/indent.h"
 
 #include <dirent.h>
@@ -10,12 +10,14 @@
 #include "reference/case.h"
 #include "session/session_internal.h"
 
-// Of the largest displacement, and of the largest force component of the case.
+// Share of the largest displacement, and of the largest force component of the case.
 static const double tolerance = 1e-3;
 
 enum { MOVING_TICKS = 40, SETTLING_TICKS = 80, ITERATIONS = 100 };
-static const double residual = 1e-7;         // relative, of each step: far below the tolerances
-static const double damping_per_s = 26;      // near critical for the cantilever, the softest case
+// Relative residual of each step, far below the tolerances.
+static const double residual = 1e-7;
+// Near critical damping for the cantilever, the softest case.
+static const double damping_per_s = 26;
 static const double longest_step = 1.0 / 30; // the least inertia that a scene may have
 
 static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
@@ -39,7 +41,7 @@ static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
 	return text;
 }
 
-// The box round some vertices: all supports of the cases are whole faces of a block.
+// Pins the box around some vertices. All supports of the cases are whole faces of a block.
 static void pin_face(cau_scene_def *scene, const cau_reference_case *reference, int32_t count,
                      const int32_t *vertex)
 {
@@ -81,7 +83,8 @@ static cau_scene_def *scene_of(const cau_reference_case *reference, const char *
 		cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0);
 		ball->hot_radius_m = reference->sphere_radius_m;
 		ball->friction = 0;
-		ball->force_max_n = 1000; // it yields by 4 um a newton: it is where it is asked to be
+		// The coupling yields by 4 um/N, so the ball is practically at its commanded pose.
+		ball->force_max_n = 1000;
 		ball->pose.position_m[2] = reference->sphere_radius_m + 1e-4; // just above the body
 	}
 	return scene;
@@ -114,7 +117,8 @@ static void run_to_rest(cau_session *session, const cau_reference_case *referenc
 	}
 }
 
-// Sum over some vertices of the elements' gradient, less the vertices' own weight: what holds them.
+// Returns the force that holds some vertices: the sum of the elements' gradient, less the vertices'
+// weight.
 static void hold_force(const cau_session *session, int32_t count, const int32_t *vertex,
                        double force[3])
 {
@@ -139,7 +143,7 @@ static double difference(const double a[3], const double b[3])
 	return cau_length(cau_sub(cau_vec3_of(a), cau_vec3_of(b)));
 }
 
-// Largest error of a displacement, relative to the largest displacement.
+// Returns the largest error of a displacement, relative to the largest displacement.
 static double displacement_error(const cau_session *session, const cau_reference_case *reference)
 {
 	cau_frame frame = stage_frame(session);
@@ -170,7 +174,7 @@ static double force_error(cau_session *session, const cau_reference_case *refere
 	return error / largest(reference->reaction_n, 3);
 }
 
-// ---- the ball on faces
+// ---- contact of the ball with faces
 
 static int32_t top_faces_of(const cau_reference_case *reference, int32_t *face)
 {
@@ -195,7 +199,8 @@ static void *room(size_t count, size_t bytes)
 	return made;
 }
 
-// Puts the solution with faces in the place of the one with vertices alone, from which it begins.
+// Replaces the solution for contact with vertices by that for contact with faces. The solver starts
+// from the former.
 static void let_faces_bear(cau_reference_case *reference)
 {
 	size_t n = (size_t)reference->vertex_count, faces = 4 * (size_t)reference->tetrahedron_count;
@@ -225,7 +230,7 @@ static void let_faces_bear(cau_reference_case *reference)
 	assert_true(cau_indented_solve(&body, &ball, position, &solved));
 	for (size_t i = 0; i < 3 * n; i++)
 		reference->displacement[i] = position[i] - reference->position[i];
-	for (int c = 0; c < 3; c++) { // it weighs nothing
+	for (int c = 0; c < 3; c++) { // the body has no weight
 		reference->contact_n[c] = -solved.force_n[c];
 		reference->reaction_n[c] = solved.force_n[c];
 	}

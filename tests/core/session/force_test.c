@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tool feels of tissue at rest, in numbers: against the solution of the same mesh by
-// Newton's method, over meshes, against Hertz with the correction for thin layers, and as it slides
-// over cells. A patch's cells are those along the diameter that it has by Hertz.
+// Forces of resting tissue on a tool, in numbers. They are compared with the solution of the same
+// mesh by Newton's method, with other meshes, with Hertz's law corrected for thin layers, and along
+// a motion over the cells. The cells of a patch are counted along the diameter of the contact by
+// Hertz.
 #include <stdio.h>
 
 #include "core/session/indent.h"
 
 static const double asked_of_solution = 0.01, asked_over_meshes = 0.1, asked_of_hertz = 0.1;
 static const double asked_at_four_cells = 0.03,
-					asked_at_two = 0.1; // from least to most, of the mean
+					asked_at_two = 0.1; // difference of largest and least force, over the mean
 
-// Off the mesh's lines, so that no vertex lies below the ball.
+// Presses a ball in beside the lines of the mesh, so that no vertex is below the ball.
 static double press(indent_stand *stand)
 {
 	const indent *of = &stand->of;
@@ -21,10 +22,10 @@ static void it_is_the_solution_of_the_same_mesh(void **state)
 {
 	(void)state;
 	static const indent presses[] = {
-		{1.5e-3, 2e-3, 2e-3, 6e-3, 16e-3, 20e-3, 0.4}, // on points of faces
+		{1.5e-3, 2e-3, 2e-3, 6e-3, 16e-3, 20e-3, 0.4}, // contact with points of faces
 		{3e-3, 1.5e-3, 2e-3, 6e-3, 16e-3, 20e-3, 0.4},
 		{6.5e-3, 1e-3, 2e-3, 6e-3, 16e-3, 20e-3, 0.4},
-		{6.5e-3, 4e-3, 2e-3, 6e-3, 16e-3, 20e-3, 0.4}, // a quarter of the slab's depth
+		{6.5e-3, 4e-3, 2e-3, 6e-3, 16e-3, 20e-3, 0.4}, // as deep as a quarter of the slab
 		{13e-3, 2e-3, 2e-3, 8e-3, 16e-3, 30e-3, 0.3},
 		{40e-3, 1e-3, 3.2e-3, 10e-3, 16e-3, 40e-3, 0.4},
 	};
@@ -39,7 +40,7 @@ static void it_is_the_solution_of_the_same_mesh(void **state)
 	}
 }
 
-// The solution is not where it was because it began there.
+// The solution does not depend on where the solver starts.
 static void the_solution_is_found_from_rest_too(void **state)
 {
 	(void)state;
@@ -52,7 +53,7 @@ static void the_solution_is_found_from_rest_too(void **state)
 	indent_close(stand);
 }
 
-// Balls that dent the slab by a sixteenth of its depth, in meshes of four cells a patch and more.
+// Presses a ball to a sixteenth of the slab's depth, in meshes of four and more cells in a patch.
 static void over_meshes(const indent *coarse, const double *cell_m, int count)
 {
 	double least = INFINITY, most = 0, hertz_n = 0, finest_n = 0;
@@ -94,7 +95,8 @@ static void nor_on_finer_meshes(void **state)
 	over_meshes(&wide, (double[]){3.2e-3, 1.6e-3, 1.3e-3}, 3);
 }
 
-// From least to most, of the mean, at eight places along a cell.
+// Returns the difference of largest and least force over their mean, at eight positions along a
+// cell.
 static double change(double cell_m)
 {
 	enum { PLACES = 8 };

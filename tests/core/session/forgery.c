@@ -35,7 +35,7 @@ static cau_scene_def *tiny_scene(int kind)
 	cau_default_gravity(scene->gravity_m_s2);
 	scene->parting = kind == FORGERY_BY_POWER ? CAU_PARTING_ELEMENTS : kind;
 	scene->energy = kind == FORGERY_BY_POWER ? CAU_ENERGY_TISSUE : CAU_ENERGY_PAPER;
-	scene->cell_m = 2e-3; // few cells: each forgery makes them
+	scene->cell_m = 2e-3; // large cells: each forged snapshot creates all of them
 	scene->contact_thickness_m = 2e-4;
 	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.02, 0.012, 5, 3);
 	stage_mesh_of(scene, fascia)->translate_m[2] = 0.002;
@@ -57,7 +57,7 @@ static cau_scene_def *tiny_scene(int kind)
 	return scene;
 }
 
-// Commands of every kind that wait, so that their bytes can be forged.
+// Queues waiting commands of every kind, so that their bytes can be forged.
 static void queue_commands(cau_session *session)
 {
 	for (int kind = 0; kind < CAU_COMMAND_COUNT; kind++) {
@@ -150,7 +150,8 @@ static void put_number(unsigned char *at, uint8_t choice)
 	}
 }
 
-// One change of nine bytes: how, with which number or byte, where, and from where.
+// Makes a change described by nine bytes: the kind of change, the number or byte, the position, and
+// the source position.
 static void change(unsigned char *bytes, size_t room, const uint8_t how[CHANGE_BYTES])
 {
 	enum { HEAD = 320 };
@@ -190,7 +191,7 @@ size_t forgery_make(forgery *f, const uint8_t *data, size_t count)
 	return shot->count;
 }
 
-// ---- what comes of them
+// ---- results
 
 static void end_with(const char *what, const char *detail)
 {

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sheets that hang free, by Newton's method: right to what is wanted, told honestly, without energy
-// out of nothing, and the same whatever the threads and wherever a snapshot was taken.
+// Sheets that hang free, solved by Newton's method. Their error is as wanted and is reported
+// honestly. They gain no energy. Their bits do not depend on threads or on snapshots.
 #include "core/session/stage.h"
 
 #include "core/rig/step_error.h"
 #include "session/session_internal.h"
 
 enum { MOST = 60, CONVERGED = 300, TICKS = CAU_TEST_SANITIZED ? 40 : 60, EVERY = 2 };
-static const double converged_residual = 1e-7; // relative, of the norm of H
-// Force that a converged step leaves, in double, relative to the sheet's weight.
+static const double converged_residual = 1e-7; // relative residual, in the norm of H
+// Force that a converged step leaves in double, as a share of the sheet's weight.
 static const double force_rounding = 1e-3, weight_n = 0.02;
-// Errors below a tenth of what is wanted are nobody's. In single precision the rounding of a stiff
-// sheet's stresses moves it by tens of micrometres in a step, and the converged one as well.
+// Errors below a tenth of the wanted accuracy do not matter. In single precision, the rounding of a
+// stiff sheet's stresses moves the sheet by tens of micrometres in a step, and the converged sheet
+// as well.
 static const double nothing[CAU_PRECISION_COUNT] = {
 	[CAU_PRECISION_SINGLE] = 0.01, [CAU_PRECISION_DOUBLE] = 1e-3};
-// Rounding of energies in double, relative to what falling by a centimetre brings.
+// Rounding of energies in double, relative to the energy of a fall by a centimetre.
 static const double energy_rounding = 1e-9, fall_j = 2e-4;
 
-// A sheet of 6 cm that lies level, pinned along an edge, is let go.
+// Returns a level sheet of 6 cm, pinned along an edge, which begins to fall.
 static cau_scene_def *make_hanging(int precision, double stiffness_pa, bool range)
 {
 	const double least[3] = {-1, 0.0299, -1}, most[3] = {1, 1, 1};
@@ -43,7 +44,7 @@ typedef struct hanging {
 	double worst, gained_j, residual_n;
 } hanging;
 
-// A step, and the same one converged: what the one is off the other, and what it says.
+// Makes a step and the same step converged, and notes the true and the reported error.
 static void sample(cau_session *session, cau_session *exact, hanging *of)
 {
 	stage_bytes shot = stage_snapshot(session);
@@ -68,7 +69,7 @@ static hanging run(const cau_scene_def *scene)
 	exact->solver.iterations = CONVERGED;
 	exact->solver.tolerance = converged_residual;
 	for (int k = 0; k < TICKS; k++) {
-		stage_gravity(session, 0, 0, -9.81); // stay awake
+		stage_gravity(session, 0, 0, -9.81); // keeps the tissue awake
 		if (k % EVERY == 0)
 			sample(session, exact, &of);
 		else
@@ -98,8 +99,8 @@ static void expect_right(const char *name, int precision, double stiffness_pa, b
 	free(scene);
 }
 
-// In single precision the stresses of 10 MPa are rounded by 2 % of the sheet's weight: 1 % is not
-// to be had there.
+// In single precision the stresses at 10 MPa are rounded by 2 % of the sheet's weight, so an error
+// of 1 % cannot be reached.
 static void a_hanging_sheet_is_right(void **state)
 {
 	(void)state;
@@ -110,9 +111,9 @@ static void a_hanging_sheet_is_right(void **state)
 	expect_right("range, double", CAU_PRECISION_DOUBLE, 1e6, true);
 }
 
-// ---- a flap of 40 mm, as wide as half of that, by the solver of every scene
+// ---- a flap, 40 mm long and 20 mm wide, by the solver of every scene
 
-// Ticks until its free edge has fallen by nine tenths of its length.
+// Returns the ticks until the free edge has fallen by nine tenths of the flap's length.
 static int ticks_to_fall(int iterations, double accuracy, double tolerance, double contact_m)
 {
 	enum { MOST_TICKS = 200 };
@@ -188,9 +189,10 @@ static void bits_depend_on_nothing_else(void **state)
 	}
 }
 
-// ---- what goes on beside it
+// ---- changes of the system during the fall
 
-// Pins that come and go make the system anew, and a hook that sinks into the sheet is met by A.
+// Pinning and unpinning builds the system again. A hook that sinks into the sheet is handled
+// with the matrix A.
 static void pins_and_tools_are_heeded(void **state)
 {
 	(void)state;

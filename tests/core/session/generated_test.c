@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes that are drawn at random: slabs, sheets, strands and stacks of all laws, pinned somewhere,
-// that fall, are pressed, grasped and let go, or cut through. Sampled steps are computed again from
-// the same state in up to 400 iterations, in the same precision. What is asserted holds for all of
-// them. Too many are wrong by more than 1 %, or gain energy (.github/KNOWN_BUGS.md): these are
-// counted and printed. The environment variables CAUTERY_SCENES (how many) and CAUTERY_SCENES_SEED
-// choose others.
+// Random scenes: slabs, sheets, strands and stacks of all laws, pinned somewhere, that fall, or are
+// pressed, grasped and released, or cut through. Sampled steps are computed again from the same
+// state with up to 400 iterations, in the same precision. The assertions hold for all of these
+// scenes. Too many scenes have errors above 1 %, or gain energy (.github/KNOWN_BUGS.md); these are
+// counted and printed. The environment variables CAUTERY_SCENES (number) and CAUTERY_SCENES_SEED
+// choose other scenes.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -15,14 +15,15 @@
 enum { SCENES = CAU_TEST_SANITIZED ? 2 : 16, FIRST_SEED = 1000 };
 enum { TICKS = 150, SAMPLE_EVERY = 10, SAMPLES = TICKS / SAMPLE_EVERY, CONVERGED = 400 };
 static const double converged_residual = 1e-8, wanted = 0.01;
-// A scene gains energy if its steps gain more than this in all, relative to the largest
+// A scene gains energy if the sum of its steps' gains exceeds this share of the largest
 // energy_scale_j of a step.
 static const double gain_most = 0.01;
-static const double steps_right = 0.95; // share of a scene's steps
-// Share of steps with a true error above three times the reported one. One step more is chance.
+static const double steps_right = 0.95; // share of a scene's steps that must be right
+// Largest share of steps with a true error above three times the reported error. One more such step
+// is counted as chance.
 static const double flattered_most = 0.01;
 
-// ---- numbers drawn at random
+// ---- random numbers
 static uint64_t drawn(uint64_t *seed)
 {
 	*seed += 0x9e3779b97f4a7c15u; // splitmix64
@@ -143,7 +144,7 @@ static void add_pins(uint64_t *seed, generated *of)
 	enum { ONE_END, BOTH_ENDS, CORNERS, BOTTOM, WAYS };
 	static const char *const names[] = {"one end", "both ends", "corners", "bottom"};
 	const double x = of->size_m[0] / 2 - 1e-6, y = of->size_m[1] / 2 - 1e-6;
-	bool flat = of->size_m[2] == 0; // a sheet's bottom is all of it
+	bool flat = of->size_m[2] == 0; // the bottom of a sheet is the whole sheet
 	int way = one_of(seed, flat ? BOTTOM : WAYS);
 	const double left[2][3] = {{-1, -1, -1}, {-x, 1, 1}}, right[2][3] = {{x, -1, -1}, {1, 1, 1}};
 	const double corner[4][2][3] = {{{-1, -1, -1}, {-x, -y, 1}},
@@ -192,11 +193,11 @@ static generated make(uint64_t seed)
 	return of;
 }
 
-// ---- its run
+// ---- the run of a scene
 static void fall(const generated *of, cau_session *session, int tick)
 {
 	(void)of;
-	if (tick == TICKS / 2) // and then sideways
+	if (tick == TICKS / 2) // then the scene falls sideways
 		stage_gravity(session, 5, 3, -7);
 }
 
@@ -258,7 +259,7 @@ static double volume(const cau_session *session, int32_t element)
 	return cau_dot(cau_cross(cau_sub(x[1], x[0]), cau_sub(x[2], x[0])), cau_sub(x[3], x[0]));
 }
 
-// Ticks in a row in which each tetrahedron was inside out, counted here.
+// Counts here, independently, how many ticks in a row each tetrahedron was inverted.
 static void count_inverted(const cau_session *session, int32_t *ticks)
 {
 	for (int32_t t = 0; t < session->tissue.primitives.tetrahedron_count; t++)
@@ -310,7 +311,7 @@ static verdict run(const generated *of)
 		found.long_inverted += last.long_inverted[i];
 	int32_t own = 0;
 	for (int32_t t = 0; t < session->tissue.primitives.tetrahedron_count; t++)
-		own += ticks[t] > 40; // longer than the half second after which it is reported
+		own += ticks[t] > 40; // longer than half a second, after which it is reported
 	found.unreported = own > found.long_inverted ? own - found.long_inverted : 0;
 	found.gain = range > 0 ? gained / range : 0;
 	qsort(error, (size_t)found.samples, sizeof *error, compare);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Jaws hold what is between them, be they smaller than a cell; say that they slip, or that they are
-// empty; and nothing jumps when they close.
+// Jaws hold the tissue between them, even if the jaws are smaller than an element. They report that
+// they slip or are empty. Nothing jumps when they close.
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// Jaws 2 mm wide and 4 mm long over cells of 10 mm, half way between vertices.
+// Jaws 2 mm wide and 4 mm long on cells of 10 mm, half way between vertices.
 static cau_scene_def *coarse_scene(double x, double y, double z)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
@@ -50,12 +50,13 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 	assert_in_range(held, 1, 4);
 	assert_true(session->tool[0].grasp[0].face >= 0);
 	assert_true(stage_tool(session, "jaws")->asked_jaw == 0);
-	assert_true(stage_tool(session, "jaws")->jaw < 0.3); // half a millimetre of sheet
+	// Half a millimetre of sheet is between the jaws.
+	assert_true(stage_tool(session, "jaws")->jaw < 0.3);
 	cau_vec3 start = center_of_holds(session);
 	for (int tick = 1; tick <= 40; tick++) {
 		stage_move(session, "jaws", 0.004, 0.003, -0.002 + fmin(speed_m * tick, way_m));
 		stage_step(session, 1);
-		if (tick == 20) { // holds on faces are in snapshots
+		if (tick == 20) { // holds on faces are part of snapshots
 			stage_bytes shot = stage_snapshot(session);
 			bool exact = false;
 			cau_error error = {0};
@@ -70,7 +71,8 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 			assert_true(cau_session_hash(other) == cau_session_hash(session));
 		}
 	}
-	// The tissue goes with the jaws, but for what the hold yields, and they feel it.
+	// The tissue moves with the jaws, except for the spring of the hold, and the jaws feel the
+	// tissue.
 	cau_vec3 way = cau_sub(center_of_holds(session), start);
 	assert_true(fabs(way.z - way_m) < near_m);
 	assert_true(stage_tool(session, "jaws")->force_n[2] < -0.05);
@@ -96,9 +98,9 @@ static void empty_jaws_close_whole_and_say_so(void **state)
 	free(scene);
 }
 
-// ---- jaws that stop at what lies between them
+// ---- jaws that stop at the tissue between them
 
-// A block on a pinned floor, 3 mm wide in x: jaws that are open reach around it.
+// A block on a pinned floor, 3 mm wide in x. Open jaws reach around it.
 static cau_scene_def *block_scene(int shape, double young_pa)
 {
 	const double size[3] = {0.003, 0.012, 0.012},
@@ -113,7 +115,7 @@ static cau_scene_def *block_scene(int shape, double young_pa)
 	stage_pin_box(scene, floor_m[0], floor_m[1]);
 	cau_tool_def *jaws = stage_add_tool(scene, "jaws", shape, 0, 0, -0.006);
 	if (shape == CAU_TOOL_SHEARS)
-		jaws->pose.position_m[0] = -0.0015 - jaws->hot_radius_m; // the blade beside it
+		jaws->pose.position_m[0] = -0.0015 - jaws->hot_radius_m; // the blade is beside the block
 	jaws->grasp_stiffness_n_m = 2000;
 	jaws->slip_force_n = 1000;
 	jaws->force_max_n = 1000;
@@ -121,8 +123,8 @@ static cau_scene_def *block_scene(int shape, double young_pa)
 }
 
 typedef struct closing {
-	double jaw, force_n, width_m; // at the end; of the block where it is held
-	double most_n;                // at any time
+	double jaw, force_n, width_m; // values at the end; width of the block at the jaws
+	double most_n;                // greatest force at any time
 } closing;
 
 static double width_held_m(const cau_session *session)
@@ -172,7 +174,7 @@ static closing close_on(int shape, double young_pa, double close_force_n)
 	return c;
 }
 
-// What is stiff stops them early, at the force that they have; what is soft late.
+// Stiff tissue stops the jaws early, at their greatest force. Soft tissue stops them late.
 static void jaws_stop_where_tissue_bears_what_they_press_with(void **state)
 {
 	(void)state;
@@ -184,7 +186,8 @@ static void jaws_stop_where_tissue_bears_what_they_press_with(void **state)
 	assert_true(firm.jaw > soft.jaw + 0.02 && weak.jaw > firm.jaw + 0.02);
 	assert_true(soft.width_m < firm.width_m && firm.width_m < weak.width_m);
 	assert_true(weak.width_m < wide_m);
-	// It fills the jaws near the hinge: they stop at its least thickness, pressing with less.
+	// Soft tissue fills the jaws near the hinge. The jaws stop at its least thickness, and press
+	// with less force.
 	assert_true(fabs(soft.jaw - least_share) < 0.01 && soft.force_n < 1);
 }
 
@@ -203,7 +206,7 @@ static void held_jaws_rest_and_open_again(void **state)
 	cau_scene_def *scene = block_scene(CAU_TOOL_GRASPER, 1e5);
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 4);
 	stage_grasp(session, "jaws");
-	stage_step(session, 6); // on their way
+	stage_step(session, 6); // the jaws are still closing
 	stage_bytes shot = stage_snapshot(session);
 	bool exact = false;
 	cau_error error = {0};
@@ -224,7 +227,7 @@ static void held_jaws_rest_and_open_again(void **state)
 	stage_step(session, 20);
 	assert_true(stage_tool(session, "jaws")->jaw == 1);
 	assert_true(stage_tool(session, "jaws")->jaw_force_n == 0);
-	cau_frame frame = stage_frame(session); // and what they held is where it was
+	cau_frame frame = stage_frame(session); // the released tissue is where it was before
 	cau_session_info info = stage_info(session);
 	assert_true(stage_farthest(&frame, info.rest_position, info.vertex_count) < 2e-3);
 	cau_session_destroy(session);
@@ -253,12 +256,12 @@ static void what_is_pulled_too_hard_slips_and_is_lost(void **state)
 	free(scene);
 }
 
-// A face that tears or burns takes its holds along.
+// If a face tears or burns, its holds end.
 static void a_hold_goes_with_its_face(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = coarse_scene(0.004, 0.003, -0.002);
-	scene->layers[0].sheet[0].heat.tear_energy_j_m2 = 1; // hardly anything
+	scene->layers[0].sheet[0].heat.tear_energy_j_m2 = 1; // so small that the sheet tears at once
 	scene->tools[0].slip_force_n = 1000;
 	cau_session *session = stage_open(scene, 1);
 	stage_grasp(session, "jaws");
@@ -274,12 +277,12 @@ static void a_hold_goes_with_its_face(void **state)
 	free(scene);
 }
 
-// ---- another definition of a tool that holds
+// ---- another definition of a tool that holds tissue
 typedef struct change {
 	const char *field;
 	size_t offset;
 	double value;
-	bool form; // a size or the grid: the jaws open
+	bool form; // the change is in a size or in the grid, so the jaws open
 } change;
 
 #define OF(field, value, form)                                                                     \
@@ -316,7 +319,7 @@ static void assert_change(const change *changed)
 	free(scene);
 }
 
-// Forceps coagulate tissue between their jaws. Another power must not open them.
+// Forceps coagulate tissue between their jaws. A change of power must not open the jaws.
 static void a_setting_keeps_what_jaws_hold(void **state)
 {
 	(void)state;
@@ -336,7 +339,8 @@ static void a_setting_keeps_what_jaws_hold(void **state)
 		OF(load_rise_off, 3, false),
 	};
 #define ONE(...) +1
-	assert_int_equal(sizeof changes / sizeof changes[0], CAU_TOOL_TABLE(ONE)); // each of them
+	// Every member of the table is tested.
+	assert_int_equal(sizeof changes / sizeof changes[0], CAU_TOOL_TABLE(ONE));
 #undef ONE
 	for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++)
 		assert_change(&changes[i]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pulls far beyond what a hand does, on a slab of every model under a membrane of every limit: the
-// state stays one that a tissue can have, or the session is faulted, with the tick and the layer,
-// and can be restored. Whether a law has an energy makes no difference to that.
+// Pulls far beyond those of a hand, on a slab of every model under a membrane of every limit.
+// Either the state stays possible for tissue, or the session is faulted, with the tick and the
+// layer, and can be restored. It makes no difference whether a law has an energy.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -12,8 +12,8 @@
 static const double SIZE_M[3] = {0.06, 0.04, 0.02};
 static const int32_t CELLS[3] = {9, 6, 3};
 static const double FORCE_N = 80, LEAP_M = 0.025;
-// What stays was drawn out by no more: twice the size of the slab, and half as much again for what
-// a step may add before it is looked at.
+// Greatest distance in a state without a fault: twice the size of the slab, and half of that again
+// for the motion of a step before it is checked.
 static const double FARTHEST_M = 3 * 0.0748;
 enum { TICKS = 20, LIMITS = 4 };
 
@@ -107,7 +107,7 @@ static void lead_patch(cau_session *session)
 typedef struct pull {
 	const char *name;
 	void (*begin)(cau_session *session);
-	int beyond_tissue; // 80 N on a vertex of fat of 5 kPa tears it
+	int beyond_tissue; // the pull, 80 N on a vertex, tears fat of 5 kPa
 } pull;
 enum { PULLS = 4 };
 static const pull pulls[PULLS] = {{"patch", push_patch, 1},
@@ -115,7 +115,7 @@ static const pull pulls[PULLS] = {{"patch", push_patch, 1},
                                   {"gentle corner", pull_corner_gently, 0},
                                   {"leap", lead_patch, 0}};
 
-// ---- what comes of it
+// ---- results
 static void describe(int model, int fat_limit, int membrane_limit, const pull *how, char *text,
                      size_t bytes)
 {
@@ -134,8 +134,8 @@ static void assert_possible(const cau_session *session, const char *what)
 		fail_msg("%s: %g m away, %d inverted", what, far, frame.statistics.inverted);
 }
 
-// The refusal names the tick and the layer; what is shown is the state before; a snapshot brings
-// the session back.
+// The refusal names the tick and the layer. The frame shows the state before. A snapshot restores
+// the session.
 static void assert_faulted(cau_session *session, const stage_bytes *shot, const cau_error *refusal,
                            const char *what)
 {
@@ -153,7 +153,7 @@ static void assert_faulted(cau_session *session, const stage_bytes *shot, const 
 	stage_step(session, 1);
 }
 
-// Returns whether the session was faulted.
+// Pulls the tissue. Returns whether the session was faulted.
 static int try_pull(int model, int fat_limit, int membrane_limit, const pull *how)
 {
 	char what[128];
@@ -177,7 +177,7 @@ static int try_pull(int model, int fat_limit, int membrane_limit, const pull *ho
 	return status != CAU_OK;
 }
 
-// Tissue bears what a hand does, whatever its laws; what it could not bear is a fault.
+// Tissue holds the pulls of a hand, whatever its laws. A pull that it could not hold is a fault.
 static void no_pull_ends_in_a_silent_disaster(void **state)
 {
 	(void)state;
@@ -217,7 +217,8 @@ static void expect_fault(int model, int fat_limit, int membrane_limit, double ve
 	free(scene);
 }
 
-// A vertex that flies faster than sound, and one that is nowhere, whatever the law and the limits.
+// A vertex faster than sound, and a vertex whose position is not a number, are faults, whatever the
+// law and the limits.
 static void what_no_vertex_does_is_a_fault(void **state)
 {
 	(void)state;
@@ -242,8 +243,8 @@ static int32_t nearest_vertex(const cau_session *session, double x, double y, do
 	return nearest;
 }
 
-// A vertex is nowhere while a tool touches or holds others: what the tool feels of it is no number
-// either, and the step is a fault all the same.
+// A vertex has no position while a tool touches or holds other vertices. Then the tool's force is
+// not a number either, and the step is a fault too.
 static void nowhere_beside_a_tool_is_a_fault(void **state)
 {
 	(void)state;

@@ -9,16 +9,17 @@
 const double indent_young_modulus_pa = 5000;
 
 enum { MOST_LINES = 400, ITERATIONS = 100 };
-static const double growth = 1.35;      // of a cell outside the even part, of its inner neighbour
-static const double accuracy = 1e-4;    // of each step
-static const double damping_per_s = 26; // comes to rest within a second
-static const double above_m = 2e-4;     // where the ball waits
+// Ratio of a cell outside the even part to its inner neighbour.
+static const double growth = 1.35;
+static const double accuracy = 1e-4;    // accuracy of each step
+static const double damping_per_s = 26; // tissue comes to rest within a second
+static const double above_m = 2e-4;     // height at which the ball waits
 static const double speed_m_s = 0.05;
 enum { SETTLING_TICKS = 60 };
 
 double indent_dip_m(double radius_m)
 {
-	return fmin(8e-5, 0.03 * radius_m); // core/DECISIONS.md
+	return fmin(8e-5, 0.03 * radius_m); // core's limits, see core/DECISIONS.md
 }
 
 double indent_cells(const indent *of)
@@ -28,7 +29,7 @@ double indent_cells(const indent *of)
 
 // ---- the mesh
 
-// Lines from 0 to `end_m`; returns how many.
+// Sets the grid lines from 0 to `end_m`. Returns their number.
 static int32_t lines_of(const indent *of, double even_m, double end_m, double *line)
 {
 	int32_t even = (int32_t)ceil(fmin(even_m, end_m) / of->cell_m - 1e-9), count = 1;
@@ -49,7 +50,7 @@ static int32_t lines_of(const indent *of, double even_m, double end_m, double *l
 
 typedef struct grid {
 	double across[2 * MOST_LINES], down[MOST_LINES];
-	int32_t wide, deep; // lines
+	int32_t wide, deep; // numbers of lines
 } grid;
 
 static void make_grid(const indent *of, grid *g)
@@ -67,7 +68,7 @@ static int32_t vertex_of(const grid *g, int32_t i, int32_t j, int32_t k)
 	return (i * g->wide + j) * g->deep + k;
 }
 
-// Kuhn's six tetrahedra of a cell, each a way along the three axes in some order.
+// Adds Kuhn's six tetrahedra of a cell. Each follows the three axes in one of their orders.
 static void add_cell(const grid *g, int32_t i, int32_t j, int32_t k, int32_t *tetrahedron)
 {
 	static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
@@ -79,14 +80,14 @@ static void add_cell(const grid *g, int32_t i, int32_t j, int32_t k, int32_t *te
 			at[order[o][step]]++;
 			v[step + 1] = vertex_of(g, at[0], at[1], at[2]);
 		}
-		bool turned = o == 0 || o == 3 || o == 4; // z goes down as k goes up
+		bool turned = o == 0 || o == 3 || o == 4; // because z decreases as k increases
 		int32_t last = v[3];
 		v[3] = turned ? v[2] : last;
 		v[2] = turned ? last : v[2];
 	}
 }
 
-// The top, split as its tetrahedra are.
+// Adds the faces of a cell's top, split as its tetrahedra are.
 static void add_faces(const grid *g, int32_t i, int32_t j, int32_t *face)
 {
 	int32_t a = vertex_of(g, i, j, 0), b = vertex_of(g, i + 1, j, 0);
@@ -183,7 +184,7 @@ static void make_scene(indent_stand *stand, size_t bytes)
 	ball->shaft_radius_m = fmin(of->radius_m, 2.5e-3);
 	ball->max_speed_m_s = speed_m_s;
 	ball->friction = 0;
-	ball->force_max_n = 1000; // it yields by 4 um a newton
+	ball->force_max_n = 1000; // the coupling yields by 4 um/N
 	ball->pose.position_m[2] = of->radius_m + above_m;
 }
 

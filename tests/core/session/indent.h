@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A ball pressed into a slab that is bonded to its floor, without friction: sessions at rest, and
-// the same mesh for the reference's own solution (tests/reference/indented.h). The slab is a grid
-// of equal cells about the ball, of which cells grow outwards and downwards, so that fine ones can
-// be had where they matter.
+// A ball pressed without friction into a slab that is bonded to its floor. Sessions come to rest,
+// and the reference computes its own solution on the same mesh (tests/reference/indented.h). The
+// slab is a grid with equal cells around the ball, from which cells grow outward and downward. So
+// cells can be fine where the ball presses.
 #pragma once
 
 #include "core/session/stage.h"
@@ -10,14 +10,15 @@
 
 typedef struct indent {
 	double radius_m, depth_m;
-	double cell_m, even_m;  // equal cells as far as this from the middle, and as deep
-	double thick_m, half_m; // the slab's, and its half width
+	// Size of equal cells; distance from the middle, and depth, up to which cells are equal.
+	double cell_m, even_m;
+	double thick_m, half_m; // thickness of the slab; half its width
 	double poisson_ratio;
 } indent;
 
 typedef struct indent_stand {
 	indent of;
-	char *text; // the mesh, for the scene
+	char *text; // the mesh as text, for the scene
 	double *rest;
 	int32_t *tetrahedron, *face;
 	bool *fixed;
@@ -28,23 +29,24 @@ typedef struct indent_stand {
 
 extern const double indent_young_modulus_pa;
 
-// How deep (m) core lets faces stand in a ball at rest.
+// Returns how deep, m, the core lets a face be inside a ball at rest.
 double indent_dip_m(double radius_m);
 
-// How many cells the patch spans that a ball of this size and depth has by Hertz.
+// Returns the number of cells across the contact patch that a ball of this size and depth has by
+// Hertz.
 double indent_cells(const indent *of);
 
 indent_stand *indent_open(const indent *of);
 void indent_close(indent_stand *stand);
 
-// Leads the ball to a place (m) and the depth, and steps until all is at rest. Returns the force
-// (N) that pushes it up.
+// Moves the ball to a position (m) and the depth, and steps until everything is at rest. Returns
+// the force (N) that pushes the ball up.
 double indent_press(indent_stand *stand, double x_m, double y_m, double depth_m);
 
-// The reference's solution with the ball where it is now, from the session's state on or from rest,
-// by a ball that comes down in stages. Vertices stay outside, and no point of a face is deeper than
-// core lets it stand. Fails the test if there is none.
+// Returns the reference's solution for the ball's present position. It starts from the session's
+// state, or from rest with a ball that comes down in stages. Vertices stay outside the ball, and no
+// point of a face is deeper than the core permits. Fails the test if there is no solution.
 cau_indented indent_solve(const indent_stand *stand, bool from_rest);
 
-// How much deeper than the ball's surface the deepest point of a face is, m.
+// Returns how deep the deepest point of a face is inside the ball, m.
 double indent_face_depth_m(const indent_stand *stand);

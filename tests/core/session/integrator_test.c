@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion in time: the amplitude that a swing keeps a period, by integrator and viscosity, and
-// that ticks with two substeps keep what other ticks do: momentum, bits, and tissue that does not
-// rebound from tools.
+// Motion in time. First: the share of its amplitude that an oscillation keeps in a period, by
+// integrator and viscosity. Second: ticks with two substeps conserve momentum and bits as other
+// ticks do, and tissue does not rebound from tools.
 #include <stdio.h>
 
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-enum { TURNS = 9 }; // four periods
+enum { TURNS = 9 }; // turning points of four periods
 
-// ---- a cantilever that swings at 5 Hz
+// ---- a cantilever that oscillates at 5 Hz
 
 static const double beam_m[3] = {0.06, 0.02, 0.01};
 static const int32_t beam_cells[3] = {12, 4, 2};
 static const double beam_hz = 5.01;
-static const double swing_m = 5e-4; // one 120th of its length: linear
+static const double swing_m = 5e-4; // one 120th of its length, so the motion is linear
 
 static cau_scene_def *beam(int integrator, double rate_hz)
 {
@@ -24,14 +24,14 @@ static cau_scene_def *beam(int integrator, double rate_hz)
 	layer->fat[0].poisson_ratio = 0.3;
 	scene->integrator = integrator;
 	scene->step_s = 1 / rate_hz;
-	scene->tolerance = 1e-7; // converged
+	scene->tolerance = 1e-7; // steps are converged
 	scene->iterations = 400;
 	stage_pin_box(scene, (double[3]){-1, -1, -1}, (double[3]){-0.0299, 1, 1});
 	return scene;
 }
 
-// Displacements (m, n x 3) of its slowest mode. Implicit Euler leaves next to nothing of the others
-// after half a second.
+// Returns the displacements (m, n x 3) of the slowest mode. After half a second implicit Euler has
+// damped the other modes almost completely.
 static double *slowest_mode(void)
 {
 	cau_scene_def *scene = beam(CAU_INTEGRATOR_EULER, 60);
@@ -56,7 +56,7 @@ static double *slowest_mode(void)
 	return shape;
 }
 
-// How much of the shape the displacements have, by masses.
+// Returns the amount of the shape in the displacements, weighted by mass.
 static double amount_of(const cau_session *session, const double *shape)
 {
 	double sum = 0, of = 0;
@@ -69,10 +69,10 @@ static double amount_of(const cau_session *session, const double *shape)
 }
 
 typedef struct swing {
-	double hz, kept; // of an amplitude, a period
+	double hz, kept; // share of the amplitude that is kept in a period
 } swing;
 
-// Lets it go in the shape, and reads its turns from parabolas through three ticks.
+// Releases the beam in the shape, and finds the turning points with parabolas through three ticks.
 static swing watch(const cau_scene_def *scene, const double *shape)
 {
 	cau_session *session = stage_open(scene, 1);
@@ -106,7 +106,7 @@ static swing watch(const cau_scene_def *scene, const double *shape)
 	return out;
 }
 
-// |R(i w dt)| of Alexander's method to the power of a period's ticks.
+// Returns |R(i w dt)| of Alexander's method to the power of the ticks in a period.
 static double kept_by_theory(double hz, double step_s)
 {
 	double gamma = CAU_SDIRK2_GAMMA, y = 2 * acos(-1.0) * hz * step_s;
@@ -114,8 +114,8 @@ static double kept_by_theory(double hz, double step_s)
 	return pow(sqrt(above) / below, 1 / (hz * step_s));
 }
 
-// 0.95 a period is what the integrator is for. Theory says 0.9968 at 60 steps/s: a quadratic law
-// and the parabola through the turns leave 0.002 of that open.
+// The integrator must keep at least 0.95 in a period. Theory gives 0.9968 at 60 steps/s. The
+// quadratic law and the parabola at the turning points cause a difference of up to 0.002.
 static void an_undamped_swing_is_kept(void **state)
 {
 	double *shape = *state;
@@ -129,8 +129,8 @@ static void an_undamped_swing_is_kept(void **state)
 	}
 }
 
-// Steps that end at the default accuracy of 1 %, in single precision. With ten iterations a
-// substep, which do not reach that here, it keeps 0.954.
+// Steps that end at the default accuracy of 1 %, in single precision. With only ten iterations in a
+// substep the steps do not reach 1 % here, and the beam keeps 0.954.
 static void it_is_kept_at_the_default_accuracy(void **state)
 {
 	cau_scene_def *scene = beam(CAU_INTEGRATOR_SDIRK2, 60);
@@ -152,17 +152,18 @@ static void implicit_euler_is_as_it_was(void **state)
 
 // ---- viscosity
 
-static const double damping_ratio = 0.05; // at 5 Hz: 0.73 of an amplitude is left after a period
+static const double damping_ratio = 0.05; // at 5 Hz; 0.73 of the amplitude is left after a period
 
 static double kept_by_kelvin_and_voigt(double hz, double viscosity_s)
 {
-	double pi = acos(-1.0), ratio = pi * hz * viscosity_s; // t w / 2
+	// Half of viscosity times angular frequency.
+	double pi = acos(-1.0), ratio = pi * hz * viscosity_s;
 	return exp(-2 * pi * ratio / sqrt(1 - ratio * ratio));
 }
 
-// The amplitude that a viscous swing keeps at 60 and 240 steps/s differs by less than 5 %, and is
-// what the closed form says. Bounds, set before the first run: 2 % of the closed form at 60
-// steps/s, where the integrator itself takes 0.4 %, and 1 % at 240.
+// The amplitude that a viscous oscillation keeps at 60 and at 240 steps/s differs by less than 5 %,
+// and agrees with the closed form. The bounds were set before the first run: 2 % of the closed form
+// at 60 steps/s, where the integrator itself takes 0.4 %, and 1 % at 240.
 static void check_viscous_swing(cau_scene_def *scene, const double *shape, double hz)
 {
 	double kept[2], viscosity_s = scene->layers[0].viscosity_s = damping_ratio / (acos(-1.0) * hz);
@@ -187,7 +188,7 @@ static void damping_is_the_tissues(void **state)
 	}
 }
 
-// A strip of a sheet that stretches and contracts along itself: w = pi/2 sqrt(k/density) / length.
+// A strip of a sheet that oscillates along its length: w = pi/2 sqrt(k/density) / length.
 static void a_sheets_damping_is_its_own_too(void **state)
 {
 	(void)state;
@@ -211,7 +212,7 @@ static void a_sheets_damping_is_its_own_too(void **state)
 	free(scene);
 }
 
-// Implicit Euler has viscosity too, beside its own damping.
+// With implicit Euler, viscosity acts in addition to the integrator's own damping.
 static void viscosity_damps_with_implicit_euler(void **state)
 {
 	cau_scene_def *scene = beam(CAU_INTEGRATOR_EULER, 240);
@@ -280,7 +281,8 @@ static cau_vec3 angular_momentum(const cau_session *session)
 	return sum;
 }
 
-// Turns a block at `rad_s` for a second; the energy that it ends with, relative to its first.
+// Rotates a block at `rad_s` for a second. Returns its energy at the end, relative to that at the
+// start.
 static double spin(const cau_scene_def *scene, double rad_s)
 {
 	cau_session *session = stage_open(scene, 1);
@@ -309,14 +311,14 @@ static void a_block_keeps_its_angular_momentum(void **state)
 	stage_add_slab(scene, "cake", (double[3]){0.04, 0.04, 0.02}, (int32_t[3]){6, 6, 3});
 	scene->integrator = CAU_INTEGRATOR_SDIRK2;
 	assert_true(fabs(spin(scene, 10) - 1) <= 0.01);
-	scene->layers[0].viscosity_s = 0.05; // turning does not stretch
+	scene->layers[0].viscosity_s = 0.05; // rotation is no stretch
 	assert_true(fabs(spin(scene, 10) - 1) <= 0.01);
 	free(scene);
 }
 
 // ---- tools
 
-// A block flies against a ball at 1 m/s, 16 mm a tick. Its energy may not grow.
+// A block hits a ball at 1 m/s, 16 mm a tick. Its energy may not increase.
 static void what_hits_a_tool_gains_nothing(void **state)
 {
 	(void)state;
@@ -348,7 +350,8 @@ static void press(cau_session *session, int tick)
 	stage_step(session, 1);
 }
 
-// A tool presses, cuts and slides: the same bits over threads, and from a snapshot of any tick.
+// A tool presses, cuts and slides. The bits are the same on any number of threads, and from a
+// snapshot of any tick.
 static void bits_do_not_depend_on_threads_or_snapshots(void **state)
 {
 	(void)state;

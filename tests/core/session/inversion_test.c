@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tetrahedra that stay inside out are counted by layer, after half a second and no sooner, until
-// they are right again; and a gain of energy has its scale.
+// Tetrahedra that stay inverted are counted by layer, after half a second and not earlier, until
+// they recover. A gain of energy has its scale.
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
 enum { LONG_TICKS = 30 };
 
-// A force in the middle of a slab that StVK's law does not bear; a second layer
-// at the same place stays as it is.
+// A scene with a force in the middle of a slab that StVK's law cannot resist. A second layer at the
+// same place keeps its shape.
 static cau_scene_def *squashed_scene(int precision)
 {
 	const double size[3] = {0.04, 0.04, 0.01}, floor_m[2][3] = {{-1, -1, -0.0101}, {1, 1, -0.0099}};
@@ -61,7 +61,7 @@ static void what_stays_is_counted_by_layer(void **state)
 	free(scene);
 }
 
-// Turned over by hand: a corner of the firm slab is held on the other side of its tetrahedra.
+// Inverts tetrahedra by hand: a corner of the firm slab is held on their other side.
 static void what_comes_right_is_counted_no_more(void **state)
 {
 	(void)state;
@@ -72,7 +72,7 @@ static void what_comes_right_is_counted_no_more(void **state)
 	double kept[3], *at = session->position + 3 * (size_t)corner;
 	stage_step(session, 1);
 	memcpy(kept, at, sizeof kept);
-	for (int c = 0; c < 3; c++) // through the middle of the slab
+	for (int c = 0; c < 3; c++) // reflects the corner at the middle of the slab
 		at[c] = 2 * (c == 2 ? -0.005 : 0) - at[c];
 	for (int tick = 1; tick <= LONG_TICKS + 5; tick++) {
 		inversion->count = 1;
@@ -90,7 +90,7 @@ static void what_comes_right_is_counted_no_more(void **state)
 	free(scene);
 }
 
-// A slab that falls: the energy of a step is that of its motion and the work of gravity.
+// A falling slab: the energy scale of a step is its kinetic energy and the work of gravity.
 static void a_gain_has_its_scale(void **state)
 {
 	(void)state;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands that state a level are idempotent: stated again, with a fresh sequence, at whatever
-// tick, they change no bit of the tissue.
+// Commands that state a level are idempotent. A repetition with a new sequence number, at any tick,
+// changes no bit of the tissue.
 #include "core/session/stage.h"
 
 enum { TICKS = 16, MOST = 2 };
 
-// Which kinds state a level. The others make or take away something, once.
+// The kinds of commands that state a level. The other kinds create or remove something, once.
 static const bool levels[CAU_COMMAND_COUNT] = {
 	[CAU_COMMAND_TOOL_CONFIGURE] = true, [CAU_COMMAND_TOOL_MOVE] = true,
 	[CAU_COMMAND_TOOL_ENERGIZE] = true,  [CAU_COMMAND_TOOL_GRASP] = true,
@@ -17,10 +17,10 @@ static const bool levels[CAU_COMMAND_COUNT] = {
 static const bool once[CAU_COMMAND_COUNT] = {
 	[CAU_COMMAND_TOOL_ADD] = true,
 	[CAU_COMMAND_TOOL_REMOVE] = true,
-	[CAU_COMMAND_TOOL_HOLD] = true, // where it is now, which may be elsewhere than before
+	[CAU_COMMAND_TOOL_HOLD] = true, // holds the present pose, which may differ from the earlier one
 };
 
-// A slab between the jaws of `jaws`, whose case found 7, 3 and 0 points held.
+// A slab between the jaws of `jaws`. In this case repeated grasps once held 7, 3 and 0 points.
 static cau_scene_def *between_jaws(void)
 {
 	const double size[3] = {0.04, 0.04, 0.016};
@@ -41,7 +41,7 @@ static cau_command about(int kind)
 	return command;
 }
 
-// A command of this kind that changes something; `variant` 0 or 1.
+// Returns a command of this kind that changes something; `variant` is 0 or 1.
 static cau_command level_of(int kind, int variant)
 {
 	const double least[3] = {0.008, -1, -1}, most[3] = {1, 1, 1};
@@ -80,7 +80,7 @@ static cau_command level_of(int kind, int variant)
 	return command;
 }
 
-// The state that the level is stated in: as it begins, held by the jaws, or on.
+// The state in which the level is stated: as at the start, held by the jaws, or with energy on.
 typedef enum before { AT_FIRST, HELD, ON, BEFORE_COUNT } before;
 
 static cau_session *open_at(const cau_scene_def *scene, before what)
@@ -97,8 +97,8 @@ static cau_session *open_at(const cau_scene_def *scene, before what)
 	return session;
 }
 
-// Hashes after each of TICKS ticks; the level is stated at the first, and again at the tick `again`
-// (-1: not), or at every one (-2).
+// Returns the hashes after each of TICKS ticks. The level is stated at the first tick, and again at
+// the tick `again` (-1: never; -2: at every tick).
 static void run(const cau_scene_def *scene, before what, cau_command level, int again,
                 uint64_t hashes[TICKS])
 {
@@ -122,7 +122,7 @@ static void stated_again_a_level_changes_nothing(void **state)
 	(void)state;
 	cau_scene_def *scene = between_jaws();
 	for (int kind = 0; kind < CAU_COMMAND_COUNT; kind++) {
-		assert_true(levels[kind] != once[kind]); // each kind is one of the two
+		assert_true(levels[kind] != once[kind]); // each kind is in one of the two lists
 		for (int variant = 0; variant < MOST && levels[kind]; variant++)
 			for (int what = 0; what < BEFORE_COUNT; what++) {
 				static const int agains[] = {0, 5, -2};
@@ -141,7 +141,7 @@ static void stated_again_a_level_changes_nothing(void **state)
 	free(scene);
 }
 
-// Rest is a state of the tissue: what changes nothing does not end it.
+// Rest is a state of the tissue. A command that changes nothing does not end it.
 static void a_level_does_not_wake_tissue_that_rests(void **state)
 {
 	(void)state;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene that is made around a mesh alone: the tissue stands for 60 s, is held by the grasper, and
-// is cut by the ball. A block, a hollow box and organs made here, and the files of CAUTERY_MESHES
-// where there are any. With --long 30 organs.
+// A scene that is made from a mesh alone: the tissue stays in place for 60 s, the grasper holds it,
+// and the ball cuts it. Tested with a block, a hollow box and organs made here, and with the files
+// of CAUTERY_MESHES, if there are any. With --long: 30 organs.
 #include "core/session/stage.h"
 
 #include <dirent.h>
@@ -11,9 +11,9 @@
 #include "cautery/solid.h"
 
 static const double stand_s = 60;
-static const double drift_most = 0.02; // of the size, that standing tissue may move
+static const double drift_most = 0.02; // largest motion of tissue at rest, as a share of its size
 
-// A block of 4 x 4 x 4 hexahedra, 60 mm wide, or its surface as quadrangles.
+// Writes a block of 4 x 4 x 4 hexahedra, 60 mm wide, or its surface as quadrangles.
 static size_t write_block(bool solid, char *text, size_t bytes)
 {
 	enum { N = 5 };
@@ -49,7 +49,7 @@ static void assert_finite(const cau_frame *frame, int32_t vertex_count)
 		assert_true(isfinite(frame->position[i]));
 }
 
-// Nothing moves far, and nothing ends the session.
+// Runs the session. Nothing may move far, and nothing may end the session.
 static void stand(cau_session *session, const cau_session_info *info, double size_m)
 {
 	stage_step(session, (int)(stand_s / info->step_s));
@@ -59,7 +59,7 @@ static void stand(cau_session *session, const cau_session_info *info, double siz
 		assert_true(fabs(frame.position[i] - info->rest_position[i]) < drift_most * size_m);
 }
 
-// The ball goes through the upper half, from side to side.
+// Moves the ball through the upper half, from side to side.
 static int32_t cut(cau_session *session, const cau_session_info *info, const cau_mesh_report *r)
 {
 	double radius_m = stage_tool(session, "ball")->definition.hot_radius_m;
@@ -79,7 +79,7 @@ static int32_t cut(cau_session *session, const cau_session_info *info, const cau
 	return frame.statistics.elements_removed + frame.statistics.edges_parted;
 }
 
-// The jaws close around the highest vertex, deeper and deeper until they hold something.
+// Closes the jaws around the highest vertex, deeper each time, until they hold something.
 static int32_t grasp(cau_session *session, const cau_session_info *info)
 {
 	cau_frame frame = stage_frame(session);
@@ -157,10 +157,10 @@ static void real_files_live(void **state)
 	}
 }
 
-// ---- organs: bumpy, stretched balls in millimetres, as segmentations give them
+// ---- organs: balls with bumps, stretched, in millimetres, as from segmentations
 enum { ROWS = 24, FACETS = 2 * ROWS * (2 * ROWS) - 4 * ROWS, ORGANS = 30, BUMPS = 5 };
 
-// The next of a row of numbers from 0 to 1 [Knuth's MMIX].
+// Returns the next random number from 0 to 1 [Knuth's MMIX].
 static double next(uint64_t *state)
 {
 	*state = *state * 6364136223846793005u + 1442695040888963407u;
@@ -169,8 +169,8 @@ static double next(uint64_t *state)
 
 typedef struct organ {
 	double size[3], bump[BUMPS], turn[BUMPS];
-	int missing; // facets of a hole
-	bool turned; // some facets look inward
+	int missing; // number of facets missing at a hole
+	bool turned; // true if some facets look inward
 } organ;
 
 static organ organ_of(int number)
@@ -224,7 +224,7 @@ static size_t write_organ(const organ *of, unsigned char *bytes)
 					{{row, column}, {row + 1, column}, {row, column + 1}},
 					{{row + 1, column}, {row + 1, column + 1}, {row, column + 1}}};
 				if ((half == 0 && row == 0) || (half == 1 && row == ROWS - 1))
-					continue; // at a pole it is a line
+					continue; // at a pole this facet is a line
 				if (number++ >= of->missing)
 					used += put_facet(of, corner[half], number, bytes + used);
 			}
@@ -233,7 +233,7 @@ static size_t write_organ(const organ *of, unsigned char *bytes)
 	return used;
 }
 
-// As the server does it: the unit is guessed of the surface, which is then filled.
+// Makes the organ as the server does: the unit is guessed from the surface, which is then filled.
 static void organ_lives(int number)
 {
 	static unsigned char bytes[84 + 50 * FACETS];
@@ -267,7 +267,8 @@ static bool all_organs;
 static void organs_live(void **state)
 {
 	(void)state;
-	static const int some[] = {5, 17}; // with a hole; with facets that look inward, too
+	// An organ with a hole; an organ that also has facets that look inward.
+	static const int some[] = {5, 17};
 	for (int k = 0; k < (all_organs ? ORGANS : CAU_TEST_SANITIZED ? 1 : 2); k++)
 		organ_lives(all_organs ? k : some[k]);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The definition as it is now: queued changes count, and a snapshot brings back those that it has.
+// A session's present definition: it includes queued changes, and a restore brings back the changes
+// of the snapshot.
 #include "core/session/stage.h"
 
 static cau_scene_def *sheet_scene(void)
@@ -15,7 +16,7 @@ static cau_scene_def *sheet_scene(void)
 static double thickness_of(const cau_session *session, const cau_scene_def *scene,
                            double *gravity_z)
 {
-	static cau_scene_def present; // too big for a stack
+	static cau_scene_def present; // too large for a stack
 	present = *scene;
 	cau_session_present(session, &present);
 	*gravity_z = present.gravity_m_s2[2];
@@ -49,7 +50,7 @@ static void gravity_and_materials_of_now(void **state)
 	assert_int_equal(cau_session_restore(other, snapshot, bytes, &exact, NULL), CAU_OK);
 	assert_true(thickness_of(other, scene, &z) == 2 * before && z == -3);
 
-	// One of another kind of tissue is refused at its tick, and does not show before.
+	// A material for another kind of layer is refused at its tick, and is not included before.
 	material.as.material.kind = CAU_LAYER_FAT;
 	cau_default_fat_material(&material.as.material.fat);
 	stage_submit(session, &material);
@@ -62,13 +63,14 @@ static void gravity_and_materials_of_now(void **state)
 
 static const cau_scene_def *present_of(const cau_session *session, const cau_scene_def *scene)
 {
-	static cau_scene_def present; // too big for a stack
+	static cau_scene_def present; // too large for a stack
 	present = *scene;
 	cau_session_present(session, &present);
 	return &present;
 }
 
-// One changed, one taken away, one new: told at once, and the same after the tick.
+// One tool is changed, one removed, one added. The definition includes this at once, and is the
+// same after the tick.
 static void tools_of_now(void **state)
 {
 	(void)state;
@@ -79,7 +81,7 @@ static void tools_of_now(void **state)
 	cau_command add = stage_command(CAU_COMMAND_TOOL_ADD);
 	configure.as.definition = scene->tools[0];
 	configure.as.definition.temperature_c = 900;
-	configure.as.definition.pose.position_m[2] = 0.5; // a pose is for moving, not for this
+	configure.as.definition.pose.position_m[2] = 0.5; // a configuration does not change the pose
 	strcpy(remove.tool, "jaws");
 	strcpy(add.as.definition.name, "probe");
 	stage_submit(session, &configure);
@@ -95,8 +97,8 @@ static void tools_of_now(void **state)
 		stage_step(session, 1);
 	}
 
-	// What the tick will refuse does not show before: a tool there is already, and one there is
-	// not.
+	// Commands that the tick will refuse are not included: adding a tool that exists, and removing
+	// a tool that does not.
 	strcpy(add.as.definition.name, "hook");
 	stage_submit(session, &add);
 	stage_submit(session, &remove);
@@ -105,7 +107,7 @@ static void tools_of_now(void **state)
 	free(scene);
 }
 
-// A tool that has moved is told where it is.
+// A tool that has moved has its present pose.
 static void a_moved_tool(void **state)
 {
 	(void)state;

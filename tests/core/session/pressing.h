@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools pressed straight down into a taut sheet, a slab that is pinned at its bottom, or `layers`,
-// and what is seen of it by rays: nothing of the code under test.
+// Tools pressed straight down into a taut sheet, a slab that is pinned at its bottom, or `layers`.
+// The measurements use rays, independently of the code under test.
 #pragma once
 
 #include "core/session/stage.h"
@@ -12,7 +12,7 @@ typedef struct pressing {
 	pressing_tissue tissue;
 	int shape;
 	double radius_m, cell_m, speed_m_s, depth_m;
-	double force_max_n; // 0: as it is by default
+	double force_max_n; // 0: the default
 } pressing;
 
 static const double pressing_wide_m = 0.04, pressing_deep_m = 0.016;
@@ -41,11 +41,11 @@ static inline void pressing_add_slab(cau_scene_def *scene, const pressing *p, in
 
 static inline double pressing_top_m(const pressing *p)
 {
-	const double fascia_m = 0.002; // of `layers`, above the fat
+	const double fascia_m = 0.002; // height of the fascia of `layers` above the fat
 	return (p->tissue == PRESSING_LAYERS ? fascia_m : 0) + p->radius_m + 1e-3;
 }
 
-// Off the lines of the mesh, so that no vertex lies below the tool.
+// Moves the tool to a depth. It is beside the lines of the mesh, so that no vertex is below it.
 static inline void pressing_move(cau_session *session, const pressing *p, double depth_m)
 {
 	cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
@@ -79,7 +79,7 @@ static inline cau_scene_def *pressing_scene(const pressing *p)
 	return scene;
 }
 
-// How deep (m) it is asked to be after so many ticks of the press.
+// Returns the commanded depth, m, after this number of ticks of the press.
 static inline double pressing_depth_m(const pressing *p, int tick)
 {
 	return fmin((tick + 1) * p->speed_m_s / 60, p->depth_m + 1e-3) - 1e-3;
@@ -91,7 +91,7 @@ static inline cau_vec3 pressing_corner(const cau_session *session, int32_t face,
 	return cau_vec3_of(session->position + 3 * (size_t)v);
 }
 
-// Whether the way by which the tool came, straight up from its tip, meets the face.
+// Whether the vertical line up from the tool's tip, which is the path of the tool, meets the face.
 static inline bool pressing_is_above(cau_vec3 from, cau_vec3 a, cau_vec3 b, cau_vec3 c)
 {
 	double ab = (b.x - a.x) * (from.y - a.y) - (b.y - a.y) * (from.x - a.x);
@@ -113,7 +113,7 @@ static inline bool pressing_is_crossed(const cau_session *session)
 	return false;
 }
 
-// How far into a ball (m) the nearest point of a triangle is, by sampling.
+// Returns how deep, m, the nearest point of a triangle is inside a ball, by sampling.
 static inline double pressing_depth_of(cau_vec3 middle, double radius, const cau_vec3 corner[3])
 {
 	enum { SAMPLES = 12 };
@@ -128,7 +128,7 @@ static inline double pressing_depth_of(cau_vec3 middle, double radius, const cau
 	return radius - least;
 }
 
-// How far a ball is inside what is drawn, m.
+// Returns how deep a ball is inside the drawn surface, m.
 static inline double pressing_penetration_m(const cau_session *session, const pressing *p)
 {
 	cau_vec3 middle = cau_vec3_of(stage_tool(session, "tool")->pose.position_m);

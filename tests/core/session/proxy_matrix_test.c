@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Instruments of all kinds and sizes, pressed slowly and fast into a sheet, a slab and `layers` on
-// meshes of half, one and twice the resolution: nothing crosses before a tool has pushed with all
-// it has, and a ball stands on what is drawn. A ninth of the presses, without the finest slab,
-// unless PROXY_MATRIX is a number, of which it is every so-manieth then, or `all`.
+// Instruments of all kinds and sizes, pressed slowly and fast into a sheet, a slab and `layers`, on
+// meshes of half, one and two times the resolution. Nothing crosses before a tool pushes with its
+// full force, and a ball stands on the drawn surface. By default a ninth of the presses run,
+// without the finest slab. The environment variable PROXY_MATRIX=N runs every N-th press, `all`
+// every press.
 #include <stdio.h>
 
 #include "core/session/pressing.h"
@@ -20,7 +21,7 @@ static const kind kinds[] = {
 	{"hook of 1.5 mm", CAU_TOOL_HOOK, 1.5e-3},     {"jaws of 1.5 mm", CAU_TOOL_GRASPER, 1.5e-3},
 };
 static const double speeds_m_s[] = {0.01, 0.1, 0.5, 1.5, 0.001};
-static const double slow_m_s = 0.005; // below, hundreds of ticks
+static const double slow_m_s = 0.005; // slower presses take hundreds of ticks
 static const double cells_m[] = {4e-3, 2e-3, 1e-3};
 static const char *const tissues[] = {"sheet", "slab", "layers"};
 
@@ -31,9 +32,9 @@ enum {
 	TISSUES = sizeof tissues / sizeof *tissues,
 };
 
-static const double most_penetration_m = 1e-4; // of a ball at rest, anywhere on what is drawn
+static const double most_penetration_m = 1e-4; // of a ball at rest, anywhere on the drawn surface
 
-// A thin tip that dents soft tissue by more than this passes at last.
+// Returns the depth of a press. A thin tip that dents soft tissue farther than this finally passes.
 static double depth_m(const kind *k)
 {
 	return fmin(4e-3, 5 * k->radius_m);
@@ -46,7 +47,7 @@ static bool is_held(const pressing *p, const kind *k)
 	cau_session *session = stage_open(scene, 1);
 	int ticks = (int)(60 * (p->depth_m + 1e-3) / p->speed_m_s) + 31, crossed = 0;
 	double most = 0;
-	for (int tick = 0; tick < 10; tick++) { // until jaws are closed
+	for (int tick = 0; tick < 10; tick++) { // until the jaws are closed
 		pressing_move(session, p, -1e-3);
 		stage_step(session, 1);
 	}
@@ -74,7 +75,7 @@ static bool is_held(const pressing *p, const kind *k)
 static void nothing_crosses(void **state)
 {
 	(void)state;
-	enum { SHARE = CAU_TEST_SANITIZED ? 61 : 9, FIRST = 3 }; // odd, so that all speeds are tried
+	enum { SHARE = CAU_TEST_SANITIZED ? 61 : 9, FIRST = 3 }; // odd, so that all speeds are tested
 	const char *wanted = getenv("PROXY_MATRIX");
 	bool all = wanted && !strcmp(wanted, "all");
 	int share = wanted && atoi(wanted) > 0 ? atoi(wanted) : SHARE;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tool has a pose that is asked and a pose that is (core/DECISIONS.md, "Contact"): tissue that
-// does not yield stops it, up to force_max_n, and past that it stays behind until it lets go.
+// A tool has a commanded pose and an actual pose (core/DECISIONS.md, "Contact"). Tissue that does
+// not yield stops the tool, up to force_max_n. Beyond that the tool stays behind, until it releases
+// the tissue and jumps to its commanded pose.
 #include <stdio.h>
 
 #include "core/session/pressing.h"
@@ -27,11 +28,11 @@ static void what_nothing_touches_is_where_it_is_asked_to_be(void **state)
 	free(scene);
 }
 
-// The spring's force is what the tool feels, in each tick.
+// In each tick the force on the tool is that of the coupling's spring.
 static void it_is_off_by_what_it_feels(void **state)
 {
 	(void)state;
-	const double settled = 2e-3; // of the force: what the last increment of a step changes
+	const double settled = 2e-3; // share of the force that a step's last increment changes
 	static const pressing p = {PRESSING_SLAB, CAU_TOOL_SPHERE, 3e-3, 2.5e-3, 0.05, 4e-3, 5};
 	cau_scene_def *scene = pressing_scene(&p);
 	cau_session *session = stage_open(scene, 1);
@@ -50,8 +51,8 @@ static void it_is_off_by_what_it_feels(void **state)
 	free(scene);
 }
 
-// Pressed farther than the slab is deep: its pinned bottom stops the tool, with all the force that
-// it has. Crushed tissue wants more iterations than a scene of tests has.
+// A tool is pressed farther than the slab is deep. The pinned bottom stops the tool, which then
+// pushes with its full force. Crushed tissue needs more iterations than the other scenes of tests.
 static void tissue_that_cannot_yield_stops_it(void **state)
 {
 	(void)state;
@@ -75,7 +76,7 @@ static void tissue_that_cannot_yield_stops_it(void **state)
 	free(scene);
 }
 
-// A tool that gives little force comes to where tissue bears that, and no farther.
+// A tool with little force moves until the tissue resists with that force, and no farther.
 static void it_pushes_with_what_it_has(void **state)
 {
 	(void)state;
@@ -117,7 +118,8 @@ static void left_behind_too_far_it_lets_go(void **state)
 	free(scene);
 }
 
-// Over threads, and over a snapshot at each tick, also of ticks that were begun again.
+// The actual pose is the same on other threads, and after a restore at each tick, also of ticks
+// that began again.
 static void where_it_is_is_part_of_the_state(void **state)
 {
 	(void)state;
@@ -149,14 +151,16 @@ static void where_it_is_is_part_of_the_state(void **state)
 	free(scene);
 }
 
-// A ball that stands in tissue while its energy goes off is let out at a tenth of a metre a second.
+// When a ball's energy goes off while it is inside tissue, the tissue pushes it out at a tenth of a
+// metre a second.
 static void it_is_let_out_slowly(void **state)
 {
 	(void)state;
-	const double most_m = 2 * 0.1 / 60; // in a tick: what is pushed drags along what is beside it
+	const double most_m = 2 * 0.1 / 60; // in a tick; pushed tissue drags the tissue beside it along
 	static const pressing p = {PRESSING_SLAB, CAU_TOOL_SPHERE, 6e-3, 2e-3, 0.1, 0, 0};
 	cau_scene_def *scene = pressing_scene(&p);
-	scene->tools[0].temperature_c = scene->ambient_c; // so that it goes in and cuts nothing
+	// So that the ball enters the tissue and cuts nothing.
+	scene->tools[0].temperature_c = scene->ambient_c;
 	scene->tools[0].shaft_radius_m = 1e-3;
 	cau_session *session = stage_open(scene, 1);
 	stage_energize(session, "tool", 1);

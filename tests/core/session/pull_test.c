@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No pull that a grasper can make breaks a scene: steps stay bounded, inverted elements recover.
+// No pull of a grasper breaks a scene: steps stay bounded, and inverted elements recover.
 #include "core/session/stage.h"
 
 #include <stdio.h>
 
-static const double bounded_m = 0.3; // a pull of 0.1 m on a scene of 0.12 m
-// Under sanitizers, where a step takes thirty times as long, each scene is pulled one way: other
-// directions take the same path through the program.
+static const double bounded_m = 0.3; // m; a pull of 0.1 m on a scene of 0.12 m stays below this
+// Under sanitizers a step takes thirty times as long. There each scene is pulled in one direction
+// only; the other directions use the same code.
 static const size_t ways_under_sanitizers = 1;
 
 static double farthest(const cau_session *session, int32_t *inverted)
@@ -22,7 +22,7 @@ static double farthest(const cau_session *session, int32_t *inverted)
 static const double ways[][3] = {{0, 0, 0.1},  {0.1, 0, 0},  {-0.1, 0, 0},      {0, 0.1, 0},
                                  {0, -0.1, 0}, {0, 0, -0.1}, {0.06, 0.06, 0.06}};
 
-// Where nothing tears, all that was pulled is there to recover.
+// Turns tearing off, so that all pulled tissue remains and can recover.
 static void bear_all(cau_scene_def *scene)
 {
 	for (int32_t i = 0; i < scene->layer_count; i++) {
@@ -38,9 +38,9 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 	bear_all(scene);
 	cau_tool_def *jaws =
 		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, top_m - 0.004);
-	jaws->max_speed_m_s = 5; // the fastest that any scene may have
+	jaws->max_speed_m_s = 5; // the largest speed that a scene may have
 	jaws->slip_force_n = slip_force_n;
-	jaws->force_max_n = 1000; // nor do they stay behind
+	jaws->force_max_n = 1000; // so that the jaws do not stay behind
 	jaws->grasp_stiffness_n_m = slip_force_n > 100 ? 1e4 : 200;
 	cau_session *session = stage_open(scene, 2);
 	size_t way_count = CAU_TEST_SANITIZED ? ways_under_sanitizers : sizeof ways / sizeof *ways;
@@ -67,7 +67,7 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 		print_message("%s, way %zu: %d held, %.3f m, %d inverted, %d after\n", name, w, held, far,
 		              inverted, left);
 		assert_true(far < bounded_m);
-		assert_true(left <= inverted / 10); // recovered, or about to be
+		assert_true(left <= inverted / 10); // most have recovered
 	}
 	stage_step(session, 60);
 	assert_int_equal(stage_frame(session).statistics.inverted, 0);
@@ -77,9 +77,9 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 
 // ---- tissue that tears
 
-// Jaws that never slip, led away at once and put back to take hold of what is left. What cannot
-// follow tears or is torn out of the jaws: a scene that bore on with it was thrown about, until the
-// step had no solution (in one to three of 21 places and stiffnesses, by build).
+// Jaws that never slip are moved away at once, and moved back to grasp the rest. Tissue that cannot
+// follow tears, or is torn out of the jaws. Without tearing, tissue diverged until a step had no
+// solution (in one to three of 21 positions and stiffnesses, depending on the build).
 static void tear_away(double x, double y, double stiffness_n_m, size_t way_count)
 {
 	cau_scene_def *scene = stage_scene_light("layers");

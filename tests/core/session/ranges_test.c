@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Documented ranges are enforced ranges. The parameter tables of scenes and commands are what the
-// pages and schemas are generated from. Each row is tried at both ends, and at the next number
-// beyond, through JSON and then through the core.
+// Documented ranges are enforced. Pages and schemas are generated from the parameter tables of
+// scenes and commands. Each entry is tested at both ends of its range and at the next number
+// beyond, first through JSON and then in the core.
 #include "core/session/stage.h"
 
 #include "cautery/command_json.h"
@@ -54,8 +54,8 @@ static cau_status read_and_check(const cau_scene_def *scene, cau_error *error)
 	return status;
 }
 
-// Some rows bind two numbers, and say so in words. This sets the other number of the two so that
-// both ends of the field's range are valid.
+// Some entries bind two numbers, which their text states. This sets the second number so that both
+// ends of the field's range are valid.
 static void make_way(cau_tool_def *tool, const cau_field *field)
 {
 	if (strcmp(field->name, "hot_radius_m") == 0)
@@ -165,7 +165,7 @@ static cau_status read_and_submit(cau_session *session, const cau_command *comma
 	if (!status)
 		status = cau_session_submit(session, &read, error);
 	if (!status)
-		session->command_count = 0; // only whether it is accepted is of interest
+		session->command_count = 0; // the test needs only whether the command is accepted
 	return status;
 }
 

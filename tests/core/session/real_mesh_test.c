@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meshes that nobody here made load, and are cut for ten simulated seconds without a fault. Skipped
-// where the folder CAUTERY_MESHES is absent.
+// Meshes from other sources load, and are cut for ten simulated seconds without a fault. Skipped if
+// the folder CAUTERY_MESHES is absent.
 #include "core/session/stage.h"
 
 #include <dirent.h>
@@ -9,7 +9,8 @@
 #include "session/session_internal.h"
 
 static const double cut_s = 10;
-static const double wanted_size_m = 0.12; // whatever the file's unit is, as large as a scene
+// The mesh is scaled to this size, whatever the file's unit is.
+static const double wanted_size_m = 0.12;
 
 static int has_ending(const char *name, const char *ending)
 {
@@ -17,11 +18,11 @@ static int has_ending(const char *name, const char *ending)
 	return length > end && !strcmp(name + length - end, ending);
 }
 
-// A scene of this file in this unit: a sheet, or fat in its membrane.
+// Returns a scene of this file in this unit: a sheet, or fat with its membrane.
 static cau_scene_def *scene_of(const char *folder, const char *file, double unit_m, int kind)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
-	if (kind == CAU_LAYER_FAT) // a hollow sheet would fall in, away from the tool
+	if (kind == CAU_LAYER_FAT) // a hollow sheet would collapse, away from the tool
 		cau_default_gravity(scene->gravity_m_s2);
 	snprintf(scene->directory, sizeof scene->directory, "%s", folder);
 	cau_layer_def *layer = stage_add_sheet(scene, "body", 1, 1, 1, 1);
@@ -59,7 +60,7 @@ static extent extent_of(const cau_session_info *info)
 	return e;
 }
 
-// Pins the lowest tenth, and draws a hot ball through the middle from side to side and back.
+// Pins the lowest tenth, and moves a hot ball through the middle from side to side and back.
 static void cut(cau_session *session, const extent *e, const char *file)
 {
 	cau_session_info info = stage_info(session);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rest: tissue that has stopped is held to the bit, in every run at the same tick; what it is held
-// at is where it would have come to; and whatever could move it wakes it.
+// Rest: tissue that has stopped keeps its bits, and every run rests at the same tick. Its position
+// is the one at which it would have stopped. Everything that could move the tissue wakes it.
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
@@ -14,7 +14,7 @@ static bool rests(const cau_session *session)
 	return stage_frame(session).statistics.resting;
 }
 
-// Steps until the tissue rests; returns the ticks that took.
+// Steps until the tissue rests. Returns the number of ticks.
 static int32_t step_to_rest(cau_session *session)
 {
 	int32_t ticks = 0;
@@ -26,7 +26,7 @@ static int32_t step_to_rest(cau_session *session)
 	return ticks;
 }
 
-// A taut sheet, pinned at its rim, and a hook and jaws above it, out of reach.
+// A taut sheet, pinned at its rim, with a hook and jaws above it, out of reach.
 static cau_scene_def *make_sheet(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
@@ -37,7 +37,7 @@ static cau_scene_def *make_sheet(void)
 	return scene;
 }
 
-// A block of fat that hangs from its top.
+// A block of fat, pinned at its top.
 static cau_scene_def *make_hanging_block(int precision)
 {
 	const double size[3] = {0.03, 0.02, 0.02}, least[3] = {-1, -1, -1e-4}, most[3] = {1, 1, 1};
@@ -49,13 +49,13 @@ static cau_scene_def *make_hanging_block(int precision)
 	return scene;
 }
 
-// What changes nothing and yet wakes.
+// Wakes the tissue without any change.
 static void keep_awake(cau_session *session)
 {
 	int32_t vertex = 0;
 	while (!session->pinned[vertex])
 		vertex++;
-	double at[3]; // a support that is led to where it is
+	double at[3]; // a support that is led to its present position
 	memcpy(at, session->position + 3 * (size_t)vertex, sizeof at);
 	assert_int_equal(cau_session_drive(session, 1, &vertex, at, NULL), CAU_OK);
 }
@@ -86,7 +86,7 @@ static void every_bit_stays(void **state)
 	free(scene);
 }
 
-// Where tissue is held is within a few micrometres of where it comes to in a minute awake.
+// Resting tissue is within a few micrometres of its position after a minute awake.
 static void loaded_tissue_rests_where_it_belongs(void **state)
 {
 	(void)state;
@@ -114,7 +114,7 @@ static void loaded_tissue_rests_where_it_belongs(void **state)
 	}
 }
 
-// A pressed tissue rests under the tool, which goes on to feel it.
+// Pressed tissue rests under the tool, and the tool continues to feel it.
 static void a_tool_that_presses_feels_it_at_rest(void **state)
 {
 	(void)state;
@@ -134,7 +134,7 @@ static void a_tool_that_presses_feels_it_at_rest(void **state)
 	free(scene);
 }
 
-// ---- what wakes it
+// ---- causes that wake tissue
 static void by_gravity(cau_session *session)
 {
 	stage_gravity(session, 3, 0, gravity_z);
@@ -169,7 +169,7 @@ static void by_grasp(cau_session *session)
 	stage_grasp(session, "jaws");
 }
 
-static void by_release(cau_session *session) // of jaws that are closed
+static void by_release(cau_session *session) // the jaws are closed
 {
 	session->tool[cau_session_find_tool(session, "jaws")].state.grasping = true;
 	stage_release(session, "jaws");
@@ -208,7 +208,7 @@ static void by_tool(cau_session *session)
 
 static void by_support(cau_session *session)
 {
-	int32_t vertex = 0; // of the rim
+	int32_t vertex = 0; // a vertex of the rim
 	const double at[3] = {-0.031, -0.025, 0};
 	assert_int_equal(cau_session_drive(session, 1, &vertex, at, NULL), CAU_OK);
 }
@@ -216,7 +216,7 @@ static void by_support(cau_session *session)
 static const struct cause {
 	const char *name;
 	void (*act)(cau_session *session);
-	bool moves; // tissue, at once
+	bool moves; // the cause moves tissue at once
 } causes[] = {
 	{"gravity", by_gravity, true},   {"force", by_force, true},
 	{"tool move", by_move, false},   {"jaw", by_jaw, false},
@@ -238,7 +238,7 @@ static void each_cause_wakes(void **state)
 		stage_step(session, 3);
 		assert_true(rests(session));
 		causes[i].act(session);
-		assert_true(rests(session)); // until its tick
+		assert_true(rests(session)); // tissue rests until the next tick
 		stage_step(session, 1);
 		if (rests(session))
 			fail_msg("%s does not wake", causes[i].name);
@@ -247,14 +247,14 @@ static void each_cause_wakes(void **state)
 			fail_msg("nothing moves after %s", causes[i].name);
 		assert_true(frame.statistics.iterations > 0);
 		stage_step(session, 3);
-		assert_false(rests(session)); // half a second at least
+		assert_false(rests(session)); // tissue stays awake for at least half a second
 	}
 	free(shot.bytes);
 	cau_session_destroy(session);
 	free(scene);
 }
 
-// A command for later lets it sleep until then.
+// A command for a later tick wakes the tissue only at that tick.
 static void a_command_wakes_at_its_tick(void **state)
 {
 	(void)state;
@@ -294,9 +294,9 @@ static void a_move_to_where_it_stands_does_not_wake(void **state)
 	free(scene);
 }
 
-// ---- what keeps it awake
+// ---- causes that keep tissue awake
 
-// A lit tool, and its warm grid after it; then, at ambient, rest.
+// An energized tool keeps the tissue awake, then the tool's warm grid. At ambient the tissue rests.
 static void heat_keeps_it_awake(void **state)
 {
 	(void)state;
@@ -319,8 +319,8 @@ static void heat_keeps_it_awake(void **state)
 	free(scene);
 }
 
-// Cut tissue rests once nothing shrinks and the factor has taken everything out. Teeth of the cut
-// hang by a corner and would swing for long.
+// Cut tissue rests once nothing shrinks and the factor has removed all elements. The teeth of the
+// cut hang by a corner and would oscillate for long.
 static void a_cut_is_done_before_it_rests(void **state)
 {
 	(void)state;
@@ -349,7 +349,7 @@ static void a_cut_is_done_before_it_rests(void **state)
 
 enum { RUN = 160, WAKE_AT = 70 };
 
-// Rests, is woken, and rests again.
+// Runs a tick. The tissue rests, is woken, and rests again.
 static void run_tick(cau_session *session)
 {
 	uint64_t tick = stage_frame(session).tick;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue against tissue in whole sessions: what is pushed, laid or folded together touches and
-// never crosses, whatever tools do to it, and the same bits come of it.
+// Contact between tissue and tissue in whole sessions. Tissue that is pushed, laid or folded
+// together touches and never crosses, whatever tools do. The bits are the same in every run.
 #include <stdio.h>
 
 #include "core/session/surface_crossing.h"
@@ -9,8 +9,8 @@
 enum { LOOK = 10, TOOL_TICKS = CAU_TEST_SANITIZED ? 60 : 300, TOOL_MOTIONS = 10000 };
 
 static const double THICKNESS_M = 5e-4;
-// Energy that a tick may make: of what ten iterations leave undone. A sheet of these falls with
-// some 1e-5 J.
+// Largest energy gain of a tick, from what ten iterations leave unsolved. One of these sheets falls
+// with some 1e-5 J.
 static const double GAIN_J = 1e-5;
 
 typedef struct course {
@@ -18,7 +18,7 @@ typedef struct course {
 	int most_touching;
 } course;
 
-// Steps, and looks every LOOK ticks whether anything crosses.
+// Steps the session, and checks every LOOK ticks whether anything crosses.
 static course run(cau_session *session, int ticks)
 {
 	course c = {0};
@@ -43,7 +43,7 @@ static cau_scene_def *touching_scene(void)
 	return scene;
 }
 
-// A sheet above a slab that is held at its floor.
+// A sheet above a slab that is pinned at its floor.
 static cau_scene_def *make_flap(void)
 {
 	const double size[3] = {0.05, 0.04, 0.008};
@@ -74,14 +74,15 @@ static void a_flap_that_is_laid_back_stays(void **state)
 	course fall = run(session, 40);
 	assert_true(fall.most_touching > 100 && fall.most_gain_j < GAIN_J);
 	double lowest = lowest_of_sheet_m(session);
-	assert_true(lowest > -0.001 && lowest < 0.003); // on the slab, whose top is at 0 unless it sags
+	// On the slab, whose top is at 0 or sags a little.
+	assert_true(lowest > -0.001 && lowest < 0.003);
 	stage_force(session,
 	            stage_box((double[]){-0.016, -0.011, 0.003}, (double[]){0.016, 0.011, 0.005}), 0, 0,
-	            -2e-4); // and is pressed with ten times its weight
+	            -2e-4); // presses the sheet with ten times its weight
 	course pressed = run(session, 30);
 	assert_true(pressed.most_gain_j < GAIN_J);
 	cau_session_destroy(session);
-	scene->contact_thickness_m = 0; // without it falls through
+	scene->contact_thickness_m = 0; // without contact the sheet falls through the slab
 	session = stage_open(scene, 1);
 	stage_step(session, 60);
 	assert_true(lowest_of_sheet_m(session) < -0.02);
@@ -89,7 +90,7 @@ static void a_flap_that_is_laid_back_stays(void **state)
 	free(scene);
 }
 
-// Two blocks side by side are pushed together at their tops.
+// Pushes two blocks, which are side by side, together at their tops.
 static int push_lips(double thickness_m, int integrator)
 {
 	cau_scene_def *scene = touching_scene();
@@ -100,7 +101,8 @@ static int push_lips(double thickness_m, int integrator)
 	for (int side = -1; side <= 1; side += 2) {
 		cau_layer_def *fat = stage_add_slab(scene, side > 0 ? "right" : "left", size, cells);
 		stage_mesh_of(scene, fat)->translate_m[0] = 0.011 * side;
-		stage_mesh_of(scene, fat)->translate_m[1] = 0.0003 * side; // no cell meets its like
+		// No cell is opposite an equal cell.
+		stage_mesh_of(scene, fat)->translate_m[1] = 0.0003 * side;
 	}
 	stage_pin_box(scene, (double[]){-1, -1, -0.0101}, (double[]){1, 1, -0.0099});
 	cau_session *session = stage_open(scene, 1);
@@ -127,7 +129,8 @@ static void lips_that_are_pushed_together_never_cross(void **state)
 	(void)state;
 	push_lips(THICKNESS_M, CAU_INTEGRATOR_EULER);
 	push_lips(THICKNESS_M, CAU_INTEGRATOR_SDIRK2);
-	assert_true(push_lips(0, CAU_INTEGRATOR_EULER) > 0); // it was needed, and would be seen
+	// Without contact the blocks cross, and the test detects it.
+	assert_true(push_lips(0, CAU_INTEGRATOR_EULER) > 0);
 }
 
 static void a_hanging_sheet_folds_and_never_crosses(void **state)
@@ -137,7 +140,7 @@ static void a_hanging_sheet_folds_and_never_crosses(void **state)
 	stage_add_sheet(scene, "fascia", 0.04, 0.02, 20, 10);
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){0.0001, 1, 1});
 	cau_session *session = stage_open(scene, 1);
-	run(session, 40); // one half hangs, and is pressed to the other one from below
+	run(session, 40); // one half hangs, and is pressed to the other half from below
 	stage_force(session, stage_box((double[]){0.001, -1, -1}, (double[]){0.0205, 1, 1}), -2e-3, 0,
 	            2e-3);
 	assert_true(run(session, 60).most_touching > 100);
@@ -149,19 +152,20 @@ static cau_scene_def *make_busy(void)
 {
 	cau_scene_def *scene = stage_layered();
 	scene->contact_thickness_m = THICKNESS_M;
-	for (int32_t i = 0; i < scene->layer_count; i++) // so that a hook that hurries parts it
+	for (int32_t i = 0; i < scene->layer_count; i++) // so that a fast hook parts the tissue
 		if (scene->layers[i].kind == CAU_LAYER_FASCIA)
 			scene->layers[i].sheet[0].heat.ignition_c = 8;
 	return scene;
 }
 
-static double draw(uint64_t *random) // -1 to 1
+static double draw(uint64_t *random) // a random number from -1 to 1
 {
 	*random = *random * 6364136223846793005ull + 1442695040888963407ull;
 	return (double)(*random >> 11) / 4503599627370496.0 - 1;
 }
 
-// Tools go anywhere over and into the tissue, one is hot, the other may grasp and let go.
+// Moves tools to random poses over and in the tissue. One tool is hot; the other may grasp and
+// release.
 static void wave_tools(cau_session *session, int tick, bool grasping, uint64_t *random)
 {
 	if (tick % 6 == 0) {
@@ -178,8 +182,8 @@ static void wave_tools(cau_session *session, int tick, bool grasping, uint64_t *
 		stage_release(session, "jaws");
 }
 
-// What jaws hold may cross, and stays so until it finds its way out: what they have held is not
-// looked at.
+// Runs random tools. Tissue held by jaws may cross, until it finds its way out, so tissue that was
+// ever held is not checked.
 static void run_tools(int ticks, int look, bool grasping)
 {
 	cau_scene_def *scene = make_busy();
@@ -202,7 +206,8 @@ static void run_tools(int ticks, int look, bool grasping)
 	print_message("%d ticks of tools: %.3g J gained in all, %d elements gone\n", ticks, sum_j,
 	              stage_frame(session).statistics.elements_removed);
 	assert_true(stage_frame(session).statistics.elements_removed > 0);
-	assert_true(sum_j < 0); // friction, flow and implicit steps take more than iterations leave
+	// Friction, plastic flow and implicit steps lose more than unfinished iterations gain.
+	assert_true(sum_j < 0);
 	cau_session_destroy(session);
 	free(scene);
 	free(held);
@@ -226,8 +231,8 @@ static void many_motions_of_tools_that_grasp(void **state)
 	run_tools(6 * TOOL_MOTIONS, 6 * LOOK, true);
 }
 
-// A session that is restored to where this one is comes to the same bits, though it knows nothing
-// of how it came there.
+// A session restored to the present state reaches the same bits, without any other knowledge of the
+// past.
 static void expect_the_same_after_a_restore(cau_session *session)
 {
 	enum { TICKS = 4 };
@@ -246,22 +251,22 @@ static void expect_the_same_after_a_restore(cau_session *session)
 }
 
 // Jaws that never slip pull `layers` at 5 m/s. Tissue cannot be kept apart at that speed, and
-// tetrahedra turn inside out. Frames report it. After the release nothing is inside out any more,
-// and no vertex is excluded from contact. A vertex is excluded while it crosses other tissue. This
-// depends on rounding: with kernels below AVX-512, or without the compiler's optimisation, some
-// vertices stay excluded to the end (.github/KNOWN_BUGS.md). On every
-// processor no other vertex crosses anything.
+// tetrahedra become inverted. Frames report it. After the release no tetrahedron stays inverted,
+// and no vertex stays excluded from contact. (A vertex is excluded while it crosses other tissue.)
+// The exclusion depends on rounding: with kernels below AVX-512, or without the compiler's
+// optimisation, some vertices stay excluded to the end (.github/KNOWN_BUGS.md). On every processor
+// no other vertex crosses anything.
 static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;
 	enum { DRAWN = 20, TICKS = 100 };
-	// With fewer inverted tetrahedra the pull would be no test: one of 300, which are 100 of the
-	// 30,000 that `layers` has in full.
+	// The pull tests something only if more than one in 300 tetrahedra is inverted: 100 of the
+	// 30,000 in the full `layers`.
 	enum { LEAST_INVERTED = 300 };
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;
 	scene->iterations = 10; // with the scene's twenty, 130 vertices stay excluded
-	for (int32_t i = 0; i < scene->layer_count; i++) // and nothing tears
+	for (int32_t i = 0; i < scene->layer_count; i++) // no tissue tears
 		scene->layers[i].sheet[0].heat.tear_energy_j_m2 =
 			scene->layers[i].fat[0].heat.tear_energy_j_m2 =
 				scene->layers[i].link.heat.tear_energy_j_m2 = 0;
@@ -307,7 +312,8 @@ static void what_is_thrown_finds_its_way_back(void **state)
 	free(scene);
 }
 
-// Pairs beyond the room there is are told of, hold the tissue up, and cross nothing.
+// If there are more pairs than the capacity, the session reports it, stops the tissue, and nothing
+// crosses.
 static void want_of_room_is_told(void **state)
 {
 	(void)state;
@@ -315,7 +321,7 @@ static void want_of_room_is_told(void **state)
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 1);
 	assert_int_equal(stage_frame(session).statistics.touching_cut_short, 0);
-	session->collide.most_pairs = 40; // far from enough once they are near
+	session->collide.most_pairs = 40; // far too few once the tissues are near
 	int told = 0;
 	for (int tick = 0; tick < 30; tick++) {
 		stage_step(session, 1);
@@ -357,7 +363,7 @@ static void the_same_bits(void **state)
 	free(scene);
 }
 
-// Sheets that the scene itself lays across each other neither explode nor fault.
+// Sheets that cross each other from the start neither diverge nor fault.
 static void what_begins_crossed_stays_calm(void **state)
 {
 	(void)state;
@@ -368,7 +374,8 @@ static void what_begins_crossed_stays_calm(void **state)
 	stage_mesh_of(scene, other)->translate_m[0] = 0.004;
 	stage_mesh_of(scene, other)->translate_m[2] = 1e-4;
 	cau_session *session = stage_open(scene, 1);
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) // one is bent through
+	// Bends one sheet through the other.
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
 		if ((int32_t)v >= session->tissue.layer[1].first_vertex)
 			session->position[3 * v + 2] += 0.1 * session->position[3 * v];
 	assert_true(surface_crossings(session) > 0);
@@ -399,7 +406,7 @@ int main(int count, char **argument)
 		cmocka_unit_test(many_motions_of_tools),
 		cmocka_unit_test(many_motions_of_tools_that_grasp),
 	};
-#ifdef __SANITIZE_THREAD__ // the loops on two threads; the others are the same ones on fewer
+#ifdef __SANITIZE_THREAD__ // the loops on two threads; the other tests run the same loops on fewer
 	const struct CMUnitTest threaded[] = {cmocka_unit_test(the_same_bits)};
 	return cmocka_run_group_tests(threaded, NULL, NULL);
 #endif

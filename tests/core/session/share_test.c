@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that share memory do what they do alone, to the bit, and know nothing of each other.
+// Sessions that share memory have the same bits as alone, and do not influence each other.
 #include "base/image.h"
 #include "base/pages.h"
 #include "core/base/images_here.h"
@@ -9,10 +9,10 @@
 #include <pthread.h>
 #include <unistd.h>
 
-enum { LATER = 20 }; // ticks that one begins after another
+enum { LATER = 20 }; // ticks by which the second session begins later
 
-// One alone, one that makes the image, one that is shown it while the other is on its way, all
-// through cuts, refactorisations, and a restore.
+// A session alone is compared with two that share memory: one creates the image, and one begins to
+// share while the other already runs. All run through cuts, refactorisations and a restore.
 static void steps_are_those_of_a_session_alone(void **state)
 {
 	(void)state;
@@ -37,7 +37,7 @@ static void steps_are_those_of_a_session_alone(void **state)
 		if (cau_session_hash(second) != hash[tick] || cau_session_hash(first) != of_first)
 			fail_msg("sharing changed tick %d", tick);
 	}
-	cau_session_destroy(first); // and the one that is left goes on
+	cau_session_destroy(first); // the remaining session continues
 	assert_int_equal(cau_session_restore(second, shot.bytes, shot.count, NULL, NULL), CAU_OK);
 	for (int tick = 0; tick < BUSY_TICKS; tick++) {
 		busy_run(second, 1);
@@ -50,7 +50,7 @@ static void steps_are_those_of_a_session_alone(void **state)
 	free(scene);
 }
 
-// Bytes that have memory of their own, or of the system's that is not all zero.
+// Returns the bytes of pages with memory of their own, or with shared memory that is not all zero.
 static size_t touched_bytes(const cau_session *session)
 {
 	cau_pages pages[CAU_IMAGE_PARTS];
@@ -68,7 +68,7 @@ static size_t touched_bytes(const cau_session *session)
 	return count * page;
 }
 
-// Most of what a session has touched, before anything moves.
+// Before anything moves, a session shares most of the memory that it uses.
 static void a_further_session_shares_most(void **state)
 {
 	(void)state;
@@ -79,13 +79,13 @@ static void a_further_session_shares_most(void **state)
 	size_t touched = touched_bytes(second), shared = cau_session_share(second);
 	print_message("%.1f of %.1f MB\n", 1e-6 * (double)shared, 1e-6 * (double)touched);
 	assert_true((double)shared > 0.75 * (double)touched);
-	assert_true(touched_bytes(second) < touched / 4); // the rest is the image's
+	assert_true(touched_bytes(second) < touched / 4); // the rest belongs to the image
 	cau_session_destroy(first);
 	cau_session_destroy(second);
 	free(scene);
 }
 
-// Of another tissue there is another image.
+// Sessions of different tissue have different images.
 static void other_tissue_shares_nothing_with_it(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Snapshots that are damaged or of another tissue are refused and change nothing. (Forged ones:
-// snapshot_forged_test.c.)
+// Snapshots that are damaged or of another tissue are refused, and change nothing. (For forged
+// snapshots see snapshot_forged_test.c.)
 #include "core/session/unbroken_run.h"
 
 typedef struct victim {
@@ -11,7 +11,8 @@ typedef struct victim {
 static void expect_refusal(const victim *v, const void *bytes, size_t count, const char *what,
                            size_t where)
 {
-	void *copy = malloc(count ? count : 1); // so that a sanitizer sees a read past the end
+	// A copy of its own, so that a sanitizer detects a read past the end.
+	void *copy = malloc(count ? count : 1);
 	assert_non_null(copy);
 	memcpy(copy, bytes, count);
 	cau_error error = {0};
@@ -35,7 +36,7 @@ static void damage_is_refused(void **state)
 	unsigned char *bytes = malloc(shot->count + 8);
 	assert_non_null(bytes);
 	memcpy(bytes, shot->bytes, shot->count);
-	const size_t dense = 512; // every byte of the header, then a sample
+	const size_t dense = 512; // every byte of the header, then samples
 	for (size_t at = 0; at < shot->count; at += at < dense ? 1 : shot->count / 150) {
 		unsigned char flip = (unsigned char)(1u << at % 8);
 		bytes[at] ^= flip;
@@ -47,14 +48,14 @@ static void damage_is_refused(void **state)
 	memset(bytes + shot->count, 0, 8);
 	expect_refusal(&v, bytes, shot->count + 8, "more bytes", shot->count);
 	expect_refusal(&v, "", 0, "nothing", 0);
-	// and the session goes on as if nothing had been tried
+	// The session continues as if nothing had been tried.
 	expect_the_same(v.session, 30, 40);
 	free(bytes);
 	cau_session_destroy(v.session);
 	free(scene);
 }
 
-// The same mesh in another scene is another tissue.
+// The same mesh in another scene counts as another tissue.
 static void another_definition_is_refused(void **state)
 {
 	(void)state;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Snapshots with a right hash and wrong contents: each is refused, and the session is as it was; or
-// it is restored, and the session steps or faults. `--long`: ten million, and 100,000 that step.
+// Snapshots with a right hash and wrong contents. Each is either refused, and the session is
+// unchanged, or restored, and the session steps or faults. With `--long`: ten million restores, and
+// 100,000 that step.
 #include "core/session/forgery.h"
 
 enum { CHANGES_MOST = 4, FORGERY_BYTES = 1 + 9 * CHANGES_MOST };
@@ -26,7 +27,8 @@ static size_t next_forgery(forgery *f, uint64_t *random)
 	return forgery_make(f, data, 1 + 9 * (1 + next_random(random) % CHANGES_MOST));
 }
 
-// Every member of a record counts: a tool's shape and the points in its jaws among them.
+// Forges snapshots. All members of a record are included, such as a tool's shape and the points in
+// its jaws.
 static void forge(int kind)
 {
 	forgery *f = forgery_create(kind);
@@ -55,7 +57,7 @@ static void forged_numbers_are_refused_or_harmless(void **state)
 		forge(kind);
 }
 
-// What is not forged is restored, whatever was restored before.
+// Unforged snapshots are restored, whatever was restored before.
 static void shots_are_restored(void **state)
 {
 	(void)state;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forged snapshots with a right hash: the bytes say which numbers of a good snapshot change
-// (forgery.h). One in sixteen of those that are restored is stepped, which takes longest.
+// Forged snapshots with a right hash. The input bytes say which numbers of a good snapshot change
+// (forgery.h). One in sixteen of the restored snapshots is also stepped, because steps take
+// longest.
 #include "core/session/forgery.h"
 #include "fuzz/fuzz_target.h"
 

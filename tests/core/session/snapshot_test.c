@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Snapshots: a session that is stopped, written, read and continued has the same bits as one that
-// was never stopped. (What is refused: snapshot_damage_test.c.)
+// Snapshots: a session that is stopped, written, read and continued has the same bits as an
+// uninterrupted session. (For refused snapshots see snapshot_damage_test.c.)
 #include "core/session/unbroken_run.h"
 
 #include "session/session_internal.h"
 
-// The first tick at or after `from` with something waiting, and a factor in the making or not.
+// Returns the first tick at or after `from` with waiting elements, while a factor is being computed
+// or not (`making`).
 static int tick_with(int from, int making)
 {
 	for (int tick = from; tick < BUSY_TICKS; tick++)
@@ -14,7 +15,7 @@ static int tick_with(int from, int making)
 	return -1;
 }
 
-// What the other tests stand on: they would prove little if nothing were going on.
+// A condition of the other tests: they would prove little if the run did nothing.
 static void the_run_is_busy(void **state)
 {
 	(void)state;
@@ -60,16 +61,16 @@ static void restored_into_the_same_session(void **state)
 	cau_scene_def *scene = busy_scene();
 	cau_session *session = stage_open(scene, 1);
 	busy_run(session, 60);
-	restore(session, &run->shot[back]); // rewind
+	restore(session, &run->shot[back]); // a rewind
 	expect_the_same(session, back, back + 10);
-	restore(session, &run->shot[back + 4]); // and forward and back again
+	restore(session, &run->shot[back + 4]); // forward, and back again
 	restore(session, &run->shot[5]);
 	expect_the_same(session, 5, BUSY_TICKS);
 	cau_session_destroy(session);
 	free(scene);
 }
 
-// A snapshot of what a snapshot gave is the snapshot.
+// A snapshot of a restored session equals the snapshot from which it was restored.
 static void written_again_it_is_the_same(void **state)
 {
 	(void)state;
@@ -85,8 +86,7 @@ static void written_again_it_is_the_same(void **state)
 	free(scene);
 }
 
-// Commands for later ticks, pins and materials set on the way are part of the state.
-// Where elements part one by one, by doses that are half there.
+// Exposures of elements that part one by one are part of the state, also half-reached exposures.
 static void doses_of_elements(void **state)
 {
 	(void)state;
@@ -112,6 +112,7 @@ static void doses_of_elements(void **state)
 	free(scene);
 }
 
+// Commands for later ticks, pins and changed materials are part of the state.
 static void queued_commands_pins_and_materials(void **state)
 {
 	(void)state;
@@ -147,9 +148,8 @@ static void queued_commands_pins_and_materials(void **state)
 	free(scene);
 }
 
-// What a session restores from is its own beginning, with a factor that was made of other
-// materials, that elements were taken out of, or that is in the making: each time it goes on as a
-// fresh one.
+// A session restores its own beginning. Its present factor is of other materials, or lacks
+// elements, or is being computed. Each time the session continues like a fresh session.
 static void a_factor_serves_its_own_matrix_alone(void **state)
 {
 	(void)state;
@@ -158,7 +158,7 @@ static void a_factor_serves_its_own_matrix_alone(void **state)
 	stage_bytes beginning = stage_snapshot(session);
 	uint64_t fresh = 0;
 	for (int round = 0; round < 4; round++) {
-		if (round == 1) { // as it began, then with another matrix
+		if (round == 1) { // round 0: as it began; round 1: with another matrix
 			cau_command stiffer;
 			cau_default_command(&stiffer, CAU_COMMAND_SET_MATERIAL);
 			stiffer.as.material.kind = CAU_LAYER_FAT;
@@ -170,7 +170,7 @@ static void a_factor_serves_its_own_matrix_alone(void **state)
 		}
 		assert_int_equal(cau_session_restore(session, beginning.bytes, beginning.count, NULL, NULL),
 		                 CAU_OK);
-		busy_run(session, round == 2 ? 30 : BUSY_TICKS); // within cuts, or after them
+		busy_run(session, round == 2 ? 30 : BUSY_TICKS); // during the cuts, or after them
 		if (round == 2)
 			continue;
 		if (!round)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session whose tools or commands are spoilt in memory: the next step faults it, in every build,
-// and touches nothing.
+// Tools or commands of a session are corrupted in memory. The next step faults the session, in
+// every build, and changes nothing.
 #include "core/session/stage.h"
 
 #include <math.h>
@@ -91,7 +91,7 @@ static void a_spoilt_session_does_not_step(void **state)
 		assert_non_null(strstr(error.reason, "safety rule"));
 		assert_memory_equal(before, session->position, bytes);
 		assert_int_equal(session->tick, 3);
-		// what a session has is given back as it was made
+		// Restores the members, so that the session can be destroyed.
 		session->tool[0] = spared;
 		session->tool_count = tools;
 		session->command_count = commands;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces that turn freely keep their angular momentum and turn as rigid bodies do; what hangs on
-// something is stepped as ever.
+// Pieces that turn freely keep their angular momentum and turn like rigid bodies. Attached pieces
+// are stepped as usual.
 #include <stdio.h>
 
 #include "core/session/stage.h"
@@ -52,7 +52,7 @@ static cau_vec3 angular_momentum(const cau_session *session)
 	return sum;
 }
 
-// sum m (|X|^2 1 - X X^T) about the centre, at rest.
+// Sets `out` to sum m (|X|^2 1 - X X^T) about the centre, at rest.
 static void inertia_at_rest(const cau_session *session, cau_vec3 centre, matrix out)
 {
 	memset(out, 0, sizeof(matrix));
@@ -66,7 +66,7 @@ static void inertia_at_rest(const cau_session *session, cau_vec3 centre, matrix 
 	}
 }
 
-// q turned by omega dt (q by w, x, y, z).
+// Turns the quaternion q (w, x, y, z) by omega dt.
 static void turn_by(double q[4], cau_vec3 omega, double dt)
 {
 	cau_vec3 u = {q[1], q[2], q[3]};
@@ -85,8 +85,8 @@ static cau_vec3 solve(matrix a, cau_vec3 b)
 	return cau_scale(1 / cau_dot(row[0], cau_cross(row[1], row[2])), sum);
 }
 
-// Farthest that a vertex is (m) from where a rigid body of these masses would have it after t:
-// Euler's equations in many small steps, by the midpoint.
+// Returns the greatest distance (m) of a vertex from its position in a rigid body of the same
+// masses after the time t. The rigid body follows Euler's equations in many small midpoint steps.
 static double off_the_rigid_one(const cau_session *session, cau_vec3 rest_centre, cau_vec3 momentum,
                                 double t)
 {
@@ -108,9 +108,9 @@ static double off_the_rigid_one(const cau_session *session, cau_vec3 rest_centre
 	return worst;
 }
 
-// How true the turning is to be.
+// Bounds for the accuracy of the rotation.
 typedef struct wanted {
-	double kept, aside, off_m, gained, ends; // the last two relative to its energy
+	double kept, aside, off_m, gained, ends; // the last two are relative to the energy
 } wanted;
 
 static void check_spin(const cau_scene_def *scene, cau_vec3 omega, int ticks, const wanted *most)
@@ -154,9 +154,8 @@ static void a_free_block_turns_as_a_rigid_one(void **state)
 	}
 }
 
-// What is wanting at the accuracy of the everyday is mostly the iteration's. The rest, and the
-// gain, come of the stretch that its flight gives the block in the first ticks: it is no rigid
-// body.
+// At the default accuracy, most of the error is that of the iteration. The rest, and the gain,
+// come from the stretch by rotation in the first ticks: the block is not rigid.
 static void a_converged_one_does_so_closely(void **state)
 {
 	(void)state;
@@ -168,7 +167,7 @@ static void a_converged_one_does_so_closely(void **state)
 	free(scene);
 }
 
-// No energy comes in as it goes on.
+// No energy is added over a long time.
 static void it_goes_on_for_long(void **state)
 {
 	(void)state;
@@ -205,14 +204,14 @@ static void what_hangs_is_predicted_as_ever(void **state)
 	free(scene);
 }
 
-// Whether the element's vertices are in one piece.
+// Checks that the element's vertices are in one piece.
 static void check_joined(const cau_session *session, const int32_t *vertex, int count)
 {
 	for (int i = 1; i < count; i++)
 		assert_int_equal(session->spin.piece[vertex[i]], session->spin.piece[vertex[0]]);
 }
 
-// Spreads the mark of `from` over living elements; returns how many vertices have it.
+// Spreads the mark of `from` over living elements. Returns the number of marked vertices.
 static int32_t flood(const cau_session *session, int32_t from, uint8_t *mark)
 {
 	const cau_tissue *tissue = &session->tissue;
@@ -253,13 +252,14 @@ static void check_pieces(const cau_session *session)
 	free(mark);
 }
 
-// A sheet, held at one side, is cut across without weight: what comes off is a piece of its own.
+// A sheet, held at one side, is cut across without gravity. The part that comes off is a piece of
+// its own.
 static void pieces_follow_cuts(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	cau_sheet_material *sheet = stage_add_sheet(scene, "fascia", 0.04, 0.02, 20, 10)->sheet;
-	sheet->heat.absorption_per_s = 200; // soon through
+	sheet->heat.absorption_per_s = 200; // parts soon
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){-0.0199, 1, 1});
 	stage_add_tool(scene, "hook", CAU_TOOL_SPHERE, 0, -0.012, 0);
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 2);
@@ -274,7 +274,7 @@ static void pieces_follow_cuts(void **state)
 	              session->spin.piece_count);
 	assert_true(session->dissection.elements_removed > 20);
 	set_spinning(session, (cau_vec3){0, 10, 3});
-	// as it goes on there, so it does where it is restored, on however many threads
+	// A restored session continues with the same bits, on any number of threads.
 	stage_bytes shot = stage_snapshot(session);
 	cau_error error = {0};
 	bool exact = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy off and hold-still cannot fail: with a full queue, and whatever waits in it. A log that
-// holds them as commands replays to the same bits.
+// Energy off and hold cannot fail, even with a full queue and whatever waits there. A log that
+// holds them as commands replays with the same bits.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
@@ -45,7 +45,7 @@ static void off_and_hold_need_no_room(void **state)
 	stage_step(session, 5);
 	assert_false(is_on(session));
 	assert_memory_equal(&before, &stage_tool(session, "hook")->asked_pose, sizeof before);
-	// and as commands
+	// The same with commands.
 	cau_command off = energy(0, 0, 0), hold = stage_command(CAU_COMMAND_TOOL_HOLD);
 	session->tool[cau_session_find_tool(session, "hook")].state.energized = true;
 	assert_int_equal(cau_session_submit(session, &off, NULL), CAU_OK);
@@ -72,12 +72,12 @@ static void an_off_voids_the_enables_that_wait(void **state)
 		stage_step(session, 1);
 		assert_false(is_on(session));
 	}
-	assert_true(stage_tool(session, "jaws")->energized); // another's waits on
+	assert_true(stage_tool(session, "jaws")->energized); // the other tool's enable still waits
 	cau_session_destroy(session);
 	free(scene);
 }
 
-// An off of a later tick voids what was asked for before it, and nothing after.
+// An energy-off at a later tick voids the enables before it, and none after it.
 static void a_later_off_voids_older_enables(void **state)
 {
 	(void)state;
@@ -156,10 +156,10 @@ static void an_enable_ends_after_its_ticks(void **state)
 	cau_session *session = stage_open(scene, 1);
 	cau_command limited = energy(1, 0, 4), again = energy(1, 0, 6), on = energy(1, 0, 0);
 	stage_submit(session, &limited);
-	fill_queue(session, 100000); // the end needs no room
+	fill_queue(session, 100000); // the end of an enable needs no capacity
 	assert_int_equal(ticks_on(session, 12), 4);
 	session->command_count = 0;
-	// a newer enable has its own limit, or none
+	// A newer enable has its own limit, or none.
 	stage_submit(session, &limited);
 	assert_int_equal(ticks_on(session, 2), 2);
 	stage_submit(session, &again);
@@ -168,7 +168,7 @@ static void an_enable_ends_after_its_ticks(void **state)
 	assert_int_equal(ticks_on(session, 2), 2);
 	stage_submit(session, &on);
 	assert_int_equal(ticks_on(session, 12), 12);
-	// an off ends it, and the next enable knows nothing of it
+	// An energy-off ends the enable, and the next enable is not limited by it.
 	stage_submit(session, &limited);
 	assert_int_equal(ticks_on(session, 1), 1);
 	cau_session_energy_off(session, "hook", 0);
@@ -205,12 +205,13 @@ static void a_negative_limit_is_refused(void **state)
 	cau_error error = {0};
 	assert_int_equal(cau_session_submit(session, &limited, &error), CAU_BAD_VALUE);
 	assert_string_equal(error.path, "ticks");
-	assert_int_equal(cau_session_submit(session, &off, &error), CAU_OK); // an off is not refused
+	// An energy-off is not refused.
+	assert_int_equal(cau_session_submit(session, &off, &error), CAU_OK);
 	cau_session_destroy(session);
 	free(scene);
 }
 
-// ---- the core says what it may heat
+// ---- the core reports what it may heat
 
 static void it_says_what_it_may_heat(void **state)
 {
@@ -221,7 +222,8 @@ static void it_says_what_it_may_heat(void **state)
 	assert_null(cau_session_heats_beyond(session, NULL, 0));
 	cau_command later = energy(1, 100, 0);
 	stage_submit(session, &later);
-	assert_string_equal(cau_session_heats_beyond(session, NULL, 0), "hook"); // it would, one day
+	// The queued enable would heat it later.
+	assert_string_equal(cau_session_heats_beyond(session, NULL, 0), "hook");
 	assert_null(cau_session_heats_beyond(session, &hook, 1));
 	cau_session_energy_off(session, "hook", 0);
 	assert_null(cau_session_heats_beyond(session, NULL, 0));
@@ -234,7 +236,7 @@ static void it_says_what_it_may_heat(void **state)
 
 // ---- replay
 
-// A small log of everything that voids; the calls of one run are commands in the other.
+// A small log of everything that voids commands. In one run these are calls, in the other commands.
 static void act(cau_session *session, uint64_t tick, bool as_commands)
 {
 	cau_command on = energy(1, 0, 0), later = energy(1, tick + 3, 0), off = energy(0, 0, 0);
@@ -259,7 +261,7 @@ static void act(cau_session *session, uint64_t tick, bool as_commands)
 			cau_session_hold_still(session, "hook", 0);
 	}
 	if (tick % 7 == 5)
-		stage_submit(session, &on); // after it, at the same border
+		stage_submit(session, &on); // after the energy-off or hold, at the same tick border
 }
 
 static void as_commands_they_give_the_same_bits(void **state)

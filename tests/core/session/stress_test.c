@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress channel of whole sessions: there when asked for and only then, also without a step,
-// and a restored session's own.
+// The stress channel of whole sessions: it exists only while it is watched, also without a step,
+// and a restored session has its own stress.
 #include "core/session/stage.h"
 
 enum { TICKS = 20 };

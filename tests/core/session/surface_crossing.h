@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a drawn surface crosses itself: every edge of a drawn face against every drawn face with
-// which it shares no vertex, by signed volumes. Apart from core's distances and searches.
+// Whether a drawn surface crosses itself. Every edge of a drawn face is tested, by signed volumes,
+// with every drawn face with which it shares no vertex. The test is independent of core's distances
+// and searches.
 #pragma once
 
 #include "core/session/stage.h"
@@ -18,7 +19,8 @@ static inline double surface_volume(const double *a, const double *b, const doub
 	       u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-// The ends are on both sides of the face's plane, and the line between them passes it within.
+// True if the ends are on different sides of the face's plane, and the line between them passes
+// inside the face.
 static inline int surface_pierces(const double *x, int32_t p, int32_t q, const int32_t *face)
 {
 	const double *a = x + 3 * (size_t)p, *b = x + 3 * (size_t)q, *c = x + 3 * (size_t)face[0],
@@ -34,8 +36,8 @@ static inline int surface_pierces(const double *x, int32_t p, int32_t q, const i
 	return (first > 0 && second > 0 && third > 0) || (first < 0 && second < 0 && third < 0);
 }
 
-// How many pairs of an edge and a face cross; edges of two faces count twice. Faces with a corner
-// in `left_out` (by vertex; NULL: none) are not looked at.
+// Returns the number of crossing pairs of an edge and a face; edges of two faces count twice. Faces
+// with a corner in `left_out` (by vertex; NULL: none) are skipped.
 static inline int surface_crossings_but(const cau_session *session, const uint8_t *left_out)
 {
 	cau_session_info info = stage_info(session);

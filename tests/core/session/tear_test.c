@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tearing: at the energy that a scene gives, whatever the mesh; membrane before fascia; nothing of
-// what is taut; and the same in every replay.
+// Tearing: it begins at the energy that the scene gives, on any mesh. The membrane tears before the
+// fascia. Taut tissue alone does not tear. Every replay tears the same.
 #include <stdio.h>
 
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
 // ---- a strip of known energy [Rivlin and Thomas 1953]
-// Held along both long edges, which are led apart, and cut half way along its middle. Far before
-// the cut it is stretched evenly and behind it slack, so a tear that goes on sets
-// k/2 strain^2 times the strip's width free by its area, wherever its tip is.
+// The strip is held along both long edges, which are moved apart, and is cut half way along its
+// middle. Far before the cut it is stretched evenly; behind the cut it is slack. So a growing tear
+// releases k/2 strain^2 times the strip's width for its area, wherever its tip is.
 static const double long_m = 0.08, wide_m = 0.02, stiffness_pa = 1e6, tear_j_m2 = 500;
-// Of the energy at which it tears: 4 % are measured, on each mesh, of triangles and of tetrahedra.
+// Largest error of the energy at which the strip tears. 4 % were measured on each mesh, of
+// triangles and of tetrahedra.
 static const double energy_share = 0.1;
-static const double run_m = 0.01; // how far a tear is to go on
-// Held at so much more strain (6 % of energy) than it began at, the tear goes on.
+static const double run_m = 0.01; // length by which a tear must grow
+// Additional strain (6 % of energy) at which a tear that has begun must continue to grow.
 static const double beyond_share = 0.03;
 
 typedef struct strip {
@@ -37,7 +38,7 @@ static bool crosses_the_cut(const cau_tissue *tissue, int32_t edge)
 	return a[1] * b[1] < 0 && a[0] < 1e-6 && b[0] < 1e-6;
 }
 
-// The row of cells along the middle, up to half way.
+// Cuts the row of cells along the middle, up to half way.
 static void cut_half(cau_session *session)
 {
 	cau_dissection *d = &session->dissection;
@@ -60,13 +61,13 @@ static cau_scene_def *strip_scene(int parting, int32_t cells, bool solid, double
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	scene->parting = parting;
 	scene->iterations = 200;
-	scene->damping_per_s = 20; // slow is at rest
+	scene->damping_per_s = 20; // so that slow motion is nearly at rest
 	int32_t along = (int32_t)lround(cells * long_m / wide_m);
 	if (solid) {
 		const double size[3] = {long_m, wide_m, wide_m / cells};
 		const int32_t count[3] = {along, cells, 1};
 		cau_fat_material *fat = stage_add_slab(scene, "strip", size, count)->fat;
-		fat->model = CAU_MODEL_COROTATED; // E/2 strain^2, however far
+		fat->model = CAU_MODEL_COROTATED; // E/2 strain^2 at any strain
 		fat->poisson_ratio = 0;
 		fat->young_modulus_pa = stiffness_pa;
 		fat->heat.tear_energy_j_m2 = energy_j_m2;
@@ -119,7 +120,7 @@ static int32_t torn(const strip *s)
 	return stage_frame(s->session).statistics.elements_torn;
 }
 
-// How far along the strip something has gone, m.
+// Returns how far along the strip elements were removed, m.
 static double tip_of(const strip *s)
 {
 	const cau_tissue *tissue = &s->session->tissue;
@@ -138,7 +139,7 @@ static double tip_of(const strip *s)
 static void tear_strip(int parting, int32_t cells, bool solid)
 {
 	enum { MOST_TICKS = 1000 };
-	const int per_strain = solid ? 500 : 2000; // ticks: solids take longer
+	const int per_strain = solid ? 500 : 2000; // ticks per unit of strain; solids take longer
 	cau_scene_def *scene = strip_scene(parting, cells, solid, tear_j_m2);
 	strip s = open_strip(scene, 2);
 	double start = tip_of(&s), strain = 0;
@@ -175,7 +176,7 @@ static void without_an_energy_nothing_tears(void **state)
 	cau_scene_def *scene = strip_scene(CAU_PARTING_EDGES, 9, false, 0);
 	strip s = open_strip(scene, 1);
 	for (int tick = 1; tick < 60; tick++)
-		step_at(&s, tick / 30.0); // up to three times its width
+		step_at(&s, tick / 30.0); // up to three times the strip's width
 	assert_int_equal(torn(&s), 0);
 	close_strip(&s);
 	free(scene);
@@ -183,7 +184,7 @@ static void without_an_energy_nothing_tears(void **state)
 
 // ---- replays
 
-// While elements are over what they bear, and have not gone yet.
+// Tested while elements are loaded above their limit but are not removed yet.
 static void threads_and_restores_change_no_bit(void **state)
 {
 	(void)state;
@@ -224,7 +225,8 @@ static void threads_and_restores_change_no_bit(void **state)
 
 // ---- scenes
 
-// What a material bears comes with a command, and goes with a snapshot that was taken before it.
+// A command may change what a material can resist. A snapshot from before the command restores the
+// old value.
 static void a_material_may_bear_less(void **state)
 {
 	(void)state;
@@ -272,7 +274,7 @@ static int32_t gone_of(const cau_session *session, const char *name)
 	return gone;
 }
 
-// Jaws that do not slip take hold through the fascia and are led up until it tears.
+// Jaws that do not slip grasp through the fascia and are raised until it tears.
 static void a_pull_tears_membrane_before_fascia(void **state)
 {
 	(void)state;
@@ -306,15 +308,16 @@ static void a_pull_tears_membrane_before_fascia(void **state)
 	free(scene);
 }
 
-// Fascia whose target is a tenth is under tension for good: beside a tool that moves over it, so
-// that it does not rest, and at rest.
+// Fascia with a target of a tenth is under permanent tension. It is tested awake, with a tool that
+// moves above it, and at rest.
 static void what_is_taut_does_not_tear(void **state)
 {
 	(void)state;
 	enum { AWAKE = CAU_TEST_SANITIZED ? 30 : 120, ALL = 10000 };
 	cau_scene_def *scene = stage_scene_light("layers");
+	// even a hundredth of the scene's tear energy prevents tears here
 	for (int32_t i = 0; i < scene->layer_count; i++)
-		scene->layers[i].sheet[0].heat.tear_energy_j_m2 *= 0.01; // a hundredth would do
+		scene->layers[i].sheet[0].heat.tear_energy_j_m2 *= 0.01;
 	cau_session *session = stage_open(scene, 2);
 	for (int tick = 0; tick < AWAKE; tick++) {
 		stage_move(session, "hook", -0.05 + 1e-4 * tick, 0, 0.05);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The temperature channel of whole sessions: there when asked for and only then, the same whenever
-// it was asked for, and without any effect on the state.
+// The temperature channel of whole sessions: it exists only while it is watched, does not depend on
+// when watching began, and has no effect on the state.
 #include <malloc.h>
 
 #include "core/session/busy_scene.h"
@@ -21,7 +21,8 @@ static void finish(cau_session *session, cau_scene_def *scene)
 	free(scene);
 }
 
-// What any tool's grid says, read vertex by vertex; returns how many are away from ambient.
+// Checks the channel, vertex by vertex, against the grids of all tools. Returns the number of
+// vertices that are not at ambient.
 static int32_t expect_the_grids(const cau_session *session)
 {
 	cau_frame frame = stage_frame(session);
@@ -45,7 +46,7 @@ static void test_it_is_there_when_asked_for(void **state)
 	cau_session *session = opened(&scene);
 	busy_run(session, TICKS);
 	assert_null(stage_frame(session).temperature);
-	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE); // there at once, without a step
+	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE); // exists at once, without a step
 	assert_true(expect_the_grids(session) > 20);
 	for (int tick = 0; tick < 10; tick++) {
 		busy_run(session, 1);
@@ -92,7 +93,7 @@ static void test_a_restored_session_shows_its_own(void **state)
 	finish(session, scene);
 }
 
-// Steps of a tool that heats and cuts nothing take no memory for it.
+// Steps of a tool that heats and cuts nothing allocate no memory for the channel.
 static void test_a_step_allocates_nothing_for_it(void **state)
 {
 	(void)state;

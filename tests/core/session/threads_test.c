@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Same commands, same ticks, same bits: whatever the number of threads, and whatever runs beside.
+// The same commands at the same ticks give the same bits, with any number of threads, and with
+// other work beside.
 #include "core/session/busy_scene.h"
 
 #include <pthread.h>
 
-// One to three threads, and a session whose threads change before each tick.
+// Sessions on one to three threads, and a session whose number of threads changes before each tick.
 static void the_hash_does_not_know_the_threads(void **state)
 {
 	(void)state;
@@ -42,7 +43,8 @@ static void *run_alone(void *context)
 {
 	worker *w = context;
 	cau_scene_def *scene = busy_scene();
-	cau_session *session = stage_open(scene, w->threads); // analysed beside the others' analyses
+	// Analysed while the other sessions are analysed.
+	cau_session *session = stage_open(scene, w->threads);
 	busy_run(session, 50);
 	w->hash = cau_session_hash(session);
 	cau_session_destroy(session);
@@ -67,7 +69,7 @@ static void beside_busy_sessions(void **state)
 			fail_msg("session %d differs from the one that ran alone", i);
 }
 
-// A new material while a factor is made in the background from the old one.
+// A material changes while a factor is computed in the background from the old material.
 static void materials_change_beside_the_background(void **state)
 {
 	(void)state;

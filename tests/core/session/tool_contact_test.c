@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact records of tools: they predict the force that the next pose gives, change no step,
-// and are there while they are watched.
+// The contact records of tools: they predict the force at the next pose, change no step, and exist
+// only while they are watched.
 #include "core/session/stage.h"
 
 static const double tick_s = 1.0 / 60;
@@ -15,7 +15,7 @@ static cau_scene_def *ball_on_slab(void)
 	stage_add_slab(scene, "fat", size, cells)->fat[0].young_modulus_pa = 20e3;
 	stage_pin_box(scene, least, most);
 	stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0.006);
-	scene->damping_per_s = 20; // at rest within a second
+	scene->damping_per_s = 20; // the tissue is at rest within a second
 	return scene;
 }
 
@@ -46,7 +46,7 @@ static void records_are_there_while_watched(void **state)
 	assert_null(stage_frame(session).contacts);
 	cau_session_watch(session, CAU_CHANNEL_TOOL_CONTACT);
 	cau_tool_contact contact = contact_of(session);
-	assert_false(contact.valid); // no step yet
+	assert_false(contact.valid); // no step was made yet
 	assert_string_equal(contact.name, "ball");
 	stage_step(session, 1);
 	contact = contact_of(session);
@@ -73,7 +73,8 @@ static void records_are_there_while_watched(void **state)
 	free(scene);
 }
 
-// Planes begin where the record's force says, and near tissue has them before it is touched.
+// Planes begin where the record's force implies. Tissue that is near has planes before the tool
+// touches it.
 static void planes_fit_the_force(void **state)
 {
 	(void)state;
@@ -94,7 +95,7 @@ static void planes_fit_the_force(void **state)
 	assert_memory_equal(contact.force_n, tool->raw_force_n, sizeof contact.force_n);
 	assert_true(contact.force_n[2] > 0.05 && contact.plane_count > 0);
 	int32_t touching = 0;
-	// Friction is in the force and not in the planes: it moves the place by so much at most.
+	// Friction is part of the force, but not of the planes. It moves the position by at most this.
 	double slack =
 		tool->definition.friction * cau_length(cau_vec3_of(contact.force_n)) *
 		fmax(contact.compliance_m_n[0], fmax(contact.compliance_m_n[1], contact.compliance_m_n[2]));
@@ -115,7 +116,8 @@ static void planes_fit_the_force(void **state)
 	free(scene);
 }
 
-// What the record says of the next pose against what the session makes of it at rest.
+// Compares the force that the record predicts for the next pose with the force of the session at
+// rest there.
 static void compliance_is_that_of_the_tissue(void **state)
 {
 	(void)state;
@@ -151,7 +153,7 @@ static uint64_t hash_of_run(bool watched, int32_t threads)
 		stage_move(session, "hook", 1e-4 * tick, 0, 0.03 - 7e-4 * tick);
 		stage_step(session, 1);
 	}
-	if (watched) // it did press, or there was nothing to compute
+	if (watched) // the ball pressed, so there was contact to compute
 		assert_true(contact_of(session).plane_count > 0);
 	uint64_t hash = cau_session_hash(session);
 	cau_session_destroy(session);

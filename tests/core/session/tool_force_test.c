@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces on tools: the raw ones are of the tick that a frame names, the filtered ones follow them
-// by the formula of protocol/README.md, with the tool's own time constant.
+// Forces on tools. The raw force belongs to the tick that the frame names. The filtered force
+// follows the formula of protocol/README.md, with the tool's own time constant.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
 
 static const double radius_m = 0.006, first_m = 0.0065,
-					way_m = 2e-4;     // of a ball; its way in a tick
+					way_m = 2e-4;     // radius and first height of a ball; its motion in a tick
 static const double rounding = 1e-12; // relative
 
 // A ball above a block of fat whose top is at z = 0.
@@ -25,7 +25,7 @@ static cau_scene_def *block_scene(double force_filter_s)
 	return scene;
 }
 
-// Down, along and up again, so that force and torque rise, turn and vanish.
+// Moves the ball down, along and up again, so that force and torque increase, rotate and vanish.
 static void lead(cau_session *session, int tick)
 {
 	double in = way_m * (tick < 30 ? tick : fmax(60 - tick, 0)), along = way_m * tick / 4;
@@ -42,7 +42,8 @@ static void configure(cau_session *session, double force_filter_s)
 	stage_submit(session, &command);
 }
 
-// The step that leads the ball into the tissue has its force: not the step before, nor the next.
+// The step that moves the ball into the tissue has the contact's force, not the step before or
+// after it.
 static void contact_is_felt_in_its_own_tick(void **state)
 {
 	(void)state;
@@ -92,7 +93,8 @@ static void expect_near(const double is[3], const double should[3])
 	assert_true(cau_length(off) <= rounding * (1 + cau_length(cau_vec3_of(should))));
 }
 
-// Whatever the time constant, and from the tick on at which it is set.
+// The filter follows its formula with any time constant, from the tick at which the constant is
+// set.
 static void the_filter_follows_its_formula(void **state)
 {
 	(void)state;
@@ -115,7 +117,7 @@ static void the_filter_follows_its_formula(void **state)
 	free(scene);
 }
 
-// The bound of the filtered force is no bound of the raw one.
+// The bound of the filtered force does not apply to the raw force.
 static void the_raw_force_has_no_bound(void **state)
 {
 	(void)state;
@@ -134,7 +136,7 @@ static void the_raw_force_has_no_bound(void **state)
 	free(scene);
 }
 
-// A snapshot holds the time constant that was set, and what the filter holds.
+// A snapshot holds the time constant that was set, and the filter's value.
 static void a_restored_filter_goes_on(void **state)
 {
 	(void)state;
@@ -161,7 +163,7 @@ static void a_restored_filter_goes_on(void **state)
 	free(scene);
 }
 
-// A slow filter keeps tissue from its rest until it has followed.
+// A slow filter keeps tissue awake until the filtered force has followed.
 static void tissue_rests_once_the_filter_has_followed(void **state)
 {
 	(void)state;

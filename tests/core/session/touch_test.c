@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools that touch (core/DECISIONS.md, "Contact"): nothing is inside them, friction keeps to its
-// cone, forces balance, jaws hold up to their slip force.
+// Contact of tools (core/DECISIONS.md, "Contact"): no tissue is inside a tool, friction stays in
+// its cone, forces balance, and jaws hold up to their slip force.
 #include "core/session/stage.h"
 
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"
 
-// Vertices end a step this far inside a pushing tool at most: ten iterations at 2 cm/s.
+// Greatest depth of a vertex inside a pushing tool at the end of a step: ten iterations at 2 cm/s.
 static const double penetration_m = 2e-5;
 static const double cone_tolerance = 1e-6; // rounding, relative to the normal force
 static const double weight_tolerance = 0.01;
@@ -80,7 +80,7 @@ static void friction_keeps_to_its_cone(void **state)
 				const cau_contact_row *row = &session->contact.row[i];
 				cau_vec3 r = cau_vec3_of(row->reaction), n = cau_vec3_of(row->normal);
 				double normal = cau_dot(r, n), along = cau_length(cau_add_scaled(r, -normal, n));
-				assert_true(normal >= -1e-12); // N: never pulls, but for rounding
+				assert_true(normal >= -1e-12); // the tool never pulls, except for rounding (N)
 				assert_true(along <= friction[k] * normal + cone_tolerance * fabs(normal));
 			}
 		}
@@ -94,7 +94,7 @@ static void friction_keeps_to_its_cone(void **state)
 	assert_true(sideways[1] > 1.5 * fmax(sideways[0], 0));
 }
 
-// Energized surfaces do not push: tissue must be where it can burn.
+// Energized surfaces do not push. Tissue must be able to enter the hot part, where heat parts it.
 static void an_energized_ball_does_not_push(void **state)
 {
 	(void)state;
@@ -109,9 +109,9 @@ static void an_energized_ball_does_not_push(void **state)
 	free(scene);
 }
 
-// A taut sheet that was pushed out in one tick is guessed to fly on in the next: it has to be in
-// contact all the same, or it springs back into the tool by turns. At rest the force stays, and
-// nothing is inside.
+// A taut sheet that was pushed out in one tick is guessed to move on in the next. The sheet must
+// stay in contact all the same. Otherwise it would spring back into the tool in every second tick.
+// At rest the force stays, and nothing is inside the tool.
 static void what_is_pressed_stays_in_contact(void **state)
 {
 	(void)state;
@@ -141,7 +141,7 @@ static void what_is_pressed_stays_in_contact(void **state)
 	}
 }
 
-// ---- more than there is room for
+// ---- more vertices than the capacity
 static int32_t vertices_within(const cau_session *session, double margin_m, bool drawn)
 {
 	const cau_tool_state *state = stage_tool(session, "ball");
@@ -154,11 +154,11 @@ static int32_t vertices_within(const cau_session *session, double margin_m, bool
 	return count;
 }
 
-// A ball at a block in so many cells: what is near it, or touches where that is many, has rows, and
-// what touches and has none is told.
+// A ball at a block with this many cells. Near vertices have contact constraints; if there are too
+// many, only touching vertices have. Touching vertices without a constraint are reported.
 static void check_rows(const int32_t cells[3], double radius_m, double depth_m, int32_t *left_out)
 {
-	const double touching_m = 2e-4; // nearer is touching (thin.c)
+	const double touching_m = 2e-4; // a vertex nearer than this touches (thin.c)
 	cau_scene_def *scene = block_of(cells, 0.2);
 	scene->tools[0].hot_radius_m = radius_m;
 	scene->tools[0].grid_step_m = radius_m / 5;
@@ -193,9 +193,10 @@ static void contact_says_what_it_left_out(void **state)
 	int32_t left_out;
 	check_rows((const int32_t[3]){16, 16, 6}, 0.006, 1e-4, &left_out);
 	assert_int_equal(left_out, 0);
-	check_rows((const int32_t[3]){16, 16, 6}, 0.04, 8e-3, &left_out); // many rows, and all of them
+	// Many constraints, within the capacity.
+	check_rows((const int32_t[3]){16, 16, 6}, 0.04, 8e-3, &left_out);
 	assert_int_equal(left_out, 0);
-	check_rows((const int32_t[3]){40, 40, 2}, 0.05, 5e-3, &left_out); // more than there may be
+	check_rows((const int32_t[3]){40, 40, 2}, 0.05, 5e-3, &left_out); // more than the capacity
 	assert_true(left_out > 0);
 }
 
@@ -212,7 +213,7 @@ static cau_scene_def *resting_scene(void)
 	fat->fat[0].young_modulus_pa = 50000;
 	stage_mesh_of(scene, fat)->translate_m[2] = 0.0041;
 	cau_tool_def *table = stage_add_tool(scene, "table", CAU_TOOL_SPHERE, 0, 0, -0.05);
-	table->hot_radius_m = 0.05; // its top is at z = 0, the shaft below
+	table->hot_radius_m = 0.05; // its top is at z = 0, and its shaft below
 	table->grid_step_m = 0.01;
 	table->pose.rotation[0] = 0;
 	table->pose.rotation[1] = 1;
@@ -247,7 +248,7 @@ static void the_tool_feels_the_weight_on_it(void **state)
 	free(scene);
 }
 
-// Gravity tilts: below the friction angle the block stays, above it goes.
+// Gravity is tilted. Below the friction angle the block stays, above it the block slides.
 static void it_sticks_and_slips(void **state)
 {
 	(void)state;
@@ -266,8 +267,8 @@ static void it_sticks_and_slips(void **state)
 	}
 	print_message("friction 0.3: at a slope of 0.15 it goes %.2g m, at 0.6 %.2g m\n", way[0],
 	              way[1]);
-	assert_true(fabs(way[0]) < 1e-3); // it leans, as elastic tissue does
-	// a = g (0.6 - 0.3) for half a second is 0.37 m; a round table lets go sooner
+	assert_true(fabs(way[0]) < 1e-3); // the block leans, as elastic tissue does
+	// a = g (0.6 - 0.3) for half a second gives 0.37 m. The block leaves the round table earlier.
 	assert_true(way[1] > 0.05);
 }
 
@@ -310,14 +311,14 @@ static void jaws_hold_up_to_their_slip_force(void **state)
 		const cau_tool_state *jaws = stage_tool(session, "jaws");
 		double pull = cau_length(cau_vec3_of(jaws->raw_force_n));
 		most = fmax(most, pull);
-		// the attachments, and what the closed jaws push at their edge
+		// The pull is at most that of the attachments and of the closed jaws' edge.
 		assert_true(pull <= slip * before * 1.5 + 1e-3);
 	}
 	print_message("%d vertices held, most pull %.3g N of %.3g N, %d held after 48 mm\n", held, most,
 	              slip * held, stage_tool(session, "jaws")->grasped_vertices);
 	assert_true(most > 0.3 * slip * held);
 	assert_int_equal(stage_tool(session, "jaws")->grasped_vertices, 0);
-	assert_true(stage_tool(session, "jaws")->grasping); // empty jaws, still closed
+	assert_true(stage_tool(session, "jaws")->grasping); // the jaws are empty and still closed
 	cau_session_destroy(session);
 	free(scene);
 }

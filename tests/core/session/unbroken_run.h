@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The busy scene run without a break, with a snapshot of every tick: what snapshots are held
-// against.
+// The busy scene in a run without a break, with a snapshot of every tick. Tests of snapshots
+// compare with it.
 #pragma once
 
 #include "core/session/busy_scene.h"
 #include "session/session_internal.h"
 
 typedef struct unbroken_run {
-	uint64_t hash[BUSY_TICKS + 1]; // before each tick and at the end
-	int waiting[BUSY_TICKS + 1];   // removed elements that the factor still held
-	int making[BUSY_TICKS + 1];    // a factor was being made
+	uint64_t hash[BUSY_TICKS + 1]; // before each tick, and at the end
+	int waiting[BUSY_TICKS + 1];   // number of removed elements that were still in the factor
+	int making[BUSY_TICKS + 1];    // 1: a factor was being computed
 	stage_bytes shot[BUSY_TICKS + 1];
 } unbroken_run;
 

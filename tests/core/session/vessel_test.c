@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A blood vessel in a session (core/vessel). It bleeds where it is cut, and not where jaws press it
+// A blood vessel in a session (core/vessel). It bleeds where it is cut, but not where jaws press it
 // shut or a seal holds. Snapshots restore its state.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
 
 static const double sealed_m = -0.005, deep_m = -0.007, above_m = 0.04;
-// Under sanitizers on half as many cells along each axis, and without what needs fine ones.
+// Under sanitizers these tests use half as many cells along each axis, and skip tests that need
+// fine cells.
 enum {
-	TRAVEL = 12, // twice what the longest way, 48 mm, takes at the tools' 0.5 m/s
+	TRAVEL = 12, // ticks; twice the time for the longest motion, 48 mm, at the tools' 0.5 m/s
 	CLOSING = 40,
 	OPENING = 20,  // the jaws open in a few ticks, then the tissue springs back
-	SEALING = 180, // at most
-	HOLDING = 30,  // after the vessel is sealed: the rest of the seal gets strong too
+	SEALING = 180, // largest number of ticks
+	HOLDING = 30,  // ticks after the vessel is sealed, in which the rest of the seal becomes strong
 	CUTTING = CAU_TEST_SANITIZED ? 35 : 70
 };
 
 static cau_session *open_pedicle(int32_t threads)
 {
 	cau_scene_def *scene = stage_scene_light("pedicle");
-	scene->iterations = 10; // a third: these tests need no exact motion
+	scene->iterations = 10; // a third of the scene's number: these tests need no exact motion
 	cau_session *session = stage_open(scene, threads);
 	free(scene);
 	return session;
@@ -70,7 +71,7 @@ static void seal(cau_session *session)
 	withdraw_forceps(session);
 }
 
-// The needle is drawn across the strip, which is 4 mm wide, with its power on.
+// Draws the energized needle across the strip, which is 4 mm wide.
 static void divide(cau_session *session, double x)
 {
 	put(session, "needle", x, -0.008, above_m);
@@ -94,8 +95,9 @@ static double blood_m3(const cau_session *session)
 	return sum;
 }
 
-// What more than one test looks at: a session whose vessel was cut, with how it began, and one
-// whose vessel was sealed. Tests that go on with one stand below those that look at it.
+// Sessions that several tests use: a session whose vessel was cut, with a snapshot of its
+// beginning, and a session whose vessel was sealed. Tests that change a session run after the tests
+// that only read it.
 static struct {
 	cau_session *cut, *sealed;
 	stage_bytes beginning;
@@ -131,15 +133,15 @@ static void what_is_whole_does_not_bleed(void **state)
 	assert_int_equal(artery(session)->flags, 0);
 	assert_true(artery(session)->bleeding_m3_s == 0 && artery(session)->burst_pa == 0);
 	assert_true(artery(session)->point_count > 10);
-	// The shown line goes from end to end of the strip.
+	// The drawn line reaches from end to end of the strip.
 	const cau_vessel_state *vessel = artery(session);
 	assert_true(fabs((double)vessel->point[0].position_m[0] + 0.02) < 1e-6);
 	assert_true(fabs((double)vessel->point[vessel->point_count - 1].position_m[0] - 0.02) < 1e-6);
 	cau_session_destroy(session);
 }
 
-// Both stumps bleed: the one with 12 kPa more than the one with 4 kPa. Blood lies on the tissue,
-// and no more of it than was shed.
+// Both stumps bleed: the stump with 12 kPa more than the stump with 4 kPa. The blood on the tissue
+// is at most the blood that was shed.
 static void what_is_cut_bleeds_from_both_stumps(void **state)
 {
 	(void)state;
@@ -163,17 +165,17 @@ static void what_is_cut_bleeds_from_both_stumps(void **state)
 	assert_true(deepest > 5e-5F);
 }
 
-// Jaws stop the flow while they press. Without heat it comes back.
+// Jaws stop the flow while they press. Without heat the flow returns afterwards.
 static void pressure_stops_bleeding_and_heals_nothing(void **state)
 {
 	(void)state;
 	cau_session *session = open_pedicle(1);
 	divide(session, 0.004);
 	double free_m3_s = artery(session)->bleeding_m3_s;
-	close_forceps(session); // before the cut, seen from the first end
+	close_forceps(session); // on the first end's side of the cut
 	const cau_vessel_state *vessel = artery(session);
 	assert_true(vessel->flags & CAU_VESSEL_SHUT);
-	// What still bleeds is the other stump, with its 4 kPa.
+	// The other stump still bleeds, with its 4 kPa.
 	double other = cau_vessel_outflow(&session->scene->vessels[0], 4000, 1);
 	assert_true(vessel->bleeding_m3_s <= other && vessel->bleeding_m3_s < 0.5 * free_m3_s);
 	withdraw_forceps(session);
@@ -198,7 +200,7 @@ static void what_is_sealed_is_divided_without_blood(void **state)
 	}
 }
 
-// Heat without compression denatures the wall and joins nothing.
+// Heat without compression denatures the wall, but does not seal it.
 static void heat_alone_seals_nothing(void **state)
 {
 	(void)state;
@@ -242,7 +244,8 @@ static void threads_and_a_restore_change_no_bit(void **state)
 	cau_session_destroy(restored);
 }
 
-// A restore of the beginning in the session that was cut: what follows is as in a fresh one.
+// The session with the cut vessel is restored to its beginning. Then it continues like a fresh
+// session.
 static void a_rewind_leaves_nothing_behind(void **state)
 {
 	(void)state;

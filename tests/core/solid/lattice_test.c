@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lattice asks for boxes of places at once where these have one label. Its tetrahedra are the
-// same as without that, and few places are asked for where tissue is far apart.
+// The lattice queries whole boxes of points if they have one label. The test expects the same
+// tetrahedra as without boxes, and few queries of points if tissue is far apart.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +30,8 @@ static void begin(shape *of)
 	assert_non_null(of->out);
 }
 
-// A ball around the z axis, without the rings from `open` on; a cavity looks inward.
+// Adds a ball around the z axis. Rings from `open` on are left out. The surface of a cavity faces
+// inward.
 static void put_ball(shape *of, double radius, double x, bool cavity, int rings, int open)
 {
 	int around = 2 * rings, base = of->vertex_count + 1;
@@ -78,8 +79,8 @@ static void end(shape *of, cau_mesh *mesh, cau_domain *domain)
 	free(of->text);
 }
 
-// ---- domains that count
-static cau_domain inner; // one at a time
+// ---- domains that count their calls
+static cau_domain inner; // the counted domain, one at a time
 static int64_t places, uniform_boxes, tissue_boxes;
 
 static int32_t counted_label(const cau_domain *domain, const double x[3], const bool *passed)
@@ -150,8 +151,8 @@ static double random_share(void)
 	return (double)(state >> 11) * 0x1p-53;
 }
 
-// A box that is called uniform has that label at its corners and at random places, of which some
-// lie outside the domain's own box.
+// Expects that a box that is called uniform has its label at its corners and at random points. Some
+// of these are outside the domain's own box.
 static void boxes_keep_their_word(const char *name)
 {
 	int seen[CAU_SOLID_LABEL_MAX + 1] = {0};
@@ -200,7 +201,7 @@ static void surfaces(void **state)
 			fputs("v 0 0 0\nv 1 1 0\nv 0.5 0.1 1\nv 0.3 0.7 0.9\nf 1 2 3\nf 1 4 2\n", of.out);
 		else if (kind == TWO_FAR)
 			put_two_far(&of, 4);
-		else if (kind == BOWL) // its winding number is a half all over the opening
+		else if (kind == BOWL) // its winding number is a half everywhere in the opening
 			put_ball(&of, 1, 0, false, 40, 20);
 		else
 			put_ball(&of, 1, 0, false, 12, 12);
@@ -217,7 +218,7 @@ static void surfaces(void **state)
 	}
 }
 
-// Volumes whose axes are not at right angles.
+// Makes a volume whose axes are not at right angles.
 static void volume_of(unsigned char (*label_of)(const int x[3]), cau_volume *volume)
 {
 	char text[SIDE * SIDE * SIDE + 512];
@@ -235,7 +236,7 @@ static void volume_of(unsigned char (*label_of)(const int x[3]), cau_volume *vol
 	cau_domain_of_volume(volume, &inner);
 }
 
-// Two labels side by side, and one voxel in a corner of the volume.
+// Returns two labels side by side, and one voxel in a corner of the volume.
 static unsigned char blocks_of(const int x[3])
 {
 	bool in = x[0] > 3 && x[0] < 12 && x[1] > 3 && x[1] < 20 && x[2] < 15;
@@ -243,7 +244,7 @@ static unsigned char blocks_of(const int x[3])
 	return (unsigned char)(in ? 1 + (x[1] > 9) : corner ? 3 : 0);
 }
 
-// One voxel in 32, of four labels, and a plate: most voxels lose the vote.
+// Returns one voxel in 32 of four labels, and a plate. Most voxels lose the vote.
 static unsigned char sparse(const int x[3])
 {
 	bool in = random_share() < 1.0 / 32;
@@ -266,7 +267,8 @@ static void volumes(void **state)
 	cau_volume_finish(&volume);
 }
 
-// Eight triangles, sixteen million cells: less than a twentieth of the places is asked for.
+// The surface has eight triangles, the lattice about sixteen million cells. Less than a twentieth
+// of the points is queried.
 static void cost_follows_the_tissue(void **state)
 {
 	(void)state;

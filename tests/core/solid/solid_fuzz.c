@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as a segmentation, or as a surface that is turned outward. One in 64 becomes a solid,
-// as that takes long, and is read back.
+// Reads any bytes as a segmentation, or as a surface that is turned outward. One input in 64 is
+// made into a solid, which takes long, and the solid is read back.
 #include <stdlib.h>
 
 #include "cautery/solid.h"
@@ -8,7 +8,7 @@
 #include "mesh/mesh.h"
 #include "solid/domain.h"
 
-enum { MOST_BYTES = 1 << 16, ONE_IN = 64, TETRAHEDRA = 500 }; // more only takes time
+enum { MOST_BYTES = 1 << 16, ONE_IN = 64, TETRAHEDRA = 500 }; // larger values only take time
 
 static void demand(int promise)
 {

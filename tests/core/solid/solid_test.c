@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solids are whole: faces meet, nothing is inside out, volumes and borders are those of what was
-// meant, and the same bytes give the same bytes.
+// Tests that solids are valid. Faces meet, no tetrahedron is inverted, and volumes and borders are
+// as expected. The same bytes give the same solid.
 #include "cautery/solid.h"
 
 #include <math.h>
@@ -17,7 +17,8 @@
 #include "mesh/mesh.h"
 
 enum { SIDE = 40, LABELS = 3 };
-static const double radius = 16; // voxels of a millimetre, around the middle
+// Radius of the ball, in voxels of one millimetre; its centre is the middle.
+static const double radius = 16;
 
 // ---- a ball of voxels in sectors, one label each
 static int label_of(const double x[3], int labels)
@@ -50,7 +51,7 @@ static unsigned char *ball_of_voxels(int labels, size_t *byte_count)
 	return bytes;
 }
 
-// ---- a box as STL, whose facets from `missing` on are left out and every `turned`-th looks inward
+// ---- a box as STL; every `turned`-th facet faces inward, all of them if `turned` < 0
 static void put_facet(FILE *out, double corner[8][3], const int *at, bool inward)
 {
 	fputs("facet normal 0 0 0\nouter loop\n", out);
@@ -76,10 +77,12 @@ static void put_box(FILE *out, double size, int turned)
 		put_facet(out, corner, facets[k], turned < 0 || (turned && k % turned == 0));
 }
 
-// ---- what a solid is
+// ---- measurements of a solid
 typedef struct measured {
-	double volume[LABELS + 1], border; // of each region; area of faces of one tetrahedron
-	int32_t tetrahedra, odd_edges;     // edges of the border that an odd number of its faces has
+	// Volume of each region; area of the faces that have one tetrahedron.
+	double volume[LABELS + 1], border;
+	// `odd_edges`: edges of the border that an odd number of its faces share.
+	int32_t tetrahedra, odd_edges;
 } measured;
 
 static void measure_border(const cau_mesh *mesh, const cau_face_table *faces, measured *of)
@@ -155,7 +158,7 @@ static double least_angle(const cau_solid *solid)
 
 // ---- tests
 
-// Sectors' volumes by the voxels themselves; a ball's border has its area.
+// The volumes of the sectors are those of their voxels. The border has the area of a ball.
 static void labels_meet(void **state)
 {
 	(void)state;
@@ -176,7 +179,8 @@ static void labels_meet(void **state)
 				sum += of.volume[label];
 				all += voxels[label];
 			}
-			// A chord of length e sags by e^2 / 8r: three times that of r is missing of the volume.
+			// A chord of length e sags by e^2 / 8r. The missing share of the volume is three times
+			// the missing share of r.
 			assert_true(fabs(sum - all) < (0.02 + 0.375 * pow(edges[k] / 0.911 / radius, 2)) * all);
 			assert_int_equal(of.odd_edges, 0);
 			double area = 4 * M_PI * radius * radius;
@@ -201,7 +205,7 @@ static void the_same_bytes_give_the_same_solid(void **state)
 	free(bytes);
 }
 
-// Boxes of 20 mm, as they are, partly and wholly turned, and with a cavity of 10 mm.
+// Boxes of 20 mm: unchanged, partly turned, wholly turned, and with a cavity of 10 mm.
 static void surfaces_are_filled(void **state)
 {
 	(void)state;
@@ -241,7 +245,7 @@ static void a_chosen_edge_makes_as_many_as_a_session_steps(void **state)
 	free(bytes);
 }
 
-// Every beginning of a file is refused with a reason, or makes a solid.
+// Every beginning of a file is refused with a reason.
 static void beginnings_are_refused(void **state)
 {
 	(void)state;
@@ -262,8 +266,8 @@ static void beginnings_are_refused(void **state)
 	free(bytes);
 }
 
-// One layer of nine voxels with three labels. Its lattice has no tetrahedron at the first edge that
-// is tried, which is no fault: a shorter edge follows.
+// One layer of nine voxels with three labels. With the first edge that is tried, the lattice has no
+// tetrahedron. This is no error, and a shorter edge is tried.
 static void what_is_thinner_than_any_edge_is_refused(void **state)
 {
 	(void)state;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Acceleration changes the way, not the end: the accelerated step and the plain iteration
-// x <- x - A^-1 grad E meet in one point, the former sooner.
+// Acceleration changes the path, not the result: the accelerated step and the plain iteration x <-
+// x - A^-1 grad E converge to the same point, the accelerated one in fewer iterations.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
 #include "core/rig/solve_scenes.h"
 
-// Both stop where a step is 1e-11 of the first; the plain iteration contracts by more than 0.98 a
-// step, so that what is left of its way is at most 50 such steps.
+// Both iterations stop at a step that is 1e-11 of the first one. The plain iteration contracts by
+// more than 0.98 per step, so the remaining distance is at most 50 such steps.
 static const double STILL = 1e-11;
 static const double FIXED_POINT_TOLERANCE = 1e-8;
 enum { PLAIN_MOST = 6000, ACCELERATED_MOST = 600 };
 
-// A load on the law's mesh. Sheets are made heavy and soft: the plain iteration would need many
-// thousands of steps across a sheet as it is.
+// Builds the law's mesh with a load. Sheets are made heavy and soft: with normal values the plain
+// iteration would need many thousands of steps across a sheet.
 static void make(rig *r, const law_scene *law)
 {
 	rig_begin(r);
@@ -82,7 +82,7 @@ static void test_the_same_fixed_point(void **state)
 	}
 }
 
-// Ten accelerated steps of a pulled block come nearer to the end than ten plain ones.
+// For a pulled block, ten accelerated steps come closer to the solution than ten plain ones.
 static void test_sooner(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact and attachment at the solver's fixed point: nothing penetrates, nothing pulls, friction
-// stays in its cone, and the reactions are what the gradient of eq. 4 is balanced by.
+// Contact and attachment at the solver's fixed point: no penetration, no pull, friction within its
+// cone, and reactions that balance the gradient of eq. 4.
 #include "solve/contact.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "core/rig/rig.h"
 #include "solve/coupling.h"
 
-// Of the largest reaction, where the step has converged to its residual of 1e-10.
+// Relative to the largest reaction, for a step that has converged to a residual of 1e-10.
 static const double FORCE_TOLERANCE = 1e-5;
 static const double GAP_TOLERANCE_M = 1e-8;
 static const double RADIUS_M = 0.02, DEPTH_M = 0.004, MARGIN_M = 0.008;
@@ -20,7 +20,7 @@ typedef struct pressed {
 	cau_contact_set *set;
 } pressed;
 
-// A block held at its bottom.
+// A block that is pinned at its bottom.
 static void make_of(pressed *p, double friction, int32_t along, int32_t across, int32_t deep)
 {
 	rig_begin(&p->r);
@@ -65,7 +65,7 @@ static void touch(pressed *p, double slide_m)
 			continue;
 		cau_contact_row row = cau_contact_at_vertex(v, 0);
 		memcpy(row.no_slip[0], p->r.tissue.rest + 3 * v, sizeof row.no_slip[0]);
-		row.no_slip[0][0] += slide_m; // a vertex that stuck would have been carried along
+		row.no_slip[0][0] += slide_m; // a vertex that stuck would have moved with the tool
 		assert_true(cau_contact_add(p->set, &row));
 	}
 	assert_true(p->set->row_count > 4);
@@ -79,7 +79,7 @@ static void solve(pressed *p)
 	cau_solver_evaluate(&p->r.solver); // the gradient without reactions
 }
 
-// Gradient less reactions is nothing, on rows and elsewhere.
+// The gradient less the reactions is 0 at all vertices.
 static void assert_balance(const pressed *p)
 {
 	size_t n = 3 * (size_t)p->r.tissue.vertex_count;
@@ -121,21 +121,21 @@ static void test_pressed_without_and_with_friction(void **state)
 			assert_true(gap > -GAP_TOLERANCE_M);            // no penetration
 			assert_true(push > -FORCE_TOLERANCE * largest); // no pull
 			assert_true(push < FORCE_TOLERANCE * largest ||
-			            gap < GAP_TOLERANCE_M); // one or the other
+			            gap < GAP_TOLERANCE_M); // either a push or a gap
 			assert_true(cau_length(tangent) <= frictions[f] * push + FORCE_TOLERANCE * largest);
 			pushing += push > FORCE_TOLERANCE * largest;
 			idle += gap > 1e-4;
 			sideways += tangent.x;
 		}
 		assert_true(pushing > 3 && idle > 0);
-		assert_true(frictions[f] == 0 || sideways > 0); // carried along with the tool
+		assert_true(frictions[f] == 0 || sideways > 0); // the tool carries the vertex along
 		for (int32_t v = 0; v < p.r.tissue.vertex_count; v++)
 			assert_true(gap_of(&p, v, NULL) > -GAP_TOLERANCE_M);
 		rig_finish(&p.r);
 	}
 }
 
-// What is kept of each column says the same as S.
+// The kept columns have the same values as S.
 static void assert_columns_are_whole(const pressed *p)
 {
 	for (int32_t i = 0; i < p->set->column_count; i++)
@@ -145,7 +145,8 @@ static void assert_columns_are_whole(const pressed *p)
 				p->set->inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
 }
 
-// More rows than there are whole columns, then few again: the same law holds.
+// First more constraints than whole columns, then few again. The solution satisfies the same
+// conditions in both cases.
 static void test_rows_beyond_whole_columns(void **state)
 {
 	(void)state;
@@ -188,7 +189,7 @@ static int32_t top_vertex(const pressed *p)
 	return -1;
 }
 
-// A held vertex is pulled by a spring to its anchor, up to the slip force.
+// A grasped vertex is pulled to its anchor by a spring, at most with the slip force.
 static void test_attachment_is_a_spring_that_slips(void **state)
 {
 	(void)state;
@@ -207,14 +208,14 @@ static void test_attachment_is_a_spring_that_slips(void **state)
 		solve(&p);
 		assert_balance(&p);
 		cau_vec3 reaction = cau_vec3_of(p.set->row[0].reaction);
-		cau_vec3 offset = cau_vec3_of(p.set->tool[0].offset); // the tool gives way to it
+		cau_vec3 offset = cau_vec3_of(p.set->tool[0].offset); // the tool yields by this offset
 		cau_vec3 away = cau_sub(cau_add(cau_vec3_of(row.anchor), offset),
 		                        cau_vec3_of(p.r.solver.position + 3 * v));
 		double force = p.tool.grasp_stiffness_n_m * cau_length(away);
 		assert_int_equal(p.set->row[0].slipping, s);
 		assert_near(cau_length(reaction), s ? slips[s] : force, FORCE_TOLERANCE * force);
-		assert_true(!s || force > slips[s]);         // it would have pulled harder
-		cau_vec3 across = cau_cross(reaction, away); // along the spring
+		assert_true(!s || force > slips[s]);         // the spring would pull harder
+		cau_vec3 across = cau_cross(reaction, away); // the reaction is along the spring
 		assert_true(cau_length(across) < 1e-4 * cau_length(reaction) * cau_length(away));
 		rig_finish(&p.r);
 	}

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The iteration of a step: it ends where the gradient ends, never rises, survives leaps, and is the
-// same for any number of threads.
+// The iteration of a step: it converges where the gradient vanishes, never raises the objective,
+// survives leaps, and gives the same result for any number of threads.
 #include <string.h>
 
 #include "core/rig/solve_scenes.h"
 
-static const double LEAP_M = 0.025; // the grip's move in one tick
-// Net force and torque at convergence, relative to the sums of sizes.
+static const double LEAP_M = 0.025; // the grip's motion in one tick
+// Net force and torque at convergence, relative to the sums of the absolute values.
 static const double BALANCE_TOLERANCE = 1e-6;
-// Momentum: rounding of a converged step in double.
+// Momentum of a converged step: rounding in double.
 static const double MOMENTUM_TOLERANCE = 1e-9;
 
-// A block held at its bottom and gripped at its top.
+// A block that is pinned at its bottom and gripped at its top.
 static void make_gripped(rig *r, int model, int precision, int32_t threads)
 {
 	rig_begin(r);
@@ -32,7 +32,7 @@ static void leap(rig *r, double x, double z)
 		}
 }
 
-// One tick of eq. 1 and 2 without load: s = x, the velocity thrown away.
+// One tick of eq. 1 and 2 without load: s = x, so the velocity is discarded.
 static void tick(rig *r)
 {
 	memcpy(r->solver.predicted, r->solver.position,
@@ -67,10 +67,10 @@ static void test_a_leap_stays_bounded(void **state)
 					assert_true(fabs(r.solver.position[i] - r.tissue.rest[i]) < 2 * LEAP_M);
 				rig_finish(&r);
 			}
-	assert_true(backtracks > 0); // it was needed
+	assert_true(backtracks > 0); // backtracking was needed
 }
 
-// No step raises the objective by more than rounding, iteration by iteration.
+// After any number of iterations, the objective has not risen by more than rounding.
 static void test_the_objective_never_rises(void **state)
 {
 	(void)state;
@@ -91,7 +91,8 @@ static void test_the_objective_never_rises(void **state)
 	}
 }
 
-// Vertices pushed through the opposite faces: the block turns itself right side out again.
+// Vertices are pushed through the opposite faces of their elements. The block recovers: no element
+// stays inverted.
 static void test_inverted_elements_recover(void **state)
 {
 	(void)state;
@@ -123,8 +124,8 @@ static void test_inverted_elements_recover(void **state)
 	}
 }
 
-// A free body that is deformed, and spins and flies: its elements' forces neither push nor turn it
-// as a whole, and a converged step keeps its momentum.
+// A free body is deformed, and spins and flies. Its elements' forces have no net force and no net
+// torque, and a converged step keeps its momentum.
 static void test_a_free_body_keeps_its_momentum(void **state)
 {
 	(void)state;
@@ -205,7 +206,7 @@ static void test_stops_at_rest_and_at_the_tolerance(void **state)
 	make_gripped(&r, CAU_MODEL_NEOHOOKEAN, CAU_PRECISION_DOUBLE, 1);
 	size_t bytes = 3 * (size_t)r.tissue.vertex_count * sizeof(double);
 	tick(&r);
-	assert_int_equal(r.solver.iterations_done, 1); // nothing to do
+	assert_int_equal(r.solver.iterations_done, 1); // the tissue is at its solution already
 	assert_memory_equal(r.solver.position, r.tissue.rest, bytes);
 	r.solver.iterations = 200;
 	r.solver.tolerance = 1e-3;

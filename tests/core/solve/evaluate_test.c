@@ -20,7 +20,7 @@ static void make(rig *r, int32_t threads)
 	rig_deform(r, a, 1e-2, &random, r->solver.predicted);
 	r->solver.drag = cau_arena_array(&r->arena, 3, sizeof *r->solver.drag);
 	r->solver.drag_count = 3;
-	for (int k = 0; k < 3; k++) // the last one on a vertex that is free, the first on a pinned one
+	for (int k = 0; k < 3; k++) // vertex 0 is pinned, the last vertex is free
 		r->solver.drag[k] = (cau_drag){7 * k, 40.0 + k, {0.01, 0.02 * k, -0.01}};
 }
 
@@ -51,7 +51,7 @@ static void test_gradient_is_that_of_the_objective(void **state)
 	rig_finish(&r);
 }
 
-// With nothing but inertia and drag the parts are known.
+// With inertia and drag only, the objective is known in closed form.
 static void test_inertia_and_drag_by_hand(void **state)
 {
 	(void)state;
@@ -70,7 +70,8 @@ static void test_inertia_and_drag_by_hand(void **state)
 				r.solver.position[3 * r.solver.drag[k].vertex + c] - r.solver.drag[k].target[c];
 			expected += r.solver.drag[k].coefficient * away * away / 2;
 		}
-	assert_near(cau_solver_evaluate(&r.solver), expected, 1e-13 * expected); // order of additions
+	// rounding: another order of additions
+	assert_near(cau_solver_evaluate(&r.solver), expected, 1e-13 * expected);
 	assert_true(cau_solver_elastic_energy(&r.solver) == 0);
 	rig_finish(&r);
 }
@@ -90,11 +91,11 @@ static void test_threads_change_nothing(void **state)
 	}
 }
 
-// What one thread does beside the first local step of a tick is done once, and the result is that
+// Work that one thread does beside the first local step of a tick is done once. The result is that
 // of the local step alone.
 static void count(void *context)
 {
-	++*(int *)context; // by one thread: no other part touches it
+	++*(int *)context; // only one thread changes it
 }
 
 static void test_other_work_may_be_done_beside(void **state)

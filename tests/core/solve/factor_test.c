@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The factor against the matrix it factors, and downdated against fresh factors.
+// The factor against the matrix that it factors, and a downdated factor against a fresh one.
 #include <string.h>
 
 #include "core/rig/solve_scenes.h"
 
-// |A x - b| relative to |A| |x|: a few dozen roundings of a direct solve.
+// |A x - b| relative to |A| |x|: a direct solve has a few dozen roundings.
 static const double RESIDUAL_TOLERANCE = 1e-14;
-// Downdated against fresh, on solutions: 1e-10, or where it is larger 1e-13 times the worst ratio
-// of an element's stiffness to a vertex's inertia.
+// Tolerance for solutions of a downdated against a fresh factor: 1e-10, or 1e-13 times the worst
+// ratio of an element's stiffness to a vertex's inertia, whichever is larger.
 static const double DOWNDATE_TOLERANCE = 1e-10, DOWNDATE_RATIO = 1e-13;
 
 static void make(rig *r, int scene)
@@ -73,7 +73,7 @@ static void test_solves_the_matrix(void **state)
 	}
 }
 
-// Takes `count` random live elements out of the factor, one update of up to rank 8 at a time.
+// Downdates `count` random live elements, in updates of at most rank 8.
 static void downdate_some(rig *r, uint64_t *random, int count)
 {
 	while (count > 0) {
@@ -120,7 +120,7 @@ static void test_downdated_is_as_good_as_fresh(void **state)
 		if (!(off < downdate_tolerance(&r)))
 			fail_msg("%s: %g, allowed %g", solve_scenes[scenes[s]].name, off,
 			         downdate_tolerance(&r));
-		assert_true(off > 0); // two ways were taken
+		assert_true(off > 0); // the two factors were computed in different ways
 		rig_finish(&r);
 	}
 }
@@ -145,7 +145,7 @@ static void test_adding_takes_a_removal_back(void **state)
 		                 CAU_OK);
 		solve_by_factor(&r, b, add ? x : between);
 	}
-	assert_true(rig_difference(between, before, n) > 1e-6); // the removal was felt
+	assert_true(rig_difference(between, before, n) > 1e-6); // the removal changed the solution
 	assert_true(rig_difference(x, before, n) < DOWNDATE_TOLERANCE);
 	rig_finish(&r);
 }
@@ -167,8 +167,8 @@ static double column_sum(const cau_factor *factor)
 	return sum;
 }
 
-// A factor made anew depends on the values alone: bit for bit the same after any history, and with
-// the order given back.
+// A factor that is computed again depends on the values alone: it is bit for bit the same after any
+// history, and with a given order.
 static void test_a_new_factor_has_no_memory(void **state)
 {
 	(void)state;

@@ -21,7 +21,7 @@ static void test_the_best_below_the_ceiling(void **state)
 			const cau_kernels *kernels = cau_kernels_choose(single, ceilings[k]);
 			int rank = rank_of(kernels->instruction_set);
 			assert_int_equal(kernels->single, single);
-			assert_true(rank >= last); // a higher ceiling never gives less
+			assert_true(rank >= last); // a higher ceiling never gives a lower tier
 			assert_true(k > 2 || rank <= k);
 			last = rank;
 		}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every law must hold: its gradient is its energy's, it neither pushes nor turns an element as
-// a whole, it is silent at rest and once removed, and precisions and instruction sets agree.
+// Properties of every law: the gradient is that of the energy; an element has no net force or
+// torque; it has no force at rest or once removed; precisions and instruction sets agree.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
@@ -9,12 +9,12 @@
 // 1e-9 for these meshes at h = 1e-5 of their thickness.
 static const double DIFFERENCE_STEP_M = 1e-7;
 static const double DIFFERENCE_TOLERANCE = 1e-6;
-// Sums of a few products: about twenty roundings of the largest term, which may be ten times the
-// result.
+// A sum of a few products has about twenty roundings of the largest term, which may be ten times
+// the result.
 static const double BALANCE_DOUBLE = 1e-13;
 static const double TORQUE_DOUBLE = 1e-11;
-// One rounding to float of D_m^-1, u and the material, worth 6e-8 each, amplified by strains of
-// about a tenth (stress is a difference of terms ten times its size).
+// One rounding to float of D_m^-1, u and the material, 6e-8 each. Strains of about a tenth amplify
+// it, because a stress is a difference of terms ten times its size.
 static const double PRECISION_TOLERANCE = 2e-5;
 // Fused multiply-add changes single roundings.
 static const double TIER_DOUBLE = 1e-12, TIER_SINGLE = 1e-5;
@@ -69,7 +69,8 @@ static void test_gradient_is_that_of_the_energy(void **state)
 	}
 }
 
-// Sum of an element's gradient over its vertices and of its moments, relative to the sums of sizes.
+// Computes the sum of an element's gradient over its vertices, and the sum of its moments, both
+// relative to the sums of the absolute values.
 static void element_balance(rig *r, const double *x, int kind, int32_t slot, double *force,
                             double *torque)
 {
@@ -120,7 +121,7 @@ static void test_no_law_pushes_or_turns_an_element(void **state)
 		}
 }
 
-// Rest is exactly silent where the law's target is the rest shape.
+// If the law's target is the rest shape, forces at rest are exactly 0.
 static void test_rest_is_exactly_silent(void **state)
 {
 	(void)state;
@@ -168,7 +169,7 @@ static void test_removed_elements_are_silent(void **state)
 	}
 }
 
-// The gradient without one element is the old one less that element's share.
+// Without one element, the gradient is the old one less that element's part.
 static void test_one_removed_leaves_the_others(void **state)
 {
 	(void)state;
@@ -222,7 +223,7 @@ static void test_every_instruction_set_agrees(void **state)
 		for (int t = 0; t < 2; t++)
 			for (int single = 0; single < 2; single++) {
 				if (strcmp(cau_kernels_choose(single, tiers[t])->instruction_set, tiers[t]) != 0)
-					continue; // this processor has it not
+					continue; // this processor does not have the tier
 				int precision = single ? CAU_PRECISION_SINGLE : CAU_PRECISION_DOUBLE;
 				deformed a, b;
 				make_deformed(&a, &law_scenes[k], precision, tiers[t]);
@@ -247,7 +248,8 @@ static void test_dot_and_add_scaled(void **state)
 	}
 	const cau_kernels *whole = cau_kernels_choose(0, NULL), *half = cau_kernels_choose(1, NULL);
 	static const int counts[] = {0, 1, 7, 16, 1023, 1024, 1025, MOST};
-	// Strips of 64 float additions: 64 x 6e-8 of the sum of sizes at most.
+	// Strips of 64 float additions: the error is at most 64 x 6e-8 of the sum of the absolute
+	// values.
 	static const double DOT_SINGLE = 4e-6, DOT_DOUBLE = 1e-14;
 	for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
 		double exact = 0, size = 0;
@@ -260,7 +262,7 @@ static void test_dot_and_add_scaled(void **state)
 		assert_near(half->dot((cau_reals *)fx, (cau_reals *)fy, 0, counts[k]), exact,
 		            DOT_SINGLE * size);
 	}
-	// from a place on: the tail alone
+	// start at an index: only the last element
 	assert_true(whole->dot((cau_reals *)x, (cau_reals *)y, MOST - 1, 1) ==
 	            x[MOST - 1] * y[MOST - 1]);
 	double expected = y[MOST - 1] + 0.5 * x[MOST - 1];
@@ -269,7 +271,7 @@ static void test_dot_and_add_scaled(void **state)
 	assert_true(y[MOST - 1] == expected && fy[MOST - 1] == (float)expected);
 }
 
-enum { SPREAD_VERTICES = 45, SPREAD_COLUMNS = 37 }; // strips of 4 to 16, and some that are over
+enum { SPREAD_VERTICES = 45, SPREAD_COLUMNS = 37 }; // strips of 4 to 16 vertices, and a remainder
 
 typedef struct spread_case {
 	_Alignas(64) unsigned char increment[4 * SPREAD_VERTICES * sizeof(double)];
@@ -302,11 +304,12 @@ static double spread_expected(const spread_case *of, bool single, int count, int
 	return sum;
 }
 
-// Any number of columns at once give the sums, and the very bits of one after the other.
+// The columns spread together give the expected sums, and bit for bit the result of one column
+// after the other.
 static void compare_spread(const cau_kernels *kernels, int count, int first, int last)
 {
 	static spread_case together, apart;
-	// as many additions, each rounded by 6e-8 or 1.1e-16 of a sum of at most 40
+	// number of additions, times the rounding of 6e-8 or 1.1e-16 of a sum of at most 40
 	double tolerance = kernels->single ? 6e-8 * 40 * 40 : 1.1e-16 * 40 * 40;
 	make_spread_case(&together, kernels->single);
 	make_spread_case(&apart, kernels->single);

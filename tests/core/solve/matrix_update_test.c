@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The factor kept in step with cuts: a few by downdates, many by a new factor made beside, all
-// within a bounded time and the same in every run.
+// Updates of the factor after cuts: few elements by downdates, many by a new factor in the
+// background. All waits are bounded, and every run gives the same result.
 #include <string.h>
 
 #include "core/rig/solve_scenes.h"
 
-// Downdated against fresh, on solutions; the slab's stiffest element over its lightest vertex
-// leaves 1e-13 w |G|^2 dt^2 / m just above 1e-10.
+// Downdated against fresh, for solutions. The slab's stiffest element over its lightest vertex
+// makes 1e-13 w |G|^2 dt^2 / m slightly larger than 1e-10.
 static const double DOWNDATE_TOLERANCE = 2e-10;
-static const double WAIT_MOST_S = 0.050; // of a removed element in the factor, simulated
+// longest time that a removed element may stay in the factor, simulated
+static const double WAIT_MOST_S = 0.050;
 
 enum { SLAB = 1, LAYERS = 5 };
 
@@ -36,7 +37,8 @@ static void make(cutter *c, int scene, int precision, int32_t threads, double st
 		c->load[i] = c->r.tissue.pinned[i / 3] ? 0 : (float)random_between(&c->random, -1, 1);
 }
 
-// Removes `count` more live elements, then one tick of the update. Returns how many there were.
+// Removes up to `count` live elements and computes one tick of the update. Returns how many it
+// removed.
 static int cut(cutter *c, int count)
 {
 	int removed = 0;
@@ -53,7 +55,7 @@ static int cut(cutter *c, int count)
 	return removed;
 }
 
-// The solution of a rig that was factored anew over the same live elements.
+// Computes the solution of a rig whose factor is computed from the same live elements.
 static void solve_fresh(cutter *c, int precision, int scene, double *out)
 {
 	cutter fresh;
@@ -87,8 +89,8 @@ static void test_a_few_are_downdated_at_once(void **state)
 	rig_finish(&c.r);
 }
 
-// A tick that parts more than a few shares them with the next ones; all are out two ticks later,
-// and the factor is then the fresh one's.
+// If a tick parts more than a few elements, the next ticks downdate some of them. Two ticks later
+// none waits, and the factor agrees with a fresh one.
 static void test_more_are_shared_with_the_next_ticks(void **state)
 {
 	(void)state;
@@ -106,7 +108,7 @@ static void test_more_are_shared_with_the_next_ticks(void **state)
 		solve_fresh(&c, CAU_PRECISION_DOUBLE, SLAB, fresh);
 		assert_true(rig_difference(c.solution, fresh, c.reals) < DOWNDATE_TOLERANCE);
 	}
-	for (int tick = 0; tick < 10; tick++) // as much again and again
+	for (int tick = 0; tick < 10; tick++) // the same number in each of several ticks
 		cut(&c, 8);
 	cut(&c, 0);
 	cut(&c, 0);
@@ -116,8 +118,8 @@ static void test_more_are_shared_with_the_next_ticks(void **state)
 	rig_finish(&c.r);
 }
 
-// A burst is left to a new factor: it comes one sixtieth of a second later, not before, and is then
-// the fresh one to the last bit.
+// After a burst, a new factor is computed. It comes into use one sixtieth of a second later, not
+// before, and is bit for bit the fresh one.
 static void test_a_burst_swaps_in_a_new_factor(void **state)
 {
 	(void)state;
@@ -143,12 +145,12 @@ static void test_a_burst_swaps_in_a_new_factor(void **state)
 		solve_by_sweep(&c.r, c.load, c.solution);
 		assert_memory_equal(c.solution, fresh, c.reals * sizeof(double));
 		cau_background_wait(c.r.update.background);
-		assert_null(c.r.update.next_panels.panel); // the second set is gone again
+		assert_null(c.r.update.next_panels.panel); // the second set of panels is freed
 		rig_finish(&c.r);
 	}
 }
 
-// Without memory for a second set of panels the swap packs in place: the same bits.
+// Without memory for a second set of panels, the swap packs in place and gives the same bits.
 static void test_a_swap_without_a_second_set(void **state)
 {
 	(void)state;
@@ -167,7 +169,8 @@ static void test_a_swap_without_a_second_set(void **state)
 	rig_finish(&c.r);
 }
 
-// What is cut while a factor is being made is served after the swap, by downdates or another one.
+// Elements that are cut while a factor is being computed are handled after the swap, by downdates
+// or by another factor.
 static void test_cuts_during_the_making_are_not_lost(void **state)
 {
 	(void)state;
@@ -177,21 +180,22 @@ static void test_cuts_during_the_making_are_not_lost(void **state)
 	cut(&c, 100);
 	cut(&c, 5); // the swap, then five downdates
 	cut(&c, 100);
-	cut(&c, 100); // the swap, then another start
+	cut(&c, 100); // the swap, then another new factor
 	for (int tick = 0; tick < 3; tick++)
 		cut(&c, 0);
 	assert_int_equal(c.r.update.waiting_count, 0);
 	assert_false(c.r.update.making);
 	solve_by_sweep(&c.r, c.load, c.solution);
 	solve_fresh(&c, CAU_PRECISION_DOUBLE, LAYERS, fresh);
-	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-7); // 10 MPa beside 5 kPa
+	// 10 MPa next to 5 kPa: larger rounding
+	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-7);
 	rig_finish(&c.r);
 }
 
 static void test_no_element_waits_long(void **state)
 {
 	(void)state;
-	// below, at and above what downdates can serve in a tick
+	// below, at and above the number that downdates can handle in a tick
 	static const int rates[] = {3, 7, 12, 13, 14, 16, 17, 24, 25, 40};
 	for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
 		cutter c;
@@ -207,7 +211,7 @@ static void test_no_element_waits_long(void **state)
 	}
 }
 
-// 2,000 downdates, then a canonical factor, whose books start anew.
+// After 2,000 downdates the factor is replaced by a canonical one, and the count starts again.
 static void test_a_worn_factor_is_replaced(void **state)
 {
 	(void)state;
@@ -227,11 +231,11 @@ static void test_a_worn_factor_is_replaced(void **state)
 	assert_true(c.r.update.operation_count < 40);
 	solve_by_sweep(&c.r, c.load, c.solution);
 	solve_fresh(&c, CAU_PRECISION_SINGLE, SLAB, fresh);
-	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-5); // float panels
+	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-5); // the panels are in float
 	rig_finish(&c.r);
 }
 
-// The same cuts give the same bits at every tick, whoever is faster.
+// The same cuts give the same bits at every tick, whichever thread is faster.
 static void test_every_run_is_the_same(void **state)
 {
 	(void)state;
@@ -254,7 +258,7 @@ static void test_every_run_is_the_same(void **state)
 	rig_finish(&b.r);
 }
 
-// Everything cut away: what is left is inertia.
+// All elements are removed. The matrix has only masses left.
 static void test_nothing_left(void **state)
 {
 	(void)state;
@@ -269,12 +273,13 @@ static void test_nothing_left(void **state)
 	for (size_t i = 0; i < c.reals; i++) {
 		double expected =
 			c.load[i] * c.r.solver.step_s * c.r.solver.step_s / c.r.tissue.mass[i / 3];
-		assert_near(c.solution[i], expected, 1e-14 * fabs(expected)); // a division or two
+		// rounding of one or two divisions
+		assert_near(c.solution[i], expected, 1e-14 * fabs(expected));
 	}
 	rig_finish(&c.r);
 }
 
-// The diagonal system has no factor: its diagonal follows at once.
+// The diagonal system has no factor. Its diagonal is updated at once.
 static void test_diagonal_system(void **state)
 {
 	(void)state;

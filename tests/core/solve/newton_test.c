@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Newton's method in loose tissue: its H is the derivative of the gradient where no eigenvalue is
-// negative, M is symmetric and positive definite wherever the region ends, and settling finds where
-// the region's forces are in balance.
+// Newton's method in loose tissue: H is the derivative of the gradient if no eigenvalue is
+// negative; M is symmetric and positive definite wherever the region ends; settling balances the
+// region's forces.
 #include <string.h>
 
 #include "core/rig/solve_scenes.h"
 
-// Central differences of gradients over a hundredth of a micrometre: truncation and rounding.
+// Central differences of gradients at +-10 nm: truncation and rounding.
 static const double DIFFERENCE_M = 1e-8, DIFFERENCE_TOLERANCE = 1e-5;
-static const double SOLVE_TOLERANCE = 1e-9; // rounding times a condition of some 1e5
+static const double SOLVE_TOLERANCE = 1e-9; // rounding times a condition number of about 1e5
 
 enum { TAUT, LOOSE, RANGE, VISCOUS, LAWS };
 
@@ -33,7 +33,7 @@ static void make(rig *r, int law, double stretch)
 	assert_true(r->solver.newton_chosen);
 	cau_solver_take_strain(&r->solver, 1); // at rest
 	rig_deform(r, a, 2e-4, &random, r->solver.position);
-	cau_solver_take_strain(&r->solver, 0.8); // a fifth of the strain is of this step
+	cau_solver_take_strain(&r->solver, 0.8); // a fifth of the strain is new in this step
 	r->solver.drag = cau_arena_array(&r->arena, 1, sizeof *r->solver.drag);
 	r->solver.drag_count = 1;
 	r->solver.drag[0] = (cau_drag){20, 40.0, {0.01, 0.02, -0.01}};
@@ -71,7 +71,7 @@ static void add_product(const double *block, const int32_t vertex[2], bool turne
 		}
 }
 
-// y = H x, of an H that is assembled and not factored
+// y = H x, for an H that is assembled and not factored
 static void multiply(rig *r, const double *x, double *y)
 {
 	const cau_newton *h = &r->solver.loose.region;
@@ -100,7 +100,8 @@ static void random_way(const rig *r, double *way)
 	}
 }
 
-// Stretched beyond their targets or ranges all over, so that no part of any element is negative.
+// The sheet is stretched beyond its targets or ranges everywhere, so that no part of an element's
+// Hessian has a negative eigenvalue.
 static void the_hessian_is_the_derivative_of_the_gradient(void **state)
 {
 	(void)state;
@@ -122,7 +123,7 @@ static void the_hessian_is_the_derivative_of_the_gradient(void **state)
 	}
 }
 
-// Crumpled as well as stretched: H d = -g, and d leads down.
+// In crumpled and in stretched sheets, H d = -g, and d lowers the objective.
 static void its_increment_solves_it_and_leads_down(void **state)
 {
 	(void)state;
@@ -150,7 +151,7 @@ static void its_increment_solves_it_and_leads_down(void **state)
 		}
 }
 
-// An element that is cut out has no part in H: what is left is inertia.
+// A removed element has no part in H. Only masses are left.
 static void what_is_removed_is_not_in_it(void **state)
 {
 	(void)state;
@@ -169,7 +170,8 @@ static void what_is_removed_is_not_in_it(void **state)
 	rig_finish(&r);
 }
 
-// Every other column of vertices is in the region, so M has couplings between it and the rest.
+// Chooses the vertices in one half of the sheet as the region, so that M has couplings between the
+// region and the rest.
 static void choose_half(rig *r)
 {
 	cau_loose *loose = &r->solver.loose;
@@ -180,7 +182,7 @@ static void choose_half(rig *r)
 	assert_true(loose->region.n > 5 && loose->region.n < r->tissue.vertex_count / 2 + 8);
 }
 
-// M^-1 g of a gradient that is random.
+// Computes M^-1 g of a random gradient g.
 static void precondition(rig *r, uint64_t seed, double *gradient, double *increment)
 {
 	cau_newton *region = &r->solver.loose.region;
@@ -227,7 +229,7 @@ static void it_is_joined_to_the_rest_symmetrically(void **state)
 	}
 }
 
-// Moved to where its own forces vanish; all else stays, and eq. 4 has fallen.
+// Settling moves the region until its own forces vanish. All other vertices stay, and eq. 4 falls.
 static void settling_leaves_no_force(void **state)
 {
 	(void)state;
@@ -241,7 +243,7 @@ static void settling_leaves_no_force(void **state)
 		double objective = cau_solver_evaluate(&r.solver), first = objective;
 		take(&r, r.solver.gradient, gradient);
 		double size = sqrt(dot(gradient, gradient, n)), left = 0;
-		int most = law == VISCOUS ? 12 : 4; // it buckles on its way
+		int most = law == VISCOUS ? 12 : 4; // the viscous sheet buckles while it settles
 		for (int k = 0; k < most && (!k || !r.solver.loose.settled); k++)
 			assert_int_equal(cau_loose_settle(&r.solver, &objective, NULL), CAU_OK);
 		assert_true(r.solver.loose.settled && !r.solver.loose.given_up && objective < first);
@@ -257,8 +259,8 @@ static void settling_leaves_no_force(void **state)
 	}
 }
 
-// A taut sheet is left to A. With a crumpled corner, its slack triangles make up a region. A sheet
-// with a range is a region, taut or not.
+// A taut sheet is left to A. If a corner is crumpled, its slack triangles are the region. A sheet
+// with a range is a region in both cases.
 static void what_is_slack_is_loose(void **state)
 {
 	(void)state;
@@ -269,7 +271,8 @@ static void what_is_slack_is_loose(void **state)
 		cau_solver_evaluate(&r.solver);
 		assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
 		assert_int_equal(r.solver.loose.region.n > 0, law == RANGE);
-		for (int32_t v = 0; v < r.tissue.vertex_count; v++) // a corner comes back to where it was
+		// move a corner back to 0.2 of its rest position
+		for (int32_t v = 0; v < r.tissue.vertex_count; v++)
 			if (r.tissue.rest[3 * v] > 0.02 && r.tissue.rest[3 * v + 1] > 0)
 				for (int c = 0; c < 3; c++)
 					r.solver.position[3 * v + c] = 0.2 * r.tissue.rest[3 * v + c];
@@ -280,8 +283,8 @@ static void what_is_slack_is_loose(void **state)
 	}
 }
 
-// A sheet with a range and too many vertices for a region stays with A. A crumpled sheet beside it
-// is a region all the same.
+// A sheet with a range and too many vertices for a region is left to A. A crumpled sheet beside it
+// is still a region.
 static void a_large_sheet_with_a_range_is_left_to_a(void **state)
 {
 	(void)state;
@@ -301,7 +304,7 @@ static void a_large_sheet_with_a_range_is_left_to_a(void **state)
 	rig_finish(&r);
 }
 
-// Fat goes on by A, and so does a law that has no energy.
+// Fat is left to A, and so is a law without an energy.
 static void other_tissue_is_left_to_a(void **state)
 {
 	(void)state;

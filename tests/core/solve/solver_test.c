@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which laws may be safeguarded by their energy, and systems without a free row.
+// Which laws can be safeguarded by their energy, and systems without a free row.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
@@ -13,13 +13,14 @@ static void test_laws_with_an_energy(void **state)
 		law_scenes[k].add(&r);
 		rig_build(&r, NULL, 1);
 		assert_int_equal(cau_solver_is_conservative(&r.tissue, 0), law_scenes[k].has_energy);
-		assert_int_equal(cau_solver_is_conservative(&r.tissue, 1), 0); // printed projections
+		// printed projections have no energy
+		assert_int_equal(cau_solver_is_conservative(&r.tissue, 1), 0);
 		assert_int_equal(r.solver.conservative, law_scenes[k].has_energy);
 		rig_finish(&r);
 	}
 }
 
-// Everything pinned: nothing to factor, and a step does nothing.
+// If all vertices are pinned, there is no factor, and a step changes nothing.
 static void test_nothing_free(void **state)
 {
 	(void)state;
@@ -36,7 +37,7 @@ static void test_nothing_free(void **state)
 	rig_finish(&r);
 }
 
-// The diagonal system's step is the printed one: gradient over diagonal.
+// The diagonal system's step is that of the paper: gradient over diagonal.
 static void test_diagonal_step(void **state)
 {
 	(void)state;

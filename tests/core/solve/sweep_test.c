@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The packed sweeps against the factor they are packed from: every precision, instruction set and
-// number of threads, before and after cuts.
+// The packed sweeps against the factor from which they are packed: for every precision, instruction
+// set and number of threads, before and after cuts.
 #include <string.h>
 
 #include "core/rig/solve_scenes.h"
 
-// What the panels hold. Rounding of a well-conditioned solve: measured 1e-15, 4e-7 at worst
-// (fascia), 7e-5 at worst (fascia), with room for other processors' order of additions.
+// The entries of the panels. Measured rounding of a well-conditioned solve: doubles 1e-15, floats
+// 4e-7 at worst (fascia), narrow 7e-5 at worst (fascia). The tolerances are larger, because other
+// processors may add in another order.
 typedef enum form { DOUBLES, FLOATS, NARROW, FORM_COUNT } form;
 static const char *const FORM_NAMES[] = {"doubles", "floats", "narrow"};
 static const double CLOSE[] = {1e-13, 5e-6, 3e-4};
-static const double REFINED = 1e-10; // after three increments
+static const double REFINED = 1e-10; // error after three increments
 static const char *const TIERS[] = {"baseline", "avx2", "avx512"};
 
 static void make(rig *r, int scene, form panels, const char *tier, int32_t threads)
@@ -87,7 +88,8 @@ static void residual(const double *a, const double *b, const double *x, size_t n
 				r[3 * i + c] -= a[i * n + j] * x[3 * j + c];
 }
 
-// Each increment takes up the error of the last: what the panels round does not stay in the result.
+// Each increment corrects the error of the last, so rounding in the panels does not remain in the
+// result.
 static void test_increments_refine(void **state)
 {
 	(void)state;
@@ -117,7 +119,7 @@ static void test_increments_refine(void **state)
 		}
 }
 
-// Bit for bit, whatever the number of threads, before and after cuts.
+// Results are bit for bit the same for any number of threads, before and after cuts.
 static void test_threads_change_nothing(void **state)
 {
 	(void)state;
@@ -146,7 +148,7 @@ static void test_threads_change_nothing(void **state)
 		}
 }
 
-// Packing only what downdates touched gives the bits of packing everything.
+// Packing only the supernodes that downdates touched gives the same bits as packing all.
 static void test_partial_packing_is_full_packing(void **state)
 {
 	(void)state;
@@ -172,7 +174,8 @@ static void test_partial_packing_is_full_packing(void **state)
 		}
 }
 
-// Supernodes cover every column once; tasks are disjoint and closed under children.
+// Supernodes cover every column once. Tasks are disjoint, and all descendants of a task's supernode
+// are in the task.
 static void test_shape(void **state)
 {
 	(void)state;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sparse system against a dense one written out element by element.
+// The sparse system against a dense one that is assembled element by element.
 #include <string.h>
 
 #include "core/rig/solve_scenes.h"
 
-// Sums of at most a hundred terms in another order.
+// Sums of at most a hundred terms, added in another order.
 static const double ASSEMBLY_TOLERANCE = 1e-13;
 
 static double entry(const cau_matrix *matrix, int32_t a, int32_t b)
@@ -76,7 +76,8 @@ static void test_rows_are_the_free_vertices(void **state)
 			assert_int_equal(system->vertex_of_row[system->row_of_vertex[v]], v);
 		}
 		assert_int_equal(system->row_count, free_count);
-		for (int32_t c = 0; c < system->row_count; c++) { // diagonal first, rows ascending
+		// each column has its diagonal first, then ascending rows
+		for (int32_t c = 0; c < system->row_count; c++) {
 			assert_int_equal(system->matrix.row[system->matrix.first[c]], c);
 			for (int32_t k = system->matrix.first[c] + 1; k < system->matrix.first[c + 1]; k++)
 				assert_true(system->matrix.row[k] > system->matrix.row[k - 1]);
@@ -85,7 +86,7 @@ static void test_rows_are_the_free_vertices(void **state)
 	}
 }
 
-// C C^T of the columns is w G^T G over the free rows.
+// C C^T of the appended columns is w G^T G over the free rows.
 static void test_columns_are_the_root_of_an_element(void **state)
 {
 	(void)state;
@@ -125,7 +126,7 @@ static void test_columns_are_the_root_of_an_element(void **state)
 	rig_finish(&r);
 }
 
-// Eq. 7: M/dt^2 + sum of omega_m over the elements of a vertex.
+// The diagonal of eq. 7: M/dt^2 + sum of omega_m over the elements of a vertex.
 static void test_diagonal_is_equation_7(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops over vectors in either precision: what they write is the doubles' value, rounded once.
+// The loops over vectors in both precisions: they write the value computed in double, rounded once.
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,11 +28,11 @@ static void test_what_is_added_is_read(void **state)
 			for (int v = 0; v < VERTICES; v++)
 				assert_true(vectors->at(column, v) == (v == 2 ? rounded : 0));
 		}
-		vectors->read(vector, 3, got); // its neighbour
+		vectors->read(vector, 3, got); // the neighbouring vertex is unchanged
 		assert_true(got[0] == 0 && got[1] == 0 && got[2] == 0);
 		assert_near(vectors->longest(vector, VERTICES),
 		            sqrt(third[0] * third[0] + third[1] * third[1] + third[2] * third[2]), 1e-5);
-		// a float and what is left of a third differ by its rounding
+		// in float, a third minus its rounded value leaves the rounding error
 		vectors->add(vector, 2, back);
 		vectors->read(vector, 2, got);
 		assert_near(got[0], 0, vectors->rounding);
@@ -42,7 +42,7 @@ static void test_what_is_added_is_read(void **state)
 	}
 }
 
-// Displacement and step are each other's inverse, on every vertex of the share and on no other.
+// displace and step are inverse to each other, for every vertex of the range and no other.
 static void test_displacements_and_steps(void **state)
 {
 	(void)state;

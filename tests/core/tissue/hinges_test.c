@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bending coefficients: nothing on a flat patch however it lies, the cotangent Laplacian on a bent
-// one.
+// Bending coefficients: no bending on a flat patch in any orientation, and the cotangent Laplacian
+// on a bent patch.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
 
-// Cotangents of well-shaped triangles times metres.
+// Rounding of cotangents of well-shaped triangles, times metres.
 static const double FLAT_TOLERANCE = 1e-15;
 
 static void combine(const rig *r, int32_t hinge, const double *x, double e[3])
@@ -25,7 +25,7 @@ static void test_flat_patches_do_not_bend(void **state)
 	rig_begin(&r);
 	rig_add_sheet(&r, 5, 4)->sheet[0].bending_stiffness_nm = 0.01;
 	rig_build(&r, NULL, 1);
-	// every inner edge of the grid: 3 kinds
+	// The grid has inner edges of 3 kinds.
 	assert_int_equal(r.tissue.hinge_count, 5 * 4 + 4 * 4 + 5 * 3);
 	enum { VERTICES = 6 * 5 };
 	assert_int_equal(r.tissue.vertex_count, VERTICES);
@@ -39,7 +39,7 @@ static void test_flat_patches_do_not_bend(void **state)
 			for (int c = 0; c < 3; c++)
 				assert_near(e[c], 0, FLAT_TOLERANCE * 10);
 		}
-	// and a stretch within the plane is no bending either
+	// A stretch within the plane is no bending.
 	for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 		x[i] *= 1.3;
 	rig_local(&r, x, gradient);
@@ -47,8 +47,9 @@ static void test_flat_patches_do_not_bend(void **state)
 	rig_finish(&r);
 }
 
-// e = sum of the edge's cotangents: for two triangles over the edge a-b, e is |ab| times the sum of
-// the unit vectors that stand on it in the two planes, pointing in.
+// e is the sum of the edge's cotangents. For two triangles at the edge a-b, e is |ab| times the sum
+// of two unit vectors. Each vector is in the plane of its triangle, normal to the edge, and points
+// inward.
 static void test_bent_patches_by_hand(void **state)
 {
 	(void)state;

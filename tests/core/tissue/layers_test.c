@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layers over one vertex array: what they share, their material directions, and what they refuse.
+// Layers with one common vertex array: shared vertices, material directions, and refused scenes.
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/dissect/cutting.h"
 
-static const double FRAME_TOLERANCE = 1e-13; // a few roundings of unit vectors
+static const double FRAME_TOLERANCE = 1e-13; // some rounding errors of unit vectors
 
 static void test_layers_lie_one_after_the_other(void **state)
 {
@@ -18,7 +18,8 @@ static void test_layers_lie_one_after_the_other(void **state)
 	assert_int_equal(fat->tetrahedron_count, 6 * 6 * 5 * 3);
 	assert_int_equal(membrane->triangle_count, 4 * (6 * 5 + 5 * 3 + 3 * 6));
 	assert_int_equal(fascia->triangle_count, 2 * 7 * 6);
-	assert_int_equal(membrane->first_vertex, fat->first_vertex); // a membrane has its fat's
+	// A membrane has the vertices of its fat.
+	assert_int_equal(membrane->first_vertex, fat->first_vertex);
 	assert_int_equal(membrane->vertex_count, fat->vertex_count);
 	assert_int_equal(fascia->first_vertex, fat->vertex_count);
 	assert_int_equal(r.tissue.vertex_count, 7 * 6 * 4 + 8 * 7);
@@ -44,7 +45,7 @@ static void test_membrane_is_the_outward_boundary(void **state)
 	add_all_layers(&r);
 	rig_build(&r, NULL, 1);
 	const cau_tissue_layer *membrane = &r.tissue.layer[1];
-	double flux = 0; // of x through the surface: three times the volume
+	double flux = 0; // flux of x through the surface: three times the volume
 	for (int32_t t = membrane->first_triangle;
 	     t < membrane->first_triangle + membrane->triangle_count; t++) {
 		const int32_t *v = r.tissue.triangle + 3 * t;
@@ -52,7 +53,7 @@ static void test_membrane_is_the_outward_boundary(void **state)
 		cau_vec3 b = cau_vec3_of(r.tissue.rest + 3 * v[1]);
 		flux += cau_dot(a, cau_cross(b, cau_vec3_of(r.tissue.rest + 3 * v[2]))) / 2;
 	}
-	assert_near(flux, 3 * 0.1 * 0.08 * 0.03, 1e-15); // ten digits of 7.2e-4 and more
+	assert_near(flux, 3 * 0.1 * 0.08 * 0.03, 1e-15); // rounding of 7.2e-4 in double, with a margin
 	rig_finish(&r);
 }
 
@@ -86,7 +87,8 @@ static void test_frames_are_orthonormal(void **state)
 	rig_finish(&r);
 }
 
-// t_u points where u grows: turned against x and y by the texture's turn.
+// t_u points where the texture coordinate u grows: rotated against x and y by the texture's
+// rotation.
 static void test_texture_gives_the_direction(void **state)
 {
 	(void)state;
@@ -104,7 +106,8 @@ static void test_texture_gives_the_direction(void **state)
 	rig_finish(&r);
 }
 
-// Without a texture the fibre is laid into the plane; where it stands on it, some axis in it.
+// Without a texture the fibre is projected into the plane. If the fibre is normal to the plane,
+// some axis in the plane is taken.
 static void test_fibre_gives_the_direction(void **state)
 {
 	(void)state;
@@ -126,7 +129,7 @@ static void test_fibre_gives_the_direction(void **state)
 	}
 }
 
-// A texture that lies on one line gives no direction: the fibre does. A flat triangle is left out.
+// A texture on one line gives no direction, so the fibre is used. A flat triangle is left out.
 static void test_degenerate_triangles_are_left_out(void **state)
 {
 	(void)state;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trusses: from each vertex of the upper layer to its nearest ones of the lower, within reach.
+// Links from each vertex of the upper layer to its nearest vertices of the lower layer, within
+// reach.
 #include <string.h>
 
 #include "core/rig/rig.h"
@@ -49,7 +50,7 @@ static void test_the_nearest_within_reach(void **state)
 			nearer += distance(&r, upper, v) < farthest * (1 - 1e-12);
 		}
 		assert_int_equal(taken, reachable < PER_VERTEX ? reachable : PER_VERTEX);
-		assert_true(nearer <= taken); // none that is nearer was passed over
+		assert_true(nearer <= taken); // no nearer vertex was skipped
 		counted += taken;
 	}
 	assert_int_equal(counted, t->link_count);

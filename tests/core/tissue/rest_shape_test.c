@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rest shape: masses, volumes, D_m^-1 and the maps that the system is built of.
+// Rest shape: masses, volumes, D_m^-1 and the maps from which the system is built.
 #include <string.h>
 
 #include "core/dissect/cutting.h"
 
-// Sums of thousands of terms: their roundings.
+// Rounding of sums of thousands of terms.
 static const double MASS_TOLERANCE = 1e-12;
-// A 3x3 inverse of a well-shaped element.
+// Rounding of a 3x3 inverse of a well-shaped element.
 static const double INVERSE_TOLERANCE = 1e-12;
 
 static void make(rig *r)
@@ -41,7 +41,7 @@ static void test_masses_are_density_times_volume(void **state)
 	rig_finish(&r);
 }
 
-// G of an element's own rest shape is I (fat), the orthonormal frame (sheets), the edge (links).
+// G of an element's own rest shape is I (fat), the orthonormal frame (sheets) or the edge (links).
 static void test_maps_reproduce_the_rest_shape(void **state)
 {
 	(void)state;
@@ -64,14 +64,14 @@ static void test_maps_reproduce_the_rest_shape(void **state)
 			}
 			for (int c = 0; c < map.rank; c++)
 				for (int row = 0; row < 3; row++) {
-					double expected = row == c; // fat
+					double expected = row == c; // for fat
 					if (kind == CAU_ELEMENT_TRIANGLE)
 						expected = r.tissue.triangle_frame[6 * e + 3 * c + row];
 					else if (kind == CAU_ELEMENT_LINK)
 						expected = r.tissue.rest[3 * map.vertex[1] + row] -
 						           r.tissue.rest[3 * map.vertex[0] + row];
 					else if (kind == CAU_ELEMENT_HINGE)
-						expected = 0; // a flat sheet
+						expected = 0; // the sheet is flat
 					assert_near(f[row][c], expected, INVERSE_TOLERANCE);
 				}
 			assert_true(map.weight > 0);
@@ -79,21 +79,24 @@ static void test_maps_reproduce_the_rest_shape(void **state)
 	rig_finish(&r);
 }
 
-// Weights: k x area x thickness, (2 mu + 3 lambda + limit) x volume, E A / L.
+// Weights are k x area x thickness (sheets), (2 mu + 3 lambda + limit) x volume (fat), E A / L
+// (links).
 static void test_weights(void **state)
 {
 	(void)state;
 	rig r;
 	rig_begin(&r);
 	add_all_layers(&r);
-	r.scene->layers[0].fat[0].shrink[1] = 0.5; // a limit may come: its stiffness counts
+	// Shrinkage may set a limit, so the limit's stiffness counts.
+	r.scene->layers[0].fat[0].shrink[1] = 0.5;
 	rig_build(&r, NULL, 1);
 	const cau_fat_material *fat = &r.tissue.layer[0].def.fat[0];
 	const cau_sheet_material *sheet = &r.tissue.layer[2].def.sheet[0];
 	const cau_link_material *link = &r.tissue.layer[3].def.link;
 	double e = fat->young_modulus_pa, nu = fat->poisson_ratio, lambda, mu;
 	cau_fat_lame(fat, &lambda, &mu);
-	assert_near(mu * (3 * lambda + 2 * mu) / (lambda + mu), e, 1e-12 * e); // E of lambda and mu
+	// E computed from lambda and mu.
+	assert_near(mu * (3 * lambda + 2 * mu) / (lambda + mu), e, 1e-12 * e);
 	assert_near(lambda / (2 * (lambda + mu)), nu, 1e-14);
 	cau_element_map map;
 	cau_tissue_element_map(&r.tissue, CAU_ELEMENT_TETRAHEDRON, 7, &map);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choosing vertices, and the pins of a scene.
+// Selection of vertices, and the pins of a scene.
 #include <string.h>
 
 #include "cautery/defaults.h"
@@ -42,7 +42,7 @@ static void test_rim(void **state)
 		assert_int_equal(c.chosen[v], rim);
 	}
 	rig_finish(&c.r);
-	make(&c, CAU_SELECT_RIM, "layer1"); // a closed membrane has none
+	make(&c, CAU_SELECT_RIM, "layer1"); // a closed membrane has no rim
 	assert_int_equal(cau_tissue_select(&c.r.tissue, &c.selection, c.chosen), 0);
 	rig_finish(&c.r);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The solids that tools are made of: known distances, and the arc against a dense sampling of its
+// The solids that tools consist of: known distances, and the arc against a dense sampling of its
 // core.
 #include "tool/distance.h"
 
@@ -26,7 +26,7 @@ static void test_capsule(void **state)
 	assert_near(g.z, 0.8, ROUNDING);
 	assert_near(cau_distance_capsule((cau_vec3){0, 0, 1}, a, b, 0.5, &g), -0.5, ROUNDING);
 	assert_near(cau_length(g), 1, ROUNDING);
-	assert_near(g.z, 0, ROUNDING); // on the core: any direction across it
+	assert_near(g.z, 0, ROUNDING); // on the core, any direction perpendicular to it is allowed
 	assert_near(cau_distance_capsule(a, a, a, 0.5, &g), -0.5, ROUNDING);
 	assert_near(cau_length(g), 1, ROUNDING);
 }
@@ -53,7 +53,7 @@ static void test_quarter_arc_against_sampling(void **state)
 	(void)state;
 	enum { SAMPLES = 2000, POINTS = 300 };
 	const double radius = 1.5, tube = 0.25;
-	// A sampled curve is at most half a spacing along itself from the nearest point.
+	// The nearest sample of the curve is at most half a spacing from the nearest point.
 	const double sampling = radius * (M_PI / 2) / SAMPLES / 2;
 	cau_vec3 center = {0.3, -0.2, 0.5};
 	uint64_t random = 11;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How near a tool comes to a triangle, against sampling and against what is known by hand.
+// The distance between a tool and a triangle, against sampling and known results.
 #include "tool/face_distance.h"
 
 #include <setjmp.h>
@@ -14,9 +14,10 @@
 
 enum { TRIES = 400, SAMPLES = 60 };
 
-// Along a long tool the way to the nearest point is walked in 24 steps at most.
-static const double OUTSIDE_SHARE = 0.02; // of the distance
-static const double INSIDE_SHARE = 0.2;   // of the radius
+// Allowed errors of the least distance. Along a long tool the search may end before it converges,
+// after 24 steps.
+static const double OUTSIDE_SHARE = 0.02; // relative to the distance
+static const double INSIDE_SHARE = 0.2;   // relative to the radius
 
 static cau_vec3 weighted(const cau_vec3 corner[3], const double weight[3])
 {
@@ -37,7 +38,7 @@ static void random_triangle(uint64_t *random, double size, cau_vec3 corner[3])
 		corner[k] = random_point(random, size);
 }
 
-// The least of f over a triangle's samples.
+// Returns the least value of f over samples of a triangle.
 static double sampled(const cau_vec3 corner[3], double (*f)(cau_vec3 point, const void *of),
                       const void *of)
 {
@@ -78,7 +79,7 @@ static void the_nearest_point_is_nearest(void **state)
 	}
 }
 
-// Round tools are convex, so the way downhill leads to the least of all.
+// Round tools are convex, so the search downhill finds the global minimum.
 static void the_least_distance_of_round_tools_is_least(void **state)
 {
 	(void)state;
@@ -112,11 +113,11 @@ static void the_way_out_is_the_last_surface(void **state)
 	double way = cau_tool_way_out(&ball, 0, CAU_PART_HOT, middle, down, 3 * radius, &gradient);
 	assert_true(fabs(way - radius) < 1e-6);
 	assert_true(cau_dot(gradient, down) > 0.99);
-	// beyond it, the whole of it is in the way
+	// from a point beyond the ball, the whole ball is in the way
 	cau_vec3 beyond = {0, 0, 2 * radius};
 	way = cau_tool_way_out(&ball, 0, CAU_PART_HOT, beyond, down, 5 * radius, &gradient);
 	assert_true(fabs(way - 3 * radius) < 1e-6);
-	// beside it, and before it, nothing is
+	// beside the ball and before it, nothing is in the way
 	cau_vec3 beside = {1.1 * radius, 0, radius}, before = {0, 0, -1.1 * radius};
 	assert_true(cau_tool_way_out(&ball, 0, CAU_PART_HOT, beside, down, 3 * radius, &gradient) == 0);
 	assert_true(cau_tool_way_out(&ball, 0, CAU_PART_HOT, before, down, 3 * radius, &gradient) == 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every shape and part: signed, 1-Lipschitz, with the gradient of central differences; bounds that
-// hold the part; segments against dense sampling; what lies between the jaws.
+// Properties of every shape and part: distances are signed and 1-Lipschitz, and gradients agree
+// with central differences. Bounds contain the part. Segments agree with dense sampling. Also tests
+// which points are between the jaws.
 #include "tool/tool_shape.h"
 
 #include <setjmp.h>
@@ -17,13 +18,13 @@
 enum { POINTS = 2000 };
 
 static const double BOX_M = 0.015;      // half the box of random points
-static const double ROUNDING_M = 1e-14; // of distances near 0.1 m
+static const double ROUNDING_M = 1e-14; // rounding of distances near 0.1 m
 static const double JAWS[] = {0, 0.3, 1};
 
 typedef void (*check)(const cau_tool_def *tool, double jaw, cau_tool_part part);
 
 // Sets of sizes: the defaults, a fine tool, one that is wider than long, one whose jaws are thicker
-// than long, and the corners of what a scene may ask for.
+// than long, and the extremes that a scene allows.
 static const double sizes[][3] = {
 	{3e-3, 8e-3, 2.5e-3}, {4e-4, 1e-2, 2e-3}, {6e-3, 4e-3, 5e-3}, {4e-3, 1e-3, 4e-3},
 	{0.05, 1e-3, 2e-4},   {0.05, 1e-3, 0.05}, {2e-4, 0.1, 0.05},  {2e-4, 1e-3, 2e-4},
@@ -44,7 +45,7 @@ static void for_every_part(check check_part)
 				}
 }
 
-// What a scene's table says of each shape.
+// Properties of each shape in the table of scene.h.
 typedef struct table_row {
 	bool hot, jaws;
 	const cau_tool_family *family;
@@ -61,14 +62,15 @@ static int lacks(const cau_tool_def *tool, cau_tool_part part)
 	return !rows[tool->shape].hot && part == CAU_PART_HOT;
 }
 
-// The columns of the table say what the shape's functions have.
+// The columns of the table agree with the functions that a shape has.
 static void test_rows_say_what_shapes_have(void **state)
 {
 	(void)state;
 	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		const cau_tool_family *family = rows[shape].family;
-		assert_true(family->cold && family->cold_bound); // whatever the shape, it pushes
+		// every shape has a cold part, which pushes
+		assert_true(family->cold && family->cold_bound);
 		assert_int_equal(family->hot != NULL, rows[shape].hot);
 		assert_int_equal(family->hot_bound != NULL, rows[shape].hot);
 		assert_int_equal(family->thinnest_hot != NULL, rows[shape].hot);
@@ -77,7 +79,8 @@ static void test_rows_say_what_shapes_have(void **state)
 	}
 }
 
-// Half the box of random points about a tool: holds its hot part.
+// Returns half the size of the box of random points about a tool. The box contains the tool's hot
+// part.
 static double box_of(const cau_tool_def *tool)
 {
 	return fmax(BOX_M,
@@ -90,7 +93,8 @@ static void check_lipschitz(const cau_tool_def *tool, double jaw, cau_tool_part 
 		return;
 	uint64_t random = 5;
 	for (int i = 0; i < POINTS; i++) {
-		double box = box_of(tool), reach = i % 2 ? box : box / 100; // far and near pairs
+		// both distant and near pairs of points
+		double box = box_of(tool), reach = i % 2 ? box : box / 100;
 		cau_vec3 a = random_point(&random, box);
 		cau_vec3 b = cau_add(a, random_point(&random, reach));
 		double change = cau_tool_distance(tool, jaw, part, a, NULL) -
@@ -105,9 +109,9 @@ static void test_lipschitz(void **state)
 	for_every_part(check_lipschitz);
 }
 
-// Central differences of step h. On a crease there is no gradient to match: where two surfaces meet
-// at an angle the differences are not unit; where they are nearly in one plane the gradient turns
-// over the step itself, and the differences lie between.
+// Central differences of step h. On a crease the gradient is not unique. Where two surfaces meet at
+// an angle, the differences do not have unit length. Where two surfaces are nearly in one plane,
+// the gradient turns within the step, and the differences are between both.
 static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	static const double H_M = 1e-7;
@@ -137,7 +141,7 @@ static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part p
 		assert_true(cau_length(cau_sub(difference, g)) < fmax(TOLERANCE * 2, turned));
 		compared++;
 	}
-	assert_true(compared > POINTS * 99 / 100); // creases are thin
+	assert_true(compared > POINTS * 99 / 100); // few points are near creases
 }
 
 static void test_gradient(void **state)
@@ -146,9 +150,8 @@ static void test_gradient(void **state)
 	for_every_part(check_gradient);
 }
 
-// Outside and inside: from a point outside, the way against the gradient by the distance ends on
-// the surface of a solid, and a micrometre further it is inside; no point of the part is outside
-// its bound.
+// A path from an outside point, against the gradient and by the distance, ends on the surface. A
+// micrometre further it is inside. No point of the part is outside its bound.
 static void check_surface_and_bound(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	if (lacks(tool, part))
@@ -180,7 +183,7 @@ static void test_surface_and_bound(void **state)
 	for_every_part(check_surface_and_bound);
 }
 
-// The cold part leaves the surface of the hot part free: nowhere is a point inside both.
+// The cold part does not cover the surface of the hot part: no point is inside both.
 static void check_not_covered(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	if (part != CAU_PART_BOTH || lacks(tool, CAU_PART_HOT))
@@ -210,15 +213,15 @@ static void test_tip_is_hot(void **state)
 		if (lacks(&tool, CAU_PART_HOT))
 			continue;
 		double d = cau_tool_distance(&tool, 0, CAU_PART_HOT, (cau_vec3){0, 0, 0}, NULL);
-		if (shape == CAU_TOOL_BIPOLAR) // between the closed plates
+		if (shape == CAU_TOOL_BIPOLAR) // the tip is between the closed plates
 			assert_near(d, 0, ROUNDING_M);
 		else
 			assert_near(d, -cau_tool_thinnest_hot_m(&tool), ROUNDING_M);
 	}
 }
 
-// Points that lie on the surfaces which README.md describes, for r 3 mm, L 8 mm, s 2.5 mm, t 1.2 mm
-// (grasper 1 mm), with the normal there.
+// Points on the surfaces that README.md describes, with the normal there, for r 3 mm, L 8 mm, s 2.5
+// mm, t 1.2 mm (grasper 1 mm).
 static void test_known_surfaces(void **state)
 {
 	(void)state;
@@ -243,7 +246,8 @@ static void test_known_surfaces(void **state)
 	     0,
 	     {-2e-3 - 5e-3 * SQUARE, 0, 2e-3 - 5e-3 * SQUARE},
 	     {-SQUARE, 0, -SQUARE}},
-		{CAU_TOOL_HOOK, CAU_PART_COLD, 0, {-4e-3, 0, 5e-3}, {0, 0, -1}}, // the neck, on the heel
+		// the neck's end on the heel
+		{CAU_TOOL_HOOK, CAU_PART_COLD, 0, {-4e-3, 0, 5e-3}, {0, 0, -1}},
 		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {3e-3, 0, 4e-3}, {1, 0, 0}},
 		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {1e-3, 1.2e-3, 4e-3}, {0, 1, 0}},
 		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {1e-3, 0, -1.2e-3}, {0, 0, -1}},
@@ -269,8 +273,8 @@ static void test_known_surfaces(void **state)
 	}
 }
 
-// Opening turns the jaws about the hinge at z = L: the middle of a face, at an arm of 4 mm, moves
-// so.
+// Opening turns the jaws about the hinge at z = L. The test follows the middle of a face, at an arm
+// of 4 mm.
 static void test_jaws_open(void **state)
 {
 	(void)state;
@@ -286,7 +290,7 @@ static void test_jaws_open(void **state)
 		assert_near(cau_tool_distance(&tool, 0.5, part, point, &g), 0, ROUNDING_M);
 		assert_near(g.x, -cos(angle), 1e-9);
 		assert_near(g.z, -sin(angle), 1e-9);
-		point.x = -point.x; // the other jaw is the mirror image; shears have a blade there
+		point.x = -point.x; // the other jaw is the mirror image; shears have their blade there
 		double mirrored = cau_tool_distance(&tool, 0.5, part, point, NULL);
 		assert_true(shears ? mirrored > 1e-3 : fabs(mirrored) < ROUNDING_M);
 	}
@@ -315,13 +319,14 @@ static void test_world_frame(void **state)
 		double d = cau_tool_distance(&tool, 0, CAU_PART_BOTH, local, &g);
 		double d_world = cau_tool_distance_at(&tool, &pose, 0, CAU_PART_BOTH, world, &g_world);
 		assert_near(d, d_world, 1e-13);
-		// The gradient turns by about 1e-16 m / 1e-4 m between the two ways of rounding.
+		// The direction differs by about 1e-16 m / 1e-4 m, because the two computations round
+		// differently.
 		assert_true(cau_length(cau_sub(cau_rotate(pose.rotation, g), g_world)) < 1e-9);
 	}
 }
 
-// The end of a segment from `a` towards the nearest point of the part: it stops short of that, or
-// goes on into the part.
+// Returns the end of a segment from `a` towards the nearest point of the part. The segment ends
+// before that point or inside the part.
 static cau_vec3 aimed(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
                       uint64_t *random)
 {
@@ -330,7 +335,7 @@ static cau_vec3 aimed(const cau_tool_def *tool, double jaw, cau_tool_part part, 
 	return cau_add_scaled(a, -d * random_between(random, 0.5, 1.5), g);
 }
 
-// Sampled at a spacing of `gap` a segment's least distance is known to gap / 2.
+// At samples with the spacing `gap`, a segment's least distance is known to within gap / 2.
 static void check_segments(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	enum { SEGMENTS = 400, SAMPLES = 300 };
@@ -340,7 +345,7 @@ static void check_segments(const cau_tool_def *tool, double jaw, cau_tool_part p
 	uint64_t random = 17;
 	int met = 0, missed = 0;
 	for (int i = 0; i < SEGMENTS; i++) {
-		// Far and long, far and short, about the tip, and at what is nearest.
+		// by i % 4: long; short; near the tip; towards the nearest point
 		double box = box_of(tool);
 		cau_vec3 a = random_point(&random, i % 4 == 2 ? tool->hot_radius_m : box);
 		cau_vec3 b = i % 4 == 3 ? aimed(tool, jaw, part, a, &random)
@@ -367,7 +372,7 @@ static void test_segments_against_sampling(void **state)
 	for_every_part(check_segments);
 }
 
-// Known answers at and around the 1e-6 m that is promised.
+// Known results at and around the promised 1e-6 m.
 static void test_segment_is_exact(void **state)
 {
 	(void)state;
@@ -378,7 +383,7 @@ static void test_segment_is_exact(void **state)
 		cau_vec3 a = {-0.01, y, 0}, b = {0.013, y, 0};
 		assert_int_equal(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, a, b), i < 2);
 	}
-	cau_vec3 inside = {1e-4, 0, 0}; // wholly inside, and of no length
+	cau_vec3 inside = {1e-4, 0, 0}; // a segment inside the part, and one of length 0
 	assert_true(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, (cau_vec3){0, 0, 0}, inside));
 	assert_true(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, inside, inside));
 	cau_vec3 outside = {1, 0, 0};
@@ -397,7 +402,7 @@ static void test_between_jaws(void **state)
 		double face = shears ? tool.hot_radius_m : 0;
 		double low = shears ? 0 : -tool.jaw_open_rad / 2;
 		double high = shears ? tool.jaw_open_rad : tool.jaw_open_rad / 2;
-		// Points at half the jaws' length below the hinge, on the faces and half way between.
+		// points at half the jaws' length below the hinge: on the faces and between them
 		double arm = tool.tip_length_m / 2, previous = -2, coordinate;
 		for (int k = 0; k <= 4; k++) {
 			double angle = low + (high - low) * k / 4;
@@ -407,17 +412,17 @@ static void test_between_jaws(void **state)
 			assert_true(coordinate > previous);
 			if (k == 0 || k == 4)
 				assert_near(coordinate, k ? 1 : -1, 0.1);
-			if (k == 2 && !shears) // the hinge of shears is not where their faces' planes meet
+			if (k == 2 && !shears) // the hinge of shears is not in their faces' planes
 				assert_near(coordinate, 0, 1e-12);
 			previous = coordinate;
-			p.y = 0.01; // beside the jaws
+			p.y = 0.01; // the point is beside the jaws
 			assert_false(cau_tool_between_jaws(&tool, 1, p, &coordinate));
 		}
 		cau_vec3 above = {face, 0, tool.tip_length_m + 1e-3}, below = {face, 0, -3e-3};
 		assert_false(cau_tool_between_jaws(&tool, 1, above, NULL));
 		assert_false(cau_tool_between_jaws(&tool, 1, below, NULL));
 		cau_vec3 pressed = {face, 0, 1e-3}, beside = {face + 5e-3, 0, 1e-3};
-		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed on it
+		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed jaws hold it
 		assert_false(cau_tool_between_jaws(&tool, 0, beside, NULL));
 	}
 	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
@@ -427,7 +432,7 @@ static void test_between_jaws(void **state)
 	}
 }
 
-// What goes with a jaw as it turns stays on its face, and as far from the hinge.
+// A point that turns with a jaw stays on the jaw's face, at the same distance from the hinge.
 static void test_turning_with_jaws(void **state)
 {
 	(void)state;
@@ -437,7 +442,8 @@ static void test_turning_with_jaws(void **state)
 		cau_tool_jaws jaws = cau_tool_describe_jaws(&tool);
 		assert_near(jaws.share[0] + jaws.share[1], 1, 1e-12);
 		double arm = tool.tip_length_m / 2;
-		double off = shapes[i] == CAU_TOOL_SHEARS ? tool.hot_radius_m * 0.18 : 1e-9; // 1 - cos 0.6
+		// 0.18: 1 - cos 0.6
+		double off = shapes[i] == CAU_TOOL_SHEARS ? tool.hot_radius_m * 0.18 : 1e-9;
 		for (int side = 0; side < 2; side++) {
 			double sign = side ? 1 : -1;
 			cau_vec3 p = {jaws.face_m, 1e-3, tool.tip_length_m - arm};

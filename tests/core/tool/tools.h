@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools, poses and random numbers for the tests of the tool and heat rooms.
+// Tools, poses and random numbers for the tests of core/tool and core/heat.
 #pragma once
 
 #include "base/vector.h"
 
-// For cmocka: two doubles within a named tolerance.
+// For cmocka: asserts that two doubles differ by at most a named tolerance.
 #define assert_near(value, expected, tolerance)                                                    \
 	assert_true(fabs((value) - (expected)) <= (tolerance))
 
-// A tool with the defaults of the table in scene.h, at the origin, not turned.
+// A tool with the defaults of the table in scene.h, at the origin, without rotation.
 static inline cau_tool_def tool_with_defaults(int shape)
 {
 	cau_tool_def tool = {.shape = shape, .pose = {.rotation = {1, 0, 0, 0}}};
@@ -30,14 +30,15 @@ static inline cau_pose pose_turned(cau_vec3 position, cau_vec3 axis, double angl
 	                  .rotation = {cos(angle_rad / 2), u.x, u.y, u.z}};
 }
 
-// A fixed sequence of uniform numbers in [least, most), the same in every run (Park and Miller).
+// Returns the next number of a fixed pseudo-random sequence, uniform in [least, most), the same in
+// every run (Park and Miller).
 static inline double random_between(uint64_t *state, double least, double most)
 {
 	*state = *state * 48271 % 2147483647;
 	return least + (most - least) * ((double)*state / 2147483647.0);
 }
 
-// A point in the box x, y in +-side, z in -side to 3 side.
+// Returns a random point in the box x, y in +-side, z in -side to 3 side.
 static inline cau_vec3 random_point(uint64_t *state, double side)
 {
 	cau_vec3 p;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A failed assertion ends the program with its words; a build without assertions goes on.
+// A failed assertion ends the program with its message. A build without assertions continues.
 #include "cautery/assert.h"
 
 #include <setjmp.h>
@@ -26,7 +26,7 @@ static const int on = 0;
 
 enum { WORDS_BYTES = 4096 };
 
-// How a child that does `deed` ends (as waitpid tells it), and what it says on stderr.
+// Runs `deed` in a child process. Returns its wait status; `words` gets its stderr.
 static int child_of(void (*deed)(void), char words[WORDS_BYTES])
 {
 	int ends[2], status = 0;
@@ -67,7 +67,7 @@ static void take_a_shape_that_is_none(void)
 	cau_tool_def tool;
 	cau_default_tool_def(&tool, CAU_TOOL_SPHERE);
 	tool.shape = CAU_TOOL_SHAPE_COUNT;
-	if (on) // without assertions it would read beyond a table
+	if (on) // without assertions the call would read beyond a table
 		cau_tool_thinnest_hot_m(&tool);
 }
 
@@ -118,7 +118,7 @@ static int ask(int answer)
 	return answer;
 }
 
-// The condition is looked at once where assertions are on, and never where they are off.
+// The condition is evaluated once if assertions are on, and never if they are off.
 static void test_a_condition_is_no_deed(void **state)
 {
 	(void)state;
@@ -127,7 +127,7 @@ static void test_a_condition_is_no_deed(void **state)
 	assert_int_equal(asked, on);
 }
 
-// Both branches of an if stay whole.
+// An assertion is one statement: both branches of an if stay complete.
 static void test_it_is_one_statement(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blood on a sheet: it runs down, keeps its volume, comes to rest level, and drips off where it is
-// deep.
+// Tests blood on a sheet. It flows down, keeps its volume, comes to rest level, and drips off where
+// it is deep.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
@@ -16,7 +16,7 @@ typedef struct pool {
 	double *position;
 } pool;
 
-// A sheet of 24 mm in cells of 2 mm, tilted by `slope` along x.
+// Makes a sheet of 24 mm with cells of 2 mm, tilted by `slope` along x.
 static pool make_pool(double slope)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
@@ -76,7 +76,7 @@ static void it_spreads_evenly_and_comes_to_rest(void **state)
 	double deepest = 0;
 	for (int32_t v = 0; v < level.blood.vertex_count; v++)
 		deepest = fmax(deepest, cau_blood_depth(&level.blood, v));
-	// A film of 0.05 mm clings. At rest no place is much deeper.
+	// A film of 0.05 mm clings. At rest the film is nowhere much deeper.
 	assert_true(deepest < 3e-4);
 	drop(&level);
 }
@@ -95,7 +95,7 @@ static void it_runs_down(void **state)
 	drop(&tilted);
 }
 
-// Blood neither leaves nor enters a vertex that is not drawn.
+// Blood never leaves or enters a vertex that is not visible.
 static void it_stays_on_what_is_drawn(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outflow and seals against closed forms, and an embedded vessel in deformed tissue.
+// Tests outflow and seals against closed forms, and an embedded vessel in deformed tissue.
 #include "core/session/stage.h"
 
 #include "cautery/defaults.h"
@@ -22,7 +22,8 @@ static void assert_close(double found, double expected, double share)
 		fail_msg("%.9g is not %.9g", found, expected);
 }
 
-// A wide tube is an orifice: Q = C A sqrt(2 p / rho). A narrow one is Poiseuille's.
+// The flow from a wide tube is that of an orifice: Q = C A sqrt(2 p / rho). The flow from a narrow
+// tube is Poiseuille flow.
 static void outflow_has_both_limits(void **state)
 {
 	(void)state;
@@ -38,7 +39,7 @@ static void outflow_has_both_limits(void **state)
 	assert_true(cau_vessel_outflow(&wide, 0, 1) == 0 && cau_vessel_outflow(&wide, 12000, 0) == 0);
 }
 
-// Thin walls: p = strength x wall / radius, once all collagen has reacted.
+// For thin walls, once all collagen has reacted: p = strength x wall / radius.
 static void strength_grows_to_that_of_the_fused_wall(void **state)
 {
 	(void)state;
@@ -48,8 +49,8 @@ static void strength_grows_to_that_of_the_fused_wall(void **state)
 	assert_close(cau_seal_strength(&def, 100), 5e5 * 0.2, 1e-12);
 }
 
-// A block of 20 x 8 x 6 mm with a tube along x at half its height. All vertices are prescribed:
-// the block is flattened to `flat` of its height.
+// Makes a block of 20 x 8 x 6 mm with a tube along x at half its height. All vertices are
+// prescribed. The block is compressed to the share `flat` of its height.
 static cau_session *block(double flat)
 {
 	static const double size[] = {0.02, 0.008, 0.006};
@@ -88,7 +89,7 @@ static void assert_open(double flat, double expected)
 	cau_session_destroy(session);
 }
 
-// A hole in a plate that is strained by e across loses 3 e of its width.
+// If a plate is strained by e, a hole in it loses 3 e of its width.
 static void the_lumen_closes_at_a_third(void **state)
 {
 	(void)state;
@@ -98,7 +99,7 @@ static void the_lumen_closes_at_a_third(void **state)
 	assert_open(0.6, 0);
 }
 
-// Stations are a quarter of a radius apart, on the line, and follow its corner.
+// Stations are a quarter of a radius apart. They are on the line and follow its bend.
 static void stations_lie_on_the_line(void **state)
 {
 	(void)state;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preloaded into a program, shifts its wall clock by as many nanoseconds as the first eight bytes
-// of the file CLOCK_SHIFT say, at any moment: a clock that jumps, for one process alone. The
-// monotonic clock is left alone.
+// A library to preload into a program. It shifts the program's wall clock, at any moment, by the
+// nanoseconds in the first eight bytes of the file CLOCK_SHIFT. So the clock jumps for this process
+// alone. The monotonic clock is not changed.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -12,7 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { A_SECOND_NS = 1000000000, LONG_AGO_S = 1000000000 }; // 2001: no machine is up that long
+// LONG_AGO_S is in 2001: later times are of the wall clock, because no machine is up that long
+enum { A_SECOND_NS = 1000000000, LONG_AGO_S = 1000000000 };
 
 static const volatile int64_t *shift;
 
@@ -62,7 +63,8 @@ time_t time(time_t *kept)
 	return now.tv_sec;
 }
 
-// The kernel's clock has not moved: what is waited for on the wall clock is told in its time.
+// The kernel's clock is not shifted, so a deadline on the wall clock is converted to the kernel's
+// time.
 int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *restrict mutex,
                            const struct timespec *restrict until)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The protocol's decoder for a program in C++: what the header of a frame on DDS tells, in, and
-// what the bytes hold, out.
+// The protocol's decoder for a program in C++. Its inputs are the members of a frame on DDS; its
+// outputs are the decoded values.
 #pragma once
 
 #include <stddef.h>
@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-// As cautery::StreamDescription, with the session's number.
+// The members of cautery::StreamDescription, with the session's number.
 typedef struct frames_description {
 	uint32_t session_number;
 	uint16_t profile;
@@ -21,22 +21,23 @@ typedef struct frames_description {
 
 typedef struct frames_decoder frames_decoder;
 
-// NULL: no such stream, or no memory.
+// Returns NULL if there is no such stream, or no memory.
 frames_decoder *frames_create(const frames_description *description);
 void frames_destroy(frames_decoder *decoder);
 
-// A key frame or a delta. NULL: taken; else why not, valid until the next call.
+// Takes a key frame or a delta. Returns NULL on success, else the reason, which is valid until the
+// next call.
 const char *frames_take(frames_decoder *decoder, const void *bytes, size_t byte_count);
-// A topology. As frames_take.
+// Takes a topology frame. Returns as frames_take does.
 const char *frames_take_topology(frames_decoder *decoder, const void *bytes, size_t byte_count);
 
-// What is held; 0 and NULL before the first key frame.
+// The decoder's state; 0 and NULL before the first key frame.
 uint64_t frames_epoch(const frames_decoder *decoder);
 uint64_t frames_sequence(const frames_decoder *decoder);
 uint64_t frames_tick(const frames_decoder *decoder);
 int32_t frames_gone_faces(const frames_decoder *decoder);
 const int32_t *frames_quantised(const frames_decoder *decoder); // (vertex_count x 3)
-// The largest vertex index of the topology's faces; -1 before it.
+// Returns the largest vertex index of the topology's faces, or -1 before the topology.
 int32_t frames_last_vertex(const frames_decoder *decoder);
 
 #ifdef __cplusplus

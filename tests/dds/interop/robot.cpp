@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A robot controller of another vendor's making: Fast DDS, what fastddsgen made of the IDL, and
-// nothing of the server.
+// A robot controller with the DDS of another vendor: Fast DDS, the code that fastddsgen generated
+// from the IDL, and nothing of the server.
 //
-//     interop_robot DOMAIN SESSION TOOL native|ros|sensor DEADLINE_MS    (sensor: as ros, with
-//     poses of best effort, as sensor data is there)
+//     interop_robot DOMAIN SESSION TOOL native|ros|sensor DEADLINE_MS
 //
-// It writes 100 times a second. Lines on standard input tell it what:
-//     aim X Y Z      m: goes there at 0.2 m/s     energy 0|1       the level it writes
-//     write on|off   silent, but alive            state            prints what it has received
+// sensor is ros with poses in best effort, like ROS 2's sensor data. The program writes 100 times a
+// second. Lines on standard input control it:
+//     aim X Y Z      goes to this position (m) at 0.2 m/s
+//     energy 0|1     level of energy that it writes
+//     write on|off   off: silent, but alive
+//     state          prints the received state
 //     positions      prints the decoded vertices
-// On standard output it tells, one JSON object a line: matched, state, positions.
+// It writes events as JSON objects, one a line, to standard output: matched, state, positions.
 #include <chrono>
 #include <cmath>
 #include <poll.h>
@@ -248,7 +250,7 @@ class Robot
 			stream.tell_positions();
 	}
 
-	// Obeys the whole lines that wait on standard input; false at its end.
+	// Obeys the whole lines that wait on standard input. Returns false at the end of the input.
 	bool listen()
 	{
 		pollfd input = {STDIN_FILENO, POLLIN, 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session's frames: key frames, deltas and topology from their three topics into the decoder.
+// Decodes a session's frames. Key frames, deltas and topology frames come from three topics.
 #pragma once
 
 #include <cinttypes>
@@ -28,8 +28,8 @@ class Stream
 	Stream(const Stream &) = delete;
 	~Stream() { frames_destroy(decoder); }
 
-	// Takes what waits. The topics are not ordered among each other: a delta may be here before the
-	// key frame that it builds on, so deltas are held until what they build on has come.
+	// Takes the waiting frames. The topics are not ordered relative to each other: a delta may
+	// arrive before its key frame. So deltas are held until their base has come.
 	void read()
 	{
 		take(topology, [this](cautery::Frame &frame) { take_topology(frame); });
@@ -68,7 +68,7 @@ class Stream
 	}
 
   private:
-	static constexpr size_t HELD = 256; // more than come between two key frames
+	static constexpr size_t HELD = 256; // more than the deltas between two key frames
 
 	static fast::Topic *topic(Wire &wire, const std::string &name)
 	{
@@ -84,7 +84,8 @@ class Stream
 									});
 	}
 
-	// The decoder of this frame's stream; another one, empty, when the stream has changed.
+	// Returns the decoder of this frame's stream. If the stream has changed, it is a new, empty
+	// one.
 	bool prepare(const cautery::Frame &frame)
 	{
 		const cautery::StreamDescription &s = frame.stream();
@@ -147,7 +148,7 @@ class Stream
 			} else if (frame.base_sequence() == at) {
 				const char *why = frames_take(decoder, frame.bytes().data(), frame.bytes().size());
 				why ? refuse(why) : static_cast<void>(applied++);
-			} // else it is older than what is held
+			} // else it is older than the present state
 		}
 		held.swap(rest);
 	}

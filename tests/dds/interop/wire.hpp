@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fast DDS entities as a robot's program makes them: QoS stands here, transport and discovery in
-// the profile that the environment names (deploy/dds/loopback-fastdds.xml).
+// Fast DDS entities as a robot's program makes them. This file sets the QoS. The profile that the
+// environment names (deploy/dds/loopback-fastdds.xml) sets transport and discovery.
 #pragma once
 
 #include <cstdio>
@@ -18,8 +18,8 @@
 
 namespace fast = eprosima::fastdds::dds;
 
-// What was made, or the program's end: at once, since Fast DDS's threads still run, and an orderly end
-// would take their objects from under them.
+// Returns the created entity, or ends the program without cleaning up. Fast DDS's threads still run
+// then, and cleaning up would destroy objects that they use.
 template <class T> T *checked(T *made, const std::string &what)
 {
 	if (!made) {
@@ -29,7 +29,8 @@ template <class T> T *checked(T *made, const std::string &what)
 	return made;
 }
 
-// The participant, with publishers and subscribers of the default partition and of the session's.
+// The participant, with publishers and subscribers of the default partition and of the session's
+// partition.
 class Wire
 {
   public:
@@ -55,7 +56,7 @@ class Wire
 		fast::DomainParticipantFactory::get_instance()->delete_participant(participant);
 	}
 
-	// PubSubType is what fastddsgen made of the topic's type.
+	// PubSubType is the class that fastddsgen generated for the topic's type.
 	template <class PubSubType> fast::Topic *topic(const std::string &name)
 	{
 		fast::TypeSupport type(new PubSubType());
@@ -70,7 +71,7 @@ class Wire
 	fast::Subscriber *subscriber, *session_subscriber;
 };
 
-// ROS 2's default: reliable, volatile, shared, keep last 10.
+// ROS 2's default QoS: reliable, volatile, shared, keep last 10.
 inline fast::DataWriterQos ros_writer_qos()
 {
 	fast::DataWriterQos qos;
@@ -90,7 +91,7 @@ inline fast::DataReaderQos ros_reader_qos()
 	return qos;
 }
 
-// A native driver: declares its deadline, and is alive by writing alone.
+// QoS of a native driver. It declares its deadline and proves that it is alive only by writing.
 inline fast::DataWriterQos native_writer_qos(int deadline_ms)
 {
 	fast::DataWriterQos qos;
@@ -105,7 +106,7 @@ inline fast::DataWriterQos native_writer_qos(int deadline_ms)
 	return qos;
 }
 
-// What late joiners get: `kept` of each instance.
+// QoS of topics that late joiners receive: the last `kept` samples of each instance.
 inline fast::DataReaderQos kept_reader_qos(int kept)
 {
 	fast::DataReaderQos qos = ros_reader_qos();

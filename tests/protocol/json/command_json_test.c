@@ -17,7 +17,7 @@ static void read_ok(const char *text, cau_command *command)
 		fail_msg("%s: %s: %s", text, error.path, error.reason);
 }
 
-// One of each kind, at least.
+// At least one command of each kind.
 static const char *const commands[] = {
 	"{\"command\":\"tool.add\",\"name\":\"hook\",\"shape\":\"hook\",\"hot_radius_m\":0.002,"
 	"\"position_m\":[0,0,0.1],\"rotation\":[0,1,0,0]}",

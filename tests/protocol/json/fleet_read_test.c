@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a proxy tells of its daemons, and what is no such answer.
+// Reads a proxy's answer about its daemons, and refuses other texts.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,7 +35,7 @@ static void what_later_proxies_tell_besides_is_skipped(void **state)
 	cau_error error = {0};
 	assert_int_equal(read_text("{\"site\": {\"a\": [1]}, \"labels\": [\"d1\"]}", &error), CAU_OK);
 	assert_int_equal(fleet.count, 1);
-	assert_int_equal(read_text("{\"labels\": []}", &error), CAU_OK); // a daemon alone
+	assert_int_equal(read_text("{\"labels\": []}", &error), CAU_OK); // a single daemon
 	assert_int_equal(fleet.count, 0);
 }
 
@@ -69,7 +69,7 @@ static void what_is_no_fleet_is_refused(void **state)
 	}
 }
 
-// As many as fit, and one more.
+// The largest fleet is accepted, and one with a label more is refused.
 static void a_fleet_has_a_bound(void **state)
 {
 	(void)state;

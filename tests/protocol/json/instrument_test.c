@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profiles of instruments, and tools of scenes and commands that name one.
+// Profiles of instruments, and scenes and commands with tools that name an instrument.
 #include "json/instrument.h"
 
 #include <math.h>
@@ -38,8 +38,8 @@ static const cau_instrument_mode *mode_of(const cau_instrument *instrument, cons
 	return NULL;
 }
 
-// Generators' peaks and crest factors go together: a mode's mean voltage is no more than a cut's,
-// and one that must not spark stays below 200 V.
+// Checks the peaks and crest factors of all profiles. The mean voltage of a mode is at most that of
+// cut. A mode that must not spark stays below 200 V.
 static void every_profile_is_read(void **state)
 {
 	(void)state;
@@ -61,7 +61,7 @@ static void every_profile_is_read(void **state)
 	}
 }
 
-// Shares of the time that a generator is on, by its crest factor: 2 / crest^2.
+// Checks the share of time that a generator is on. It follows from the crest factor: 2 / crest^2.
 static void modes_have_the_duty_of_their_name(void **state)
 {
 	(void)state;
@@ -133,7 +133,8 @@ static void a_scene_s_tool_is_an_instrument(void **state)
 	const cau_tool_def *wanted = &forceps.modes[0].tool;
 	assert_string_equal(tool.name, "t");
 	assert_int_equal(tool.shape, CAU_TOOL_BIPOLAR);
-	assert_true(tool.power_w == 40 && tool.tip_length_m == 0.012); // single values come after it
+	// members of the tool override the instrument
+	assert_true(tool.power_w == 40 && tool.tip_length_m == 0.012);
 	assert_true(tool.peak_v == wanted->peak_v && tool.blade_heat_j_k == wanted->blade_heat_j_k);
 	text = TOOL("\"mode\":\"level-3\",\"shape\":\"capsule\",\"instrument\":\"ultrasonic-shears\"");
 	assert_int_equal(read_tool(text, &tool, &error), CAU_OK);
@@ -142,7 +143,7 @@ static void a_scene_s_tool_is_an_instrument(void **state)
 	assert_true(tool.power_w == mode_of(&shears, "level-3")->tool.power_w);
 }
 
-// Numbers alone are kept: what is written names no instrument and reads back to the same.
+// A written scene has only numbers. It names no instrument and reads back to the same scene.
 static void what_is_written_has_numbers(void **state)
 {
 	(void)state;
@@ -217,7 +218,7 @@ static void a_command_may_name_an_instrument(void **state)
 	assert_string_equal(error.path, "mode");
 }
 
-// ---- profiles that are none
+// ---- invalid profiles
 
 #define PROFILE(tool, sources, modes)                                                              \
 	"{\"name\":\"p\",\"description\":\"d\",\"tool\":" tool ",\"sources\":" sources                 \

@@ -19,7 +19,7 @@ static const char *const accepted[] = {
 	"-0",
 	"-0.0e-0",
 	"1e308",
-	"1e-999", // underflow to zero loses nothing that a double could hold
+	"1e-999", // underflow to zero is accepted
 	"9007199254740991",
 	"9007199254740993.0",
 	"\"\"",
@@ -46,7 +46,7 @@ static void accepts_what_the_grammar_allows(void **state)
 typedef struct refusal {
 	const char *text;
 	size_t line, column, byte;
-	const char *reason; // a part of it
+	const char *reason; // a part of the reason
 } refusal;
 
 static const refusal refused[] = {
@@ -123,7 +123,7 @@ static void refuses_and_says_where(void **state)
 	}
 }
 
-// A zero byte is refused wherever it stands: cJSON would take it for the end.
+// A zero byte is refused at any position, because cJSON would take it for the end of the text.
 static void refuses_zero_bytes(void **state)
 {
 	(void)state;
@@ -181,7 +181,7 @@ static void caps_sizes(void **state)
 	assert_int_equal(cau_json_scan(text, bytes, AMPLE, &error), CAU_LIMIT);
 }
 
-// Objects open inside each other share one bound of names.
+// The limit of names is shared by all nested open objects.
 static void caps_open_keys(void **state)
 {
 	(void)state;
@@ -197,7 +197,8 @@ static void caps_open_keys(void **state)
 	assert_non_null(strstr(error.reason, "1024"));
 }
 
-// The scan is there because cJSON accepts these; when it no longer does, the scan may shrink.
+// The strict scan exists because cJSON accepts these texts. If cJSON refuses one of them one day,
+// the scan can be simplified.
 static void refuses_what_cjson_accepts(void **state)
 {
 	(void)state;

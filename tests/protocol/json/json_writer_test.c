@@ -68,7 +68,8 @@ static void writes_indented(void **state)
 	assert_string_equal(text, "{\n  \"v\": [1, 2],\n  \"list\": [\n    1,\n    2\n  ]\n}");
 }
 
-// With every capacity too small, nothing is written past it and the need is told.
+// Tries every capacity that is too small. Nothing is written beyond it, and the needed length is
+// reported.
 static void a_small_buffer_is_a_limit(void **state)
 {
 	(void)state;
@@ -129,7 +130,7 @@ static void numbers_come_back_bit_for_bit(void **state)
 	                       -1e300};
 	for (size_t i = 0; i < sizeof hard / sizeof *hard; i++)
 		check_number(hard[i]);
-	uint64_t bits = 88172645463325252u; // xorshift64: any doubles
+	uint64_t bits = 88172645463325252u; // xorshift64: random bits of doubles
 	for (int i = 0; i < 20000; i++) {
 		double value;
 		bits ^= bits << 13;

@@ -16,21 +16,21 @@ static void what_was_meant_is_found(void **state)
 {
 	(void)state;
 	const struct {
-		const char *word, *meant; // NULL: none
+		const char *word, *meant; // `meant` is NULL if no word is near
 	} cases[] = {
 		{"create", "create"},
 		{"crate", "create"},   // a letter left out
-		{"creaete", "create"}, // one added
-		{"creste", "create"},  // another one
-		{"craete", "create"},  // two turned round
+		{"creaete", "create"}, // one letter added
+		{"creste", "create"},  // one letter replaced
+		{"craete", "create"},  // two letters swapped
 		{"recrod", "record"},
 		{"eventts", "events"},
 		{"rset", "reset"},
 		{"restor", "restore"},
 		{"sl", "ls"},
-		{"ev", "events"}, // its end left out
-		{"re", "record"}, // the first of several
-		{"x", NULL},      // any word of two letters would be two slips away
+		{"ev", "events"}, // the end left out
+		{"re", "record"}, // the first of several words
+		{"x", NULL},      // any word of two letters differs by two slips
 		{"", NULL},
 		{"fly", NULL},
 		{"annihilate", NULL},
@@ -43,7 +43,7 @@ static void what_was_meant_is_found(void **state)
 	}
 }
 
-// Members of objects: other cases, units left out.
+// Members of objects: other upper and lower case, and units left out.
 static void members_are_found(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints the table of everything that a scene may hold, from the tables that read it, and keeps the
-// copy in the scenes' README:
+// Prints a table of all members of a scene, from the tables that read scenes. It also checks or
+// updates the copy in the scenes' README:
 //
 //     parameter_table             prints it
 //     parameter_table --check F   fails unless F has it between the two marks
@@ -196,7 +196,7 @@ static void print_table(FILE *out)
 	fputc('\n', out);
 }
 
-// Reads F and finds what stands between the marks.
+// Reads file `path` and finds the text between the marks.
 static bool read_marked(const char *path, char *text, char **begin, char **end)
 {
 	FILE *file = fopen(path, "rb");

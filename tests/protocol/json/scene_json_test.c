@@ -35,8 +35,8 @@ static cau_scene_def *scene_of(const char *text)
 	return scene;
 }
 
-// Parse, print, parse: the same bytes of the struct, padding included, since both start from
-// zeroes.
+// Parses, prints and parses again. The struct has the same bytes, including padding, because both
+// parses start from zeroes.
 static void check_round_trip(const char *name, const char *text, size_t bytes)
 {
 	cau_scene_def *first = malloc(sizeof *first), *second = malloc(sizeof *second);
@@ -71,7 +71,7 @@ static void every_scene_file_comes_back(void **state)
 		check_round_trip(entry->d_name, text, bytes);
 		cau_scene_def *scene = malloc(sizeof *scene);
 		assert_int_equal(cau_scene_from_json(path, text, bytes, scene, NULL), CAU_OK);
-		// A scene's name is its file's, and each can be pulled and cut.
+		// A scene has the name of its file, a pull and a cut.
 		assert_int_equal(strlen(scene->name), (size_t)(ending - entry->d_name));
 		assert_memory_equal(scene->name, entry->d_name, strlen(scene->name));
 		assert_true(scene->pull.present && scene->cut.present);
@@ -294,7 +294,7 @@ static void refuses_and_says_where(void **state)
 	free(scene);
 }
 
-// Just inside and just outside each row of each table, through its JSON name.
+// Tries a member of a table just inside and just outside its range, by its JSON name.
 static void check_row(const char *before, const char *field, double least, double most)
 {
 	const double values[] = {least, most, least - 1e-6 * (1.0 + most), most * 1.001 + 1.0};

@@ -55,7 +55,7 @@ static void expect_refusal(const char *text, cau_status status, const char *path
 	assert_string_equal(error.file, "s.jsonl");
 	assert_string_equal(error.path, path);
 	assert_string_equal(error.reason, reason);
-	// The line is skipped and reading goes on.
+	// The bad line is skipped, and reading continues.
 	assert_int_equal(cau_script_next(&script, &command, &end, NULL), CAU_OK);
 	assert_false(end);
 	assert_int_equal(command.tick, 9);

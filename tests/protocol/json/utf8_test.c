@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-// Every code point there is reads back with the length it was written with.
+// Every code point reads back with the length with which it was written.
 static void every_code_point_is_valid(void **state)
 {
 	(void)state;
@@ -32,7 +32,8 @@ static void surrogates_and_beyond_are_not(void **state)
 	for (unsigned code = 0xD800; code <= 0xDFFF; code++) {
 		char text[4];
 		assert_int_equal(cau_utf8_length(text, cau_utf8_encode(code, text)), 0);
-		assert_false(cau_utf8_is_start(text, 2)); // known by its second byte already
+		// the second byte already shows that it is invalid
+		assert_false(cau_utf8_is_start(text, 2));
 	}
 	for (unsigned code = 0x110000; code < 0x1FFFFF; code += 0xFFF) {
 		char text[4];
@@ -40,8 +41,8 @@ static void surrogates_and_beyond_are_not(void **state)
 	}
 }
 
-// Two bytes have 2^16 forms, of which 128 x 256 start with an ASCII character and 30 x 64 are
-// pairs.
+// Two bytes have 2^16 forms. Of these, 128 x 256 start with an ASCII character, and 30 x 64 are
+// characters of two bytes.
 static void counts_of_short_forms(void **state)
 {
 	(void)state;
@@ -55,7 +56,8 @@ static void counts_of_short_forms(void **state)
 	assert_int_equal(twos, 30 * 64);
 }
 
-// 30 first bytes of pairs, 16 of triples, 5 of fours; nothing else starts a longer character.
+// Characters of two bytes have 30 first bytes, of three bytes 16, of four bytes 5. No other byte
+// starts a longer character.
 static void a_start_is_a_first_byte_of_a_longer_one(void **state)
 {
 	(void)state;
@@ -67,7 +69,7 @@ static void a_start_is_a_first_byte_of_a_longer_one(void **state)
 	assert_int_equal(starts, 30 + 16 + 5);
 }
 
-// Wherever the first other byte is, and whatever stands behind it.
+// The first byte that is not ASCII is at every position, with all kinds of bytes after it.
 static void ascii_ends_at_the_first_other_byte(void **state)
 {
 	(void)state;

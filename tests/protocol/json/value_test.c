@@ -55,7 +55,7 @@ static void paths_grow_and_shrink(void **state)
 	assert_string_equal(reader.path, "layers");
 	cau_reader_leave(&reader, outer);
 	assert_string_equal(reader.path, "");
-	for (int i = 0; i < 100; i++) // far past the path's room
+	for (int i = 0; i < 100; i++) // far beyond the capacity of the path
 		cau_reader_enter(&reader, "member", 0);
 	assert_int_equal(strlen(reader.path), sizeof reader.path - 1);
 	assert_int_equal(cau_reader_fail(&reader, CAU_LIMIT, "x", "first"), CAU_LIMIT);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes streams as the C encoder makes them, with what a decoder must hold after each frame, and
-// one of every message: golden FOLDER. For the tests in Node.
+// golden FOLDER: writes streams from the C encoder for the tests in Node, with the state that a
+// decoder must have after each frame. Also writes one example of every message.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -174,7 +174,7 @@ static void write_state(FILE *out, const cau_frame_decoder *decoder)
 
 typedef struct recording {
 	FILE *manifest;
-	int number; // of the stream
+	int number; // number of the stream
 	int frames;
 	tissue tissue;
 	cau_stream_def def;
@@ -184,7 +184,8 @@ typedef struct recording {
 	size_t capacity;
 } recording;
 
-// `expect` is what a decoder must say: "ok", "refused" (state kept) or "corrupt" (state lost).
+// Writes a frame. `expect` is the required result of a decoder: "ok", "refused" (state kept) or
+// "corrupt" (state lost).
 static void record(recording *of, const uint8_t *bytes, size_t count, const char *expect)
 {
 	char name[64];
@@ -204,8 +205,8 @@ static size_t encode(recording *of, int32_t tick, double speed_m_s)
 {
 	size_t count;
 	tissue_move(&of->tissue, tick, speed_m_s);
-	for (int32_t v = 0; v < of->tissue.vertex_count;
-	     v++) // some vertices are out of sight for a while
+	// Some vertices are hidden for a while.
+	for (int32_t v = 0; v < of->tissue.vertex_count; v++)
 		of->tissue.visible[v] = (v + tick) % 13 != 0;
 	cau_stream_sample sample = tissue_sample(&of->tissue);
 	check(cau_frame_encode(of->encoder, &sample, of->bytes, of->capacity, &count, NULL) == CAU_OK,
@@ -232,8 +233,9 @@ static void open_recording(recording *of, bool plain)
 	      "decoder");
 }
 
-// A key frame and deltas; a frame of another epoch, a repeated one and a late key frame to refuse;
-// a restart with another epoch; a damaged frame, and the key frame that mends it.
+// Records a key frame and deltas. It adds a frame of another epoch, a repeated frame and a late key
+// frame, which must be refused. Then come a restart with another epoch, a damaged frame, and the
+// key frame that repairs the state.
 static void record_stream(FILE *manifest, int number, double speed_m_s, bool plain)
 {
 	recording of = {.manifest = manifest, .number = number};
@@ -260,7 +262,7 @@ static void record_stream(FILE *manifest, int number, double speed_m_s, bool pla
 		}
 	}
 	count = encode(&of, FRAMES, speed_m_s);
-	of.bytes[CAU_FRAME_HEADER_BYTES + CAU_FRAME_SECTION_BYTES + 1] = 2; // components
+	of.bytes[CAU_FRAME_HEADER_BYTES + CAU_FRAME_SECTION_BYTES + 1] = 2; // number of components
 	record(&of, of.bytes, count, "corrupt");
 	check(cau_frame_encode_key(of.encoder, of.bytes, of.capacity, &count, NULL) == CAU_OK,
 	      "key frame");

@@ -43,10 +43,10 @@ static const cau_command_line line = {.program = "example",
 
 enum { COMPLAINT_BYTES = 512, MOST = 16 };
 
-// Reads words that are separated by blanks; what is complained of goes to `complaint`.
+// Reads words that are separated by blanks. Error messages go to `complaint`.
 static bool read_text(const char *text, asked *to, char complaint[COMPLAINT_BYTES])
 {
-	static char copy[512]; // what is read points into it
+	static char copy[512]; // static, because the result points into it
 	char *arguments[MOST] = {"example"};
 	int count = 1;
 	snprintf(copy, sizeof copy, "%s", text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every method's params and results, through text and back.
+// Writes and reads the params and results of every method.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -108,7 +108,7 @@ static void test_every_message_round_trips(void **unused)
 	free_bench(&of);
 }
 
-// Just beyond its range each number is refused, by writer and reader alike.
+// A number just beyond its range is refused by the writer and by the reader.
 static void test_ranges_are_checked_both_ways(void **unused)
 {
 	(void)unused;

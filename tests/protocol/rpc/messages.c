@@ -27,7 +27,7 @@ static void fill_numbers(const cau_wire_field *field, cau_wire_list *list, doubl
 
 static void fill_text(char *to, int32_t bytes_max, fill how)
 {
-	if (how == FILL_MOST) // two bytes a letter, and what must be escaped
+	if (how == FILL_MOST) // letters of two bytes, and characters that must be escaped
 		for (int32_t i = 0; i + 2 < bytes_max; i += 3)
 			memcpy(to + i, i % 2 ? "\xc3\xa4\"" : "\xc3\xb6\n", 3);
 }

@@ -17,13 +17,13 @@ static cau_status read(const char *text, cau_rpc_message *message, cau_rpc_fault
 	return cau_rpc_read(text, strlen(text), TEXT_BYTES, message, fault);
 }
 
-// ---- what is refused before any method sees it
+// ---- refused before any method sees the message
 
 typedef struct refusal {
 	const char *text;
 	int32_t code;
 	const char *path;
-	int kind; // CAU_RPC_REQUEST: to be answered
+	int kind; // CAU_RPC_REQUEST if an answer is due
 } refusal;
 
 #define CALL "{\"jsonrpc\":\"2.0\","

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-// Half a step, and the last bits of the multiplication by 1 / step.
+// half a step, plus the rounding of the multiplication by 1 / step
 static const double round_off_m = 0.5 * 5e-5 + 1e-12;
 
 cau_frame_decoder *chain_new_decoder(const cau_stream_def *def)
@@ -112,7 +112,7 @@ static void assert_contacts_equal(const cau_tool_contact *a, const cau_tool_cont
 	assert_memory_equal(a->plane, b->plane, (size_t)a->plane_count * sizeof *a->plane);
 }
 
-// Half a step, and a little for the last bits of single precision.
+// Checks scalars to half a step plus the rounding of single precision.
 static void assert_scalars_rounded(const cau_frame_decoder *decoder, const tissue *shown, int32_t v)
 {
 	const cau_stream_state *state = cau_frame_decoder_state(decoder);

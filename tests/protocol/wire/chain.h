@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An encoder and a decoder over a make-believe tissue. Every step asserts that it goes well.
+// An encoder and a decoder for an artificial tissue. Every call asserts its success.
 #pragma once
 
 #include "cautery/frame_codec.h"
@@ -17,15 +17,16 @@ typedef struct chain {
 	size_t byte_count;
 } chain;
 
-// Buffers have exactly the sizes asked for, so that sanitizers see one byte too many.
+// Buffers have exactly the requested sizes, so that sanitizers detect an access one byte beyond.
 void chain_init(chain *made, int32_t columns, int32_t rows);
 void chain_finish(chain *made);
-cau_frame_decoder *chain_new_decoder(const cau_stream_def *def); // free() it
+cau_frame_decoder *chain_new_decoder(const cau_stream_def *def); // free it with free()
 
-// Encodes the tissue's present state into `bytes`; chain_pass decodes it too.
+// chain_encode encodes the tissue's present state into `bytes`; chain_pass also decodes it.
 void chain_encode(chain *of);
 void chain_pass(chain *of);
 
-// What the decoder holds is the sample, to half a step; hidden vertices are not looked at.
+// Asserts that the decoder's state is the tissue's, to half a step. Hidden vertices are not
+// checked.
 void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown);
 void chain_assert_same(const cau_frame_decoder *a, const cau_frame_decoder *b);

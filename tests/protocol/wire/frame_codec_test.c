@@ -55,12 +55,13 @@ static void test_hidden_vertices_wait_until_they_are_seen(void **unused)
 	chain_finish(&of);
 }
 
-// A face below others is drawn when these are cut away: what moved while it was hidden comes with
-// the frame that draws it, to those of full rate, of half rate, and to a late joiner.
+// A face becomes visible when the faces above it are cut away. Its vertices may have moved while
+// hidden. Their positions must come with the frame that draws the face: at full rate, at half rate,
+// and for a late joiner.
 static void test_a_face_that_is_laid_open_comes_with_its_vertices(void **unused)
 {
 	(void)unused;
-	enum { LAID_OPEN = 20 }; // an even number of frames, where half rate has a state
+	enum { LAID_OPEN = 20 }; // an even frame number, where half rate also has a state
 	chain of;
 	chain_init(&of, 12, 9);
 	size_t bytes = cau_frame_thinner_bytes(&of.def);
@@ -75,7 +76,7 @@ static void test_a_face_that_is_laid_open_comes_with_its_vertices(void **unused)
 		of.tissue.mask[0] = tick == LAID_OPEN ? 0 : 0xff;
 		chain_pass(&of);
 		assert_int_equal(cau_frame_thin(thinner, other, of.capacity, &bytes, NULL), CAU_OK);
-		if (tick == 4) // joins at an even sequence, while they are hidden
+		if (tick == 4) // joins at an even sequence, while the vertices are hidden
 			assert_int_equal(cau_frame_encode_key(of.encoder, other, of.capacity, &bytes, NULL),
 			                 CAU_OK);
 		if (tick >= 4 && bytes)
@@ -93,7 +94,7 @@ static void test_a_face_that_is_laid_open_comes_with_its_vertices(void **unused)
 	chain_finish(&of);
 }
 
-// Who has no mask cannot know what is hidden: it gets every vertex.
+// A decoder without the mask cannot know the hidden vertices, so it gets every vertex.
 static void test_without_the_mask_nothing_is_stale(void **unused)
 {
 	(void)unused;
@@ -134,7 +135,8 @@ static void test_key_frame_equals_the_chain(void **unused)
 		cau_frame_decoder *late = chain_new_decoder(&of.def);
 		assert_int_equal(cau_frame_decode(late, key, key_bytes, NULL), CAU_OK);
 		chain_assert_same(of.decoder, late);
-		for (int32_t later = 1; later <= 3; later++) { // and both go on alike
+		// both decoders continue with the same states
+		for (int32_t later = 1; later <= 3; later++) {
 			tissue_move(&of.tissue, ++tick, 0.1);
 			chain_pass(&of);
 			assert_int_equal(cau_frame_decode(late, of.bytes, of.byte_count, NULL), CAU_OK);
@@ -153,7 +155,7 @@ static void test_a_still_tissue_costs_next_to_nothing(void **unused)
 	chain_init(&of, 30, 30);
 	chain_pass(&of);
 	chain_pass(&of);
-	// One tool, its raw force, the statistics, no vessel and no contact.
+	// sections: one tool, its raw force, the statistics, no vessel and no contact
 	size_t records = 5 * 8 + 84 + 28 + 112 + 4 + 4;
 	assert_int_equal(of.byte_count, CAU_FRAME_HEADER_BYTES + records);
 	assert_int_equal(cau_frame_decoder_state(of.decoder)->moved_count, 0);
@@ -165,8 +167,8 @@ static void test_errors_never_add_up(void **unused)
 	(void)unused;
 	chain of;
 	chain_init(&of, 8, 8);
-	for (int32_t tick = 0; tick < 3000;
-	     tick++) { // 50 s at a crawl: under a tenth of a step a frame
+	// 50 s of slow motion, under a tenth of a step a frame
+	for (int32_t tick = 0; tick < 3000; tick++) {
 		tissue_move(&of.tissue, tick, 0.0002);
 		chain_pass(&of);
 	}
@@ -182,7 +184,7 @@ static void test_a_new_epoch_starts_with_a_key_frame(void **unused)
 	tissue_move(&of.tissue, 30, 0.05);
 	chain_pass(&of);
 	tissue_move(&of.tissue, 31, 0.05);
-	chain_encode(&of); // on its way when the session is rewound
+	chain_encode(&of); // this frame is still on its way when the session is rewound
 	uint8_t *late = malloc(of.byte_count);
 	size_t late_bytes = of.byte_count;
 	memcpy(late, of.bytes, late_bytes);
@@ -263,7 +265,7 @@ static void test_a_stream_carries_its_channels_alone(void **unused)
 	}
 }
 
-// Whether positions or mask, the first sections, are in the codec (byte 2 of their elements).
+// True if positions or mask, the first sections, use the codec (byte 2 of their elements).
 static bool any_coded(const uint8_t *frame, size_t byte_count)
 {
 	bool coded = false;
@@ -278,7 +280,7 @@ static bool any_coded(const uint8_t *frame, size_t byte_count)
 	return coded;
 }
 
-// The same chain, in numbers that need no codec.
+// Encodes the same chain without the codec.
 static void test_a_plain_stream_has_no_codec(void **unused)
 {
 	(void)unused;
@@ -304,7 +306,7 @@ static void test_a_plain_stream_has_no_codec(void **unused)
 	chain_finish(&plain);
 }
 
-// What the rows of cautery/channels.h must keep to, and the preprocessor does not see.
+// Checks rules for the table in cautery/channels.h that the preprocessor cannot check.
 static void test_rows_fit_together(void **unused)
 {
 	(void)unused;

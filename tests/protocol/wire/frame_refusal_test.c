@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What encoder and decoder refuse, and what is left of their state then.
+// Errors of encoder and decoder, and their states afterwards.
 #include "cautery/frame_codec.h"
 
 #include <math.h>
@@ -85,7 +85,7 @@ static void test_every_truncation_is_refused(void **unused)
 		uint8_t *cut = malloc(bytes ? bytes : 1);
 		memcpy(cut, of.bytes, bytes);
 		assert_int_equal(cau_frame_decode(of.decoder, cut, bytes, NULL), CAU_CORRUPT);
-		if (bytes >= CAU_FRAME_HEADER_BYTES) { // a length that agrees, sections that do not
+		if (bytes >= CAU_FRAME_HEADER_BYTES) { // the length is right, the sections are not
 			memcpy(cut + 8, &(uint32_t){(uint32_t)bytes}, 4);
 			assert_int_equal(cau_frame_decode(of.decoder, cut, bytes, NULL), CAU_CORRUPT);
 			assert_false(cau_frame_decoder_state(of.decoder)->synced);
@@ -210,7 +210,7 @@ static void test_definitions_are_checked(void **unused)
 	                 CAU_LIMIT);
 }
 
-// A chain whose memory is spoilt makes no frame, and ends no program, in any build.
+// A chain with damaged memory makes no frame and does not end the program, in any build.
 static void test_a_spoilt_chain_makes_no_frame(void **unused)
 {
 	(void)unused;
@@ -239,7 +239,7 @@ static void test_a_spoilt_chain_makes_no_frame(void **unused)
 	}
 }
 
-// The innermost guard is the one that is gone back to; the outer one serves again after it.
+// A failed rule returns to the innermost guard. After that the outer guard is in force again.
 static void test_guards_lie_in_one_another(void **unused)
 {
 	(void)unused;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size and cost of a stream as viewers join it by default, over the fascia-like grid of 3,136
-// vertices.
+// Size and cost of a stream with the default channels, for a grid of 3,136 vertices like the
+// fascia.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,12 +17,12 @@
 
 enum { SIDE = 56, FRAMES = 300 };
 
-// The figure to reach at 0.05 mm: payload of whole frames (header, mask, scalars, tools and all)
-// for each vertex that moved by a step or more.
+// Limit at 0.05 mm: payload of whole frames (header, mask, scalars, tools and all) for each vertex
+// that moved by a step or more.
 static const double bytes_per_vertex_most = 1.6;
-// Of tissue that is flung about: the noise of its vertices alone is then several steps a frame.
+// limit for fast motion, where the noise of each vertex alone is several steps a frame
 static const double fast_bytes_per_vertex_most = 2.0;
-// A key frame carries whole positions, not differences in time; single precision would be 12.
+// limit for a key frame, which has whole positions; single precision would need 12
 static const double key_bytes_per_vertex_most = 4.0;
 
 static double now_us(void)
@@ -34,10 +34,11 @@ static double now_us(void)
 
 typedef struct figures {
 	double bytes_per_vertex, key_bytes_per_vertex;
-	double encode_us, decode_us; // mean
+	double encode_us, decode_us; // mean time of a frame
 } figures;
 
-// Vertices that moved by a step or more; frames carry a few that did not, between those that did.
+// Counts vertices that moved by a step or more. Frames also carry a few other vertices between
+// them.
 static int32_t count_moved(const cau_frame_decoder *decoder, const int32_t *before, int32_t count)
 {
 	const int32_t *now = cau_frame_decoder_state(decoder)->quantised;

@@ -15,7 +15,7 @@ typedef struct thinned {
 	cau_frame_thinner *thinner;
 	cau_frame_decoder *slow;
 	uint8_t *bytes;
-	size_t byte_count; // of the last delta over two frames; 0: none
+	size_t byte_count; // size of the last delta over two frames, or 0 if there was none
 } thinned;
 
 static void thinned_init(thinned *made)
@@ -46,7 +46,7 @@ static uint64_t sequence_of(const cau_frame_decoder *decoder)
 	return cau_frame_decoder_state(decoder)->sequence;
 }
 
-// A frame of the chain, with vertices that come and go, and its thin one if it is due.
+// Advances the chain by a frame, with vertices that appear and disappear, and calls the thinner.
 static void advance(thinned *of, int32_t tick)
 {
 	tissue *t = &of->chain.tissue;
@@ -75,7 +75,7 @@ static void test_every_second_frame_makes_the_same_state(void **unused)
 		advance(&of, tick);
 		uint64_t sequence = sequence_of(of.chain.decoder);
 		assert_int_equal(of.byte_count > 0, sequence > 2 && sequence % 2 == 0);
-		if (sequence <= 2) { // over the whole chain until the first thin frame
+		if (sequence <= 2) { // until the first thin frame, use the frames of the chain
 			decode(of.slow, of.chain.bytes, of.chain.byte_count);
 		} else if (of.byte_count) {
 			decode(of.slow, of.bytes, of.byte_count);
@@ -107,7 +107,7 @@ static void test_a_decoder_goes_over_and_back(void **unused)
 	thinned_finish(&of);
 }
 
-// What it kept before a pause or of another epoch is no base of anything.
+// The thinner's kept state is not a valid base after a pause or in another epoch.
 static void test_it_starts_anew_after_a_pause_and_in_an_epoch(void **unused)
 {
 	(void)unused;
@@ -116,7 +116,7 @@ static void test_it_starts_anew_after_a_pause_and_in_an_epoch(void **unused)
 	for (int32_t tick = 0; tick < 4; tick++)
 		advance(&of, tick);
 	assert_true(of.byte_count > 0);
-	for (int32_t tick = 4; tick < 7; tick++) { // nobody wants half the rate
+	for (int32_t tick = 4; tick < 7; tick++) { // during these ticks no client wants half the rate
 		tissue_move(&of.chain.tissue, tick, 0.1);
 		chain_pass(&of.chain);
 	}
@@ -132,7 +132,7 @@ static void test_it_starts_anew_after_a_pause_and_in_an_epoch(void **unused)
 	thinned_finish(&of);
 }
 
-// The second tool comes with tick 8, the frame that the slow one does not see.
+// The second tool appears with tick 8, in a frame that the half-rate decoder does not get.
 static void test_a_new_tool_is_named(void **unused)
 {
 	(void)unused;

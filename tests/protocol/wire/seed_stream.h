@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The small stream over which the fuzz targets' seeds are made.
+// The small stream for the seeds of the fuzz targets.
 #pragma once
 
 #include "cautery/frame_codec.h"

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-// FIPS 180-4's own examples.
+// The examples of FIPS 180-4.
 static void known_digests(void **state)
 {
 	(void)state;

@@ -49,7 +49,8 @@ static void move_vertex(tissue *moved, int32_t vertex, double time_s, double spe
 	        noise * sin(90 * time_s + 17.7 * vertex);
 }
 
-// The body's, and around the cut's end, which goes a column a tick, that of a hook.
+// Returns the body's temperature, or near the end of the cut the heat of a hook. The cut advances
+// by one column a tick.
 static float temperature_at(const tissue *of, int32_t vertex, int32_t tick)
 {
 	int32_t across = vertex / of->columns - of->rows / 2, along = vertex % of->columns - tick;
@@ -57,7 +58,7 @@ static float temperature_at(const tissue *of, int32_t vertex, int32_t tick)
 	return squared < 9 ? 170.0f - 14.8f * (float)squared : 37.0f;
 }
 
-// A wave, within what every scalar can tell, for those that have no story of their own.
+// Gives all scalars a wave within their ranges. Some of them get other values later.
 static void wave_scalars(tissue *moved, int32_t vertex, double time_s)
 {
 	cau_stream_def def = cau_default_stream_def();

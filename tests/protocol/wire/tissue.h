@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A make-believe tissue for tests of streams: a grid in smooth motion with a little noise, a cut
-// that runs across it, exposure that rises along the cut, one or two tools, later a vessel and the
-// contact of a tool. The same in every run.
+// An artificial tissue for tests of streams. It is a grid in smooth motion with a little noise. A
+// cut runs across it, with exposure that rises along the cut. It has one or two tools, later a
+// vessel and the contact of a tool. It is the same in every run.
 #pragma once
 
 #include "cautery/stream.h"
@@ -16,17 +16,18 @@ typedef struct tissue {
 	cau_stream_tool tools[2];
 	cau_stream_statistics statistics;
 	cau_vessel_state vessel;
-	const cau_vessel_state *vessels[1]; // it
+	const cau_vessel_state *vessels[1]; // points to `vessel`
 	cau_tool_contact contact;
 } tissue;
 
-// Heap arrays; NULL members after tissue_finish.
+// Allocates the arrays. tissue_finish frees them and sets them to NULL.
 void tissue_init(tissue *made, int32_t columns, int32_t rows);
 void tissue_finish(tissue *made);
 
-// Moves everything to `tick` at 60 ticks a second; `speed_m_s` is the largest speed of a vertex.
+// Moves the tissue to `tick` at 60 ticks a second. `speed_m_s` is the largest speed of a vertex.
 void tissue_move(tissue *moved, int32_t tick, double speed_m_s);
 
-// A stream over it with all channels, and the sample of its present state, borrowed.
+// Returns a stream definition with all channels, and the sample of the present state; the sample is
+// borrowed.
 cau_stream_def tissue_stream_def(const tissue *of);
 cau_stream_sample tissue_sample(const tissue *of);

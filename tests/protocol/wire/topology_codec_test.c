@@ -147,11 +147,12 @@ static void test_hostile_topology_is_refused(void **unused)
 	assert_int_equal(encode(of, NULL), CAU_OK);
 	for (size_t bytes = 0; bytes < of->byte_count; bytes += 7)
 		assert_int_equal(decode(of, bytes, to, &has_texture), CAU_CORRUPT);
-	assert_true(of->byte_count > 72);            // a header and more
-	uint8_t *whole = malloc(of->byte_count + 1); // + 1: the analyzer does not know that
+	assert_true(of->byte_count > 72); // larger than a header
+	// + 1, because the analyzer does not know that the size is not 0
+	uint8_t *whole = malloc(of->byte_count + 1);
 	memcpy(whole, of->bytes, of->byte_count);
 	srand(3);
-	for (int round = 0; round < 3000; round++) { // whatever comes out, indices are in range
+	for (int round = 0; round < 3000; round++) { // whatever is decoded, indices are in range
 		for (int flips = 0; flips < 3; flips++)
 			of->bytes[72 + (size_t)rand() % (of->byte_count - 72)] ^= (uint8_t)(1 << rand() % 8);
 		if (decode(of, of->byte_count, to, &has_texture) == CAU_OK) {
@@ -167,7 +168,7 @@ static void test_hostile_topology_is_refused(void **unused)
 	free_fixture(of);
 }
 
-// For another profile, epoch and step it has the bytes that encoding everything gives.
+// With a known frame, other profile, epoch and step, the bytes are the same as without it.
 static void test_a_known_frame_is_used(void **unused)
 {
 	(void)unused;
@@ -181,7 +182,7 @@ static void test_a_known_frame_is_used(void **unused)
 	memcpy(whole, other->bytes, whole_bytes);
 	other->topology.known = of->bytes;
 	other->topology.known_bytes = of->byte_count;
-	other->face[0] = VERTICES; // is not read
+	other->face[0] = VERTICES; // must not be read
 	assert_int_equal(encode(other, NULL), CAU_OK);
 	assert_int_equal(other->byte_count, whole_bytes);
 	assert_memory_equal(other->bytes, whole, whole_bytes);

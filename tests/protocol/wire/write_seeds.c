@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes frames as seeds for the fuzz targets: write_seeds FOLDER. Run by hand when the layout
+// write_seeds FOLDER: writes frames as seeds for the fuzz targets. Run it by hand when the layout
 // changes.
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Peers of every kind at the agent's port.
+// All kinds of peers at the agent's port.
 #include "agent/agent.h"
 
 #include <arpa/inet.h>
@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-enum { PATIENCE_S = 10 }; // for an answer that is due at once
+enum { PATIENCE_S = 10 }; // longest wait for an answer, which should come at once
 
 typedef struct world {
 	cau_agent *agent;
@@ -62,7 +62,7 @@ static int connect_peer(const world *w)
 	return peer;
 }
 
-// What the agent says until it closes.
+// Reads until the agent closes, and compares the text.
 static void expect_line(int peer, const char *wanted)
 {
 	char text[64] = "";
@@ -102,7 +102,7 @@ static void silent_and_resetting_peers_disturb_nobody(void **state)
 	}
 	expect_line(connect_peer(w), "ready 63%\n");
 	for (int i = 0; i < PEERS; i++)
-		expect_line(silent[i], "ready 63%\n"); // each had its own, read or not
+		expect_line(silent[i], "ready 63%\n"); // each peer had its own line
 }
 
 static void the_load_is_not_measured_for_each(void **state)

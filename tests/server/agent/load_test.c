@@ -32,7 +32,7 @@ static void sessions_that_are_behind_make_it_less(void **state)
 	load.busy_share = 0.5;
 	load.pace_share_min = 0.5;
 	assert_int_equal(cau_load_free_percent(&load), 25);
-	load.pace_share_min = 1.02; // catches up
+	load.pace_share_min = 1.02; // above 1 while the session catches up
 	assert_int_equal(cau_load_free_percent(&load), 50);
 	(void)state;
 }
@@ -41,7 +41,7 @@ static void a_full_daemon_is_no_draining_one(void **state)
 {
 	char line[CAU_LOAD_LINE_BYTES];
 	cau_load load = idle();
-	load.session_count = 65; // one that ends is still counted
+	load.session_count = 65; // a session that is ending is still counted
 	load.busy_share = 1;
 	size_t bytes = cau_load_write(&load, line);
 	assert_string_equal(line, "ready 1%\n");

@@ -126,7 +126,8 @@ static void a_hash_stands_for_its_token(void **state)
 	         hash);
 	assert_int_equal(read_tokens(text, 0600, &auth), CAU_OK);
 	assert_true(role_is(auth, "0123456789abcdef", CAU_ROLE_OPERATE));
-	assert_false(cau_auth_role(auth, hash, 64, &(cau_role){0})); // who has read the file
+	// a hash is no token, so reading the file gives no access
+	assert_false(cau_auth_role(auth, hash, 64, &(cau_role){0}));
 	cau_auth_grant_name(auth, cau_auth_grant(auth, "0123456789abcdef", 16), name);
 	assert_string_equal(name, "anna");
 	cau_auth_destroy(auth);
@@ -193,7 +194,7 @@ static int end_reload(void **state)
 	return unlink(reload_file);
 }
 
-// A grant lives as long as its token is in the file, whatever its line and role.
+// A grant stays the same as long as its token is in the file, on any line and with any role.
 static void a_grant_follows_its_token(void **state)
 {
 	cau_auth *auth = *state;
@@ -208,13 +209,14 @@ static void a_grant_follows_its_token(void **state)
 	assert_true(cau_auth_grant_role(auth, second, &role) && role == CAU_ROLE_VIEW);
 	assert_false(cau_auth_grant_role(auth, 0, &role));
 	assert_false(cau_auth_role(auth, "0123456789abcdef", 16, &role));
-	write_tokens("admin 0123456789abcdef\n", 0600); // given anew: whoever had it before is gone
+	// the same token again gets a new grant, so older connections with it stay closed
+	write_tokens("admin 0123456789abcdef\n", 0600);
 	assert_int_equal(cau_auth_reload(auth, &reload_config, NULL), CAU_OK);
 	assert_false(cau_auth_grant_role(auth, first, &role));
 	assert_true(cau_auth_grant(auth, "0123456789abcdef", 16) > second);
 }
 
-// Whatever is wrong with the file, the tokens stay, and the error says where it is.
+// Whatever is wrong in the file, the tokens stay, and the error says where the mistake is.
 static void a_broken_file_changes_nothing(void **state)
 {
 	cau_auth *auth = *state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Anybody may write X-Forwarded-For; who is believed is the setting's to say.
+// Anyone may write X-Forwarded-For. The setting says which proxies are trusted.
 #include "auth/auth.h"
 
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-// Who a connection from `peer` is, told `forwarded`.
+// Checks the address of a connection from `peer` with the header `forwarded`.
 static void assert_address(const char *proxies, const char *peer, const char *forwarded,
                            const char *expected)
 {
@@ -51,7 +51,7 @@ static void ipv4_on_a_socket_of_ipv6_is_ipv4(void **state)
 static void only_what_our_proxies_wrote_is_believed(void **state)
 {
 	(void)state;
-	// the client wrote 9.9.9.9 itself; the proxy added who it was
+	// the client wrote 9.9.9.9; the proxy added the client's address
 	assert_address("10.0.0.1", "10.0.0.1", "9.9.9.9, 1.2.3.4", "1.2.3.4");
 	assert_address("10.0.0.1, 10.0.0.2", "10.0.0.1", "9.9.9.9,1.2.3.4 , 10.0.0.2", "1.2.3.4");
 	assert_address("10.0.0.1, 10.0.0.2", "10.0.0.1", "10.0.0.2", "10.0.0.2");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Host and Origin headers, one after the other: a page that passes is of an allowed host.
+// Fuzzes the Host and Origin headers: an origin that is accepted must have an allowed host.
 #include <stdlib.h>
 #include <string.h>
 

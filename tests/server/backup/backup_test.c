@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Copies of a store that is in use: whole, one at a time, and answered once whatever happens.
+// Copies of a store that is in use: each is complete, only one is made at a time, and each request
+// is answered exactly once.
 #include "backup/backup.h"
 
 #include <pthread.h>
@@ -18,7 +19,7 @@
 
 enum {
 	THREADS = 2
-}; // of a builder with one thread for any job: that one, and the one for short jobs
+}; // a builder with one thread for any job has this one and the one for short jobs
 
 static struct {
 	char folder[40], file[64], copies[64], copy[80];
@@ -26,7 +27,7 @@ static struct {
 	cau_backups backups;
 	pthread_mutex_t lock;
 	pthread_cond_t news;
-	int holding, answers; // jobs that hold a thread of the builder; answers that came
+	int holding, answers; // holding: jobs that occupy a builder thread; answers: received answers
 	bool holds;
 	cau_status status;
 } t;
@@ -93,7 +94,7 @@ static void await(const int *count, int wanted)
 	pthread_mutex_unlock(&t.lock);
 }
 
-// ---- a builder that is busy
+// ---- a busy builder
 static void hold(cau_job *job)
 {
 	(void)job;
@@ -171,7 +172,7 @@ static void one_copy_is_made_at_a_time(void **state)
 	assert_int_equal(t.status, CAU_OK);
 	assert_int_equal(make(), CAU_OK);
 	await(&t.answers, 2);
-	assert_int_equal(t.status, CAU_ALREADY_EXISTS); // it replaces none
+	assert_int_equal(t.status, CAU_ALREADY_EXISTS); // a copy replaces no existing file
 }
 
 static void a_copy_that_cannot_be_made_is_answered(void **state)
@@ -182,7 +183,8 @@ static void a_copy_that_cannot_be_made_is_answered(void **state)
 	await(&t.answers, 1);
 	assert_int_equal(t.status, CAU_IO);
 	cau_builder_stop(t.backups.builder);
-	for (int dropped = 1; dropped <= 2; dropped++) { // neither hinders the other
+	// the first dropped copy does not hinder the second
+	for (int dropped = 1; dropped <= 2; dropped++) {
 		assert_int_equal(make(), CAU_OK);
 		assert_int_equal(t.answers, 1 + dropped);
 		assert_int_equal(t.status, CAU_BAD_STATE);

@@ -11,7 +11,7 @@
 
 enum {
 	PAGE_BYTES = 4096,
-	PIECE_BYTES = 8000000, // a checkpoint of 40,000 vertices
+	PIECE_BYTES = 8000000, // size of a checkpoint of 40,000 vertices
 	PIECES = 2,
 	ROUNDS = 1000,
 };
@@ -23,7 +23,7 @@ static long faults(void)
 	return usage.ru_minflt;
 }
 
-// What a slice does with a piece.
+// Takes a piece and writes all of it, as a slice does. Returns the number of page faults.
 static long faults_of_copying(cau_shelf *shelf, size_t bytes, void **piece)
 {
 	long before = faults();
@@ -41,7 +41,7 @@ static cau_shelf *stocked(size_t bytes, int count)
 	return shelf;
 }
 
-// The page of the stack that a call reaches, and the like.
+// Allowed page faults, such as a page of the stack that a call reaches first.
 static const long FEW_FAULTS = 16;
 
 static void test_no_page_is_looked_for_in_a_slice(void **state)
@@ -67,7 +67,8 @@ static void test_a_piece_that_grows_keeps_its_pages(void **state)
 	long most = (long)(larger - PIECE_BYTES) / PAGE_BYTES + FEW_FAULTS;
 	assert_true(faults_of_copying(shelf, larger, &piece) <= most);
 	cau_shelf_give_back(piece);
-	assert_true(faults_of_copying(shelf, larger, &piece) < FEW_FAULTS); // it stays as large
+	// the piece keeps its larger size
+	assert_true(faults_of_copying(shelf, larger, &piece) < FEW_FAULTS);
 	cau_shelf_give_back(piece);
 	cau_shelf_release(shelf);
 }
@@ -84,14 +85,15 @@ static void test_more_than_lie_there_are_made(void **state)
 	}
 	assert_ptr_not_equal(piece[0], piece[1]);
 	for (int i = 0; i < 3; i++)
-		cau_shelf_give_back(piece[i]); // the second is one too many, and is freed
+		cau_shelf_give_back(piece[i]); // the second has no place on the shelf and is freed
 	cau_shelf_give_back(NULL);
 	cau_shelf_release(shelf);
 	cau_shelf_release(empty);
 	cau_shelf_release(NULL);
 }
 
-// As when the store commits a checkpoint of a session that is gone.
+// A piece is given back after its shelf is released, as when the store commits a checkpoint of a
+// session that has ended.
 static void test_a_piece_outlives_its_shelf(void **state)
 {
 	(void)state;
@@ -128,7 +130,7 @@ static void test_threads_have_pieces_of_their_own(void **state)
 
 int main(void)
 {
-	// The sanitizers' own books find pages too.
+	// Sanitizers cause page faults of their own, so these tests are skipped under them.
 	const struct CMUnitTest pages[] = {
 		cmocka_unit_test(test_no_page_is_looked_for_in_a_slice),
 		cmocka_unit_test(test_a_piece_that_grows_keeps_its_pages),

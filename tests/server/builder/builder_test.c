@@ -13,19 +13,19 @@
 
 enum { NICE = 12 };
 
-// What the jobs of a test tell each other.
+// The state that the jobs of a test share.
 typedef struct board {
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;
-	char order[16]; // names of the jobs that ran
+	char order[16]; // names of the jobs, in the order in which they ran
 	int dropped, nice;
-	int open; // gates that held jobs wait at
+	int open; // number of open gates; jobs wait at gates
 } board;
 
 typedef struct named {
-	cau_job job; // first
+	cau_job job; // must be the first member
 	char name;
-	int held; // runs until so many gates are open
+	int held; // the job runs until this number of gates is open
 	board *board;
 } named;
 
@@ -90,12 +90,12 @@ static void waiting_jobs_go_by_length(void **state)
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
 	cau_builder_submit(builder, &first.job);
-	await(&b, 2); // neither thread is free
+	await(&b, 2); // now no thread is free
 	cau_builder_submit(builder, &slow.job);
 	cau_builder_submit(builder, &quick.job);
 	assert_int_equal(cau_builder_busy(builder), 4);
 	open_gate(&b);
-	await(&b, 4); // one after the other: the giant goes on
+	await(&b, 4); // the short jobs ran one after the other while the long job continued
 	assert_string_equal(b.order, "gfqs");
 	open_gate(&b);
 	assert_int_equal(b.nice, NICE);
@@ -114,7 +114,7 @@ static void a_short_job_does_not_stand_behind_a_long_one(void **state)
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
 	cau_builder_submit(builder, &small.job);
-	await(&b, 2); // while the giant is under way
+	await(&b, 2); // while the long job is running
 	assert_string_equal(b.order, "gs");
 	open_gate(&b);
 	cau_builder_stop(builder);
@@ -136,9 +136,9 @@ static void long_jobs_run_beside_each_other(void **state)
 	await(&b, 3);
 	named small = make(&b, 's', 0.05, 0);
 	cau_builder_submit(builder, &small.job);
-	await(&b, 4); // the thread of short jobs is free, though a long one waits
+	await(&b, 4); // the thread of short jobs is free, although a long job waits
 	assert_int_equal(b.order[3], 's');
-	assert_in_range(cau_builder_busy(builder), 4, 5); // that one may still be ending
+	assert_in_range(cau_builder_busy(builder), 4, 5); // that short job may still be ending
 	open_gate(&b);
 	await(&b, 5);
 	cau_builder_stop(builder);
@@ -157,7 +157,7 @@ static void idle_threads_of_long_jobs_take_short_ones(void **state)
 		job[i] = make(&b, (char)('a' + i), 0.1, 1);
 		cau_builder_submit(builder, &job[i].job);
 	}
-	await(&b, 3); // all at once
+	await(&b, 3); // all run at the same time
 	open_gate(&b);
 	cau_builder_stop(builder);
 	cau_builder_destroy(builder);

@@ -41,7 +41,7 @@ static void equals_keep_their_order(void **state)
 		assert_ptr_equal(cau_job_queue_take(&queue), &jobs[i]);
 }
 
-// Short jobs without end: the long one has its turn after those of its patience.
+// Short jobs keep coming. The long job gets its turn after those that come within its patience.
 static void nothing_starves(void **state)
 {
 	(void)state;
@@ -50,14 +50,14 @@ static void nothing_starves(void **state)
 	cau_job long_one = job_of(2), jobs[SHORT_JOBS];
 	int before = 0;
 	cau_job_queue_put(&queue, &long_one, 0);
-	for (int i = 0; i < SHORT_JOBS; i++) { // one each 0.3 s
+	for (int i = 0; i < SHORT_JOBS; i++) { // one job every 0.3 s
 		jobs[i] = job_of(0.1);
 		cau_job_queue_put(&queue, &jobs[i], 0.3 * i);
 		if (cau_job_queue_take(&queue) == &long_one)
 			break;
 		before++;
 	}
-	// rank of the long one: 0 + 4 x 2; of the short ones 0.3 i + 4 x 0.1
+	// The long job's rank is 0 + 4 x 2; the short jobs' ranks are 0.3 i + 4 x 0.1.
 	assert_int_equal(before, 26);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings files: whatever is accepted can be printed and read again.
+// Fuzzes settings files: settings that are accepted can be printed and read again.
 #include <stdlib.h>
 #include <string.h>
 

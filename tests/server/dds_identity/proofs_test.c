@@ -25,7 +25,7 @@ static participant numbered(int number)
 	return made;
 }
 
-// A certificate of this organisation, `parts` times its unit, and this common name.
+// Makes a certificate of this organisation, with the unit `parts` times, and this common name.
 static const char *certificate(char pem[PEM_BYTES], const char *name, const char *unit, int parts)
 {
 	X509 *made = X509_new();
@@ -87,7 +87,7 @@ static void who_comes_under_a_guid_that_was_anothers_has_proved_nothing(void **s
 	is(&robot, "CN=chief,O=Cautery");
 	cau_dds_proofs_meet(robot.guid, 13);
 	is(&robot, NULL);
-	cau_dds_proofs_prove(102, pem); // of the handshake before
+	cau_dds_proofs_prove(102, pem); // the handle of the earlier handshake
 	is(&robot, NULL);
 	cau_dds_proofs_forget(13);
 }
@@ -106,7 +106,8 @@ static void what_is_no_certificate_or_too_long_a_name_proves_nothing(void **stat
 	cau_dds_proofs_prove(104, certificate(pem, "robot", unit, LONG_PARTS));
 	is(&robot, NULL);
 	cau_dds_proofs_prove(104, certificate(pem, "a,b", "", 0));
-	is(&robot, "CN=a\\,b,O=Cautery"); // no name can be written to look like two parts
+	// a comma in a name is escaped, so it cannot look like two parts
+	is(&robot, "CN=a\\,b,O=Cautery");
 	cau_dds_proofs_forget(14);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A test double of the core: implements cautery/session.h with a small deterministic sheet, so that
-// the server is tested without physics. An energized tool near a face removes it; positions wave
-// with time and with gravity; everything is a function of the definition and the commands. Linked
-// only in tests.
+// A test double of the core. It implements cautery/session.h with a small deterministic sheet, so
+// that the server is tested without physics. An energized tool removes nearby faces. Positions move
+// in waves with time and gravity. Everything is a function of the definition and the commands. Only
+// tests link it.
 #include "fake_session.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@
 #endif
 
 enum {
-	CELLS = CAU_FAKE_CELLS, // along each side of the sheet
+	CELLS = CAU_FAKE_CELLS, // cells along each side of the sheet
 	SIDE = CELLS + 1,
 	VERTICES = SIDE * SIDE,
 	FACES = 2 * CELLS * CELLS,
@@ -29,7 +29,7 @@ enum {
 	MAGIC = 0x46414b45,
 };
 
-typedef struct fake_state { // all that a snapshot holds
+typedef struct fake_state { // everything that a snapshot holds
 	uint64_t tick;
 	double gravity[3];
 	double position[VERTICES * 3];
@@ -39,13 +39,14 @@ typedef struct fake_state { // all that a snapshot holds
 	int32_t tool_count;
 	cau_tool_state tools[CAU_MAX_TOOLS];
 	cau_pose target[CAU_MAX_TOOLS];
-	uint64_t trouble_tick; // a force of 1000 N on anything faults the tick after it
+	// a force of 1000 N along x faults the session at this tick, the one after the force
+	uint64_t trouble_tick;
 	bool faulted;
 	int32_t queued;
-	cau_command queue[QUEUE]; // last: snapshots hold what is used of it
+	cau_command queue[QUEUE]; // must be last: snapshots hold only its used part
 } fake_state;
 
-#define SLOW_STEP_S 0.05 // of wall time: a third of the pace of 60 Hz
+#define SLOW_STEP_S 0.05 // wall time of a slow step: a third of the pace of 60 Hz
 
 struct cau_session {
 	fake_state state;
@@ -53,7 +54,7 @@ struct cau_session {
 	double step_s;
 	bool tension;
 	uint64_t tissue_hash;
-	bool slow; // a force of 1000 N along y makes steps take SLOW_STEP_S, until it is another
+	bool slow; // steps take SLOW_STEP_S; set by a force of 1000 N along y, cleared by another force
 	double velocity[VERTICES * 3], rest[VERTICES * 3];
 	int32_t face[FACES * 3], face_layer[FACES];
 	int32_t moved[VERTICES], mask_changed[WORDS];
@@ -62,7 +63,7 @@ struct cau_session {
 	cau_error refusals[QUEUE];
 	int32_t refusal_count;
 	uint32_t watched;
-	float scalar[VERTICES]; // every scalar that is watched
+	float scalar[VERTICES]; // values of every watched scalar
 };
 
 cau_fake_hooks cau_fake_hooks_set;
@@ -112,7 +113,7 @@ static void come_to(cau_build_stage next)
 		cau_fake_hooks_set.build(next);
 }
 
-// The borders of the core's stages, with what this sheet would take.
+// Calls the border function of each stage, with the sizes of this sheet.
 static cau_status pass_borders(const cau_session_def *def, cau_error *error)
 {
 	cau_status status = CAU_OK;
@@ -373,7 +374,8 @@ static void move_tool(cau_session *s, int32_t i)
 	for (int k = 0; k < 3; k++)
 		tool->pose.position_m[k] += share * way[k];
 	memcpy(tool->pose.rotation, s->state.target[i].rotation, sizeof tool->pose.rotation);
-	tool->asked_pose = tool->pose; // nothing stops it
+	// the double has no contact, so the tool reaches its commanded pose
+	tool->asked_pose = tool->pose;
 	tool->asked_jaw = tool->jaw;
 }
 
@@ -479,7 +481,7 @@ void cau_session_set_clock(cau_session *s, double (*now_s)(void))
 	(void)s, (void)now_s;
 }
 
-// Of what is queued, gravity only.
+// Writes the present state to the scene. Of queued commands, only gravity is included.
 void cau_session_present(const cau_session *s, cau_scene_def *scene)
 {
 	memcpy(scene->gravity_m_s2, s->state.gravity, sizeof scene->gravity_m_s2);
@@ -626,7 +628,7 @@ bool cau_solid_is_volume(const void *bytes, size_t byte_count)
 {
 	(void)bytes;
 	(void)byte_count;
-	return false; // the double reads meshes alone
+	return false; // the double knows only surface meshes
 }
 
 void cau_mesh_report_text(const cau_mesh_report *report, char bytes[static CAU_MESH_TEXT_BYTES])

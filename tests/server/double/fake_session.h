@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a test sees and holds up of the double of the core. Set before the first session is made,
-// and left alone until the last is gone; called on the thread that calls the core.
+// Hooks by which a test observes and stops the double of the core. Set them before the first
+// session is created, and do not change them until the last session is destroyed. The hooks run on
+// the thread that calls the core.
 #pragma once
 
 #include "cautery/session.h"
 
 typedef struct cau_fake_hooks {
-	// The creation comes to the border before this stage; CAU_BUILD_STAGE_COUNT: it has ended.
+	// Called when the creation reaches the border before this stage; CAU_BUILD_STAGE_COUNT: its
+	// end.
 	void (*build)(cau_build_stage next);
-	// New sessions say that they have built-in tension.
+	// New sessions report built-in tension.
 	bool tension;
-	uint64_t tissue_hash; // theirs
-	// A snapshot is about to be restored; what is not CAU_OK fails it, half restored.
+	uint64_t tissue_hash; // tissue hash of new sessions
+	// Called before a snapshot is restored. Any result except CAU_OK fails the restore halfway.
 	cau_status (*restore)(void);
-	// The core is about to take this command.
+	// Called before the core takes this command.
 	void (*submit)(const cau_command *command);
-	// A tick is being computed; the commands that were due are in the tools.
+	// Called while a tick is computed; the commands that were due are already in the tools.
 	void (*step)(const cau_session *session);
-	// Energy is about to be turned off; true: the double is broken, and leaves it on.
+	// Called before energy is turned off. If it returns true, the double leaves energy on.
 	bool (*breaks_off)(void);
-	// A session was made, is about to take a command, is about to go.
+	// Called after a session was created, before it takes a command, and before it is destroyed.
 	void (*made)(const cau_session_def *def, const cau_session *session);
 	void (*taking)(const cau_session *session, const cau_command *command);
 	void (*going)(const cau_session *session);
@@ -27,5 +29,5 @@ typedef struct cau_fake_hooks {
 
 extern cau_fake_hooks cau_fake_hooks_set;
 
-// What gravity.set last set, once what is queued has acted; m/s^2, borrowed.
+// Returns the gravity after all queued commands, m/s^2; borrowed.
 const double *cau_fake_gravity(const cau_session *session);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core that heats what nobody has turned on, here since the double loses an off: no tick is
-// computed with it, and that session alone is faulted.
+// The core heats a tool that no client has turned on, because the double ignores an energy-off. No
+// tick is computed with this energy, and this session alone is faulted.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -64,7 +64,7 @@ static void no_tick_begins_with_energy_that_nobody_turned_on(void **state)
 	assert_int_not_equal(step(FAULTED, 5)->status, CAU_OK);
 	assert_int_equal(cau_decisions_state(&t.h->decisions), CAU_SESSION_FAULTED);
 	assert_int_equal(t.h->core.tick, 3);
-	// whoever goes back has a sound session again
+	// a reset makes the session sound again
 	is_broken = false;
 	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
 	assert_int_equal(ask(RESET, order)->status, CAU_OK);
@@ -72,8 +72,8 @@ static void no_tick_begins_with_energy_that_nobody_turned_on(void **state)
 	assert_int_equal(t.h->core.tick, 0);
 }
 
-// A broken safety rule ends no daemon: in every build this session alone is faulted, its tool is
-// cut, and who asks is answered.
+// A broken safety rule ends no daemon. In every build it faults only this session, cuts off its
+// tool's energy, and the requests are answered.
 static void a_broken_rule_faults_the_session(void **state)
 {
 	(void)state;
@@ -84,7 +84,7 @@ static void a_broken_rule_faults_the_session(void **state)
 	cau_error error = {0};
 	cau_order *finder = hosted_new_order(OFF, CAU_ORDER_PAUSE, CAU_METHOD_SESSION_PAUSE);
 	cau_status found = cau_hosted_submit(t.h, finder, &error);
-	if (found) { // else the worker, which was still at its last slice, has found it before
+	if (found) { // else the worker, still in its last slice, found the broken rule first
 		assert_int_equal(found, CAU_FAULTED);
 		assert_non_null(strstr(error.reason, "safety rule"));
 		free(finder);
@@ -99,7 +99,7 @@ static void a_broken_rule_faults_the_session(void **state)
 	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
 	assert_int_equal(ask(RESET, order)->status, CAU_OK);
 	assert_int_equal(cau_decisions_state(&t.h->decisions), CAU_SESSION_PAUSED);
-	// the worker's next act forgets the report, so that another broken rule is reported
+	// the worker's next act clears `rule_reported`, so that another broken rule is reported
 	assert_int_equal(step(AGAIN, 1)->status, CAU_OK);
 	pthread_mutex_lock(&t.h->decisions.lock);
 	bool reported = t.h->decisions.rule_reported;

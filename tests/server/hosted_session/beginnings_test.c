@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The beginnings of scenes that had to settle are found again by the very scene, and few are kept.
+// The rest state of a scene that had to settle is found again for exactly this scene, and only few
+// are cached.
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,7 +27,8 @@ static cau_scene_def *scene_of(int number)
 	return scene;
 }
 
-// Of a session of scene `number`, stepped so many ticks so that snapshots differ.
+// Stores a snapshot of scene `number` after `ticks` ticks. Different ticks give different
+// snapshots.
 static void keep(int number, int ticks)
 {
 	cau_scene_def *scene = scene_of(number);
@@ -41,7 +43,7 @@ static void keep(int number, int ticks)
 	free(scene);
 }
 
-// The tick that the scene's beginning stands at, or -1.
+// Returns the tick of the scene's cached snapshot, or -1.
 static int64_t found_tick(int number)
 {
 	cau_scene_def *scene = scene_of(number);
@@ -97,7 +99,7 @@ static void a_scene_finds_its_own(void **state)
 	cau_beginning *held = cau_beginnings_hold(&all, second);
 	cau_beginnings_forget(&all, held);
 	assert_int_equal(found_tick(2), -1);
-	assert_true(held->byte_count > 0); // whoever holds it still may read it
+	assert_true(held->byte_count > 0); // the caller that still holds the entry may read it
 	assert_int_equal(held->holders, 1);
 	cau_beginnings_let_go(&all, held);
 	free(second);
@@ -105,7 +107,7 @@ static void a_scene_finds_its_own(void **state)
 	assert_int_equal(found_tick(1), 3);
 }
 
-// Two sessions of a scene that were made at the same time both settled.
+// Two sessions of a scene that are created at the same time both settle. The cache keeps one entry.
 static void a_scene_has_one_place(void **state)
 {
 	(void)state;
@@ -121,7 +123,7 @@ static void a_scene_has_one_place(void **state)
 	assert_int_equal(places, 2);
 }
 
-// What one thread holds, others replace, forget and give up.
+// Holds entries while other threads replace, forget and release them.
 static void *hold_and_keep(void *context)
 {
 	const int *number = context;

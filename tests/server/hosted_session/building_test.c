@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session that is being built, and what reaches it meanwhile: it is destroyed, destroyed again,
-// forgotten, too large, or the daemon ends; and what waits for one that ends.
+// Events during the building of a session: it is destroyed once or twice, its creator disconnects,
+// it is too large, or the daemon ends. Orders that wait for a session that ends are answered.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -52,7 +52,8 @@ static void destroyed_after_the_last_border_it_is_made_first(void **state)
 	assert_int_equal(hosted_stored_sessions(), 0);
 }
 
-// Sent twice because no answer came: both get it, and it is stored once.
+// The order was sent twice because no answer came. Both orders get the answer, which is stored
+// once.
 static void a_resend_of_its_destruction_gets_the_same_answer(void **state)
 {
 	(void)state;
@@ -69,7 +70,8 @@ static void a_resend_of_its_destruction_gets_the_same_answer(void **state)
 	assert_int_equal(hosted_stored_answers(6), 0);
 }
 
-// The order destroyed another session of this name; sent again it must not destroy this one.
+// The order has destroyed an earlier session of this name. Sent again, it must not destroy this
+// one.
 static void a_resend_does_not_destroy_the_next_of_its_name(void **state)
 {
 	(void)state;
@@ -87,8 +89,8 @@ static void a_resend_does_not_destroy_the_next_of_its_name(void **state)
 	assert_int_equal(hosted_stored_sessions(), 1);
 }
 
-// Its first is on its way to the disk while the session of its name that is built now is destroyed
-// by others.
+// The earlier order is on its way to the disk. Meanwhile other orders destroy the session of the
+// same name that is being built now.
 static void a_resend_is_looked_for_once_its_first_is_on_the_disk(void **state)
 {
 	(void)state;
@@ -110,7 +112,7 @@ static void a_resend_is_looked_for_once_its_first_is_on_the_disk(void **state)
 	assert_int_equal(hosted_await(4)->status, CAU_OK);
 }
 
-// ---- what waits for one that ends: it is answered then, not when its last holder lets it go
+// ---- waiting orders are answered when the session ends, not when its last reference is released
 static void assert_refused_as_gone(int asked)
 {
 	assert_int_equal(hosted_await(asked)->code, CAU_RPC_NOT_HERE);
@@ -139,7 +141,7 @@ static void what_waits_is_refused_where_it_is_destroyed(void **state)
 	assert_int_equal(hosted_await(2)->status, CAU_OK);
 }
 
-// The store has another of its name, and takes no second one.
+// The store already has a session of this name, and refuses a second one.
 static void what_waits_is_refused_where_it_cannot_be_stored(void **state)
 {
 	(void)state;
@@ -154,7 +156,7 @@ static void what_waits_is_refused_where_it_cannot_be_stored(void **state)
 	assert_true(cau_hosted_ended(t.h));
 }
 
-// Its rows are refused while the past of its source is replayed.
+// The store refuses the rows of a fork while the log of its source is replayed.
 static void a_fork_that_cannot_be_stored_is_answered(void **state)
 {
 	(void)state;
@@ -204,7 +206,7 @@ static cau_status take_order(void *user, const cau_store_command *row)
 	return CAU_OK;
 }
 
-// What the store did not take leaves a gap in the numbers of a tick.
+// Commands that the store did not accept leave a gap in the numbers of a tick.
 static void after_a_restart_it_logs_behind_the_last(void **state)
 {
 	(void)state;
@@ -234,7 +236,7 @@ static void whose_creator_is_gone_for_good_it_ends(void **state)
 {
 	(void)state;
 	hosted_begin(CAU_BUILD_FACTOR, 0);
-	cau_hosted_abandon(t.h, CREATOR + 1); // somebody else
+	cau_hosted_abandon(t.h, CREATOR + 1); // another client
 	cau_hosted_abandon(t.h, CREATOR);
 	hosted_go_on();
 	assert_non_null(
@@ -269,7 +271,7 @@ static void as_the_daemon_ends_nothing_waits_to_be_read(void **state)
 	free(late);
 }
 
-// The builder has stopped before it came to the job: nothing of it is left undone.
+// The builder stops before it runs the job. The job is dropped, and everything is cleaned up.
 static void begun_after_the_builder_stopped_it_is_refused(void **state)
 {
 	(void)state;
@@ -301,7 +303,7 @@ static void beyond_a_limit_it_is_refused_by_the_settings_name(void **state)
 	refuse_by(&t.config.max_sessions_bytes, 1000, "max_sessions_bytes");
 }
 
-// ---- what it is expected to take
+// ---- the expected time
 static void write_mesh_file(off_t bytes)
 {
 	char path[60];
@@ -325,7 +327,7 @@ static double expected_of(int source, const char *directory, const char *file)
 	return expected_s;
 }
 
-// What takes long does not stand before the short jobs.
+// A long job must not run before short jobs.
 static void a_large_mesh_is_a_long_job_whatever_it_comes_from(void **state)
 {
 	(void)state;
@@ -343,7 +345,7 @@ static void a_large_mesh_is_a_long_job_whatever_it_comes_from(void **state)
 	unlink(path);
 }
 
-// ---- a further session of a scene that had to settle
+// ---- another session of a scene that had to settle
 static int made;
 
 static void count_made(cau_build_stage next)
@@ -351,7 +353,7 @@ static void count_made(cau_build_stage next)
 	made += next == CAU_BUILD_STAGE_COUNT;
 }
 
-// How many cores it took to make a session.
+// Returns how many cores were built to create one session.
 static int cores_of_another(void)
 {
 	made = 0;
@@ -373,9 +375,9 @@ static void what_is_known_serves_unless_the_tissue_is_another(void **state)
 	cau_fake_hooks_set.tissue_hash = 1;
 	assert_int_equal(cores_of_another(), 1);
 	assert_int_equal(cores_of_another(), 1);
-	cau_fake_hooks_set.tissue_hash = 2; // its mesh has changed
+	cau_fake_hooks_set.tissue_hash = 2; // the scene's mesh has changed
 	assert_int_equal(cores_of_another(), 2);
-	assert_int_equal(cores_of_another(), 1); // and that is known now
+	assert_int_equal(cores_of_another(), 1); // the new rest state is in the cache
 	atomic_store(&t.fail_restore, true);
 	assert_int_equal(cores_of_another(), 2);
 	assert_int_equal(cores_of_another(), 1);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What streams ask of the core: channels that cost it work of their own, as long as somebody
-// watches.
+// The core computes costly channels only while a subscriber receives them.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A paused session whose store was full for a while. Its log of the tick has no entry behind a lost
-// command, so that a restart can take each acknowledged command.
+// The store of a paused session is full for a while. The log of the tick then has no entry after a
+// lost command. So a restart can replay each acknowledged command.
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -49,7 +49,7 @@ static void take_hook(int asked)
 	assert_int_equal(hosted_await(asked)->status, CAU_OK);
 }
 
-// A request in lock-step with one command and no ticks.
+// Sends a request in lock-step with one command and no ticks.
 static const hosted_answer *advance(int asked)
 {
 	cau_order *order = hosted_new_order(asked, CAU_ORDER_ADVANCE, CAU_METHOD_SESSION_ADVANCE);

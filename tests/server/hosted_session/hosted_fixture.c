@@ -14,7 +14,7 @@
 
 hosted_fixture t;
 
-// ---- what is around it --------------------------------------------------------------------------
+// ---- the surroundings ---------------------------------------------------------------------------
 
 static void come_to(int here)
 {
@@ -24,7 +24,7 @@ static void come_to(int here)
 	pthread_barrier_wait(&t.over);
 }
 
-// The store asks for the time as it begins to write.
+// Called when the store begins to write, because it asks for the time then.
 static int64_t see_commit(void)
 {
 	if (atomic_exchange(&t.hold_commit, false)) {
@@ -109,7 +109,7 @@ int hosted_open_surroundings(void **state)
 	return 0;
 }
 
-// As cau_hub_stop and the daemon do it. Nothing that a session held is left.
+// Closes as cau_hub_stop and the daemon do. Fails if a session has not returned its memory.
 int hosted_close_surroundings(void **state)
 {
 	(void)state;

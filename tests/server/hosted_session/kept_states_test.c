@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of the past stays within its budget, and thins evenly.
+// Kept states of the past stay within their budget and are thinned out evenly.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -38,7 +38,7 @@ static void test_the_newest_before_a_tick_is_found(void **state)
 	assert_found(&kept, 30, 30);
 	assert_found(&kept, 89, 60);
 	assert_found(&kept, 1000, 90);
-	put(&kept, 0, 60); // in place of the one that is there
+	put(&kept, 0, 60); // replaces the state of the same tick
 	assert_int_equal(kept.count, 3);
 	assert_null(cau_kept_states_find(&kept, 1, 90));
 	cau_kept_states_finish(&kept);
@@ -59,7 +59,8 @@ static void test_a_budget_holds_and_gaps_grow_evenly(void **state)
 		uint64_t gap = kept.state[i].tick - kept.state[i - 1].tick;
 		widest = gap > widest ? gap : widest;
 	}
-	assert_true(widest <= 4 * 1000 / (BUDGET / BYTES)); // four times what an even spread has
+	// four times the gap of an even distribution
+	assert_true(widest <= 4 * 1000 / (BUDGET / BYTES));
 	cau_kept_states_finish(&kept);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Past views of a session, whose second core is held on the way. A client that gives one up, is
-// gone or loses the session is answered so, and the session is as it was.
+// Past views of a session whose second core is stopped on its way. A client that cancels its view,
+// disconnects, or loses the session gets the right answer. The session does not change.
 #include <math.h>
 #include <sched.h>
 #include <setjmp.h>
@@ -36,7 +36,7 @@ static void look(int asked, uint32_t client, uint64_t tick)
 	hosted_submit(order);
 }
 
-// The core stands still on its way to the first look's tick.
+// Stops the core on its way to the tick of the first view.
 static void look_and_hold(void)
 {
 	begin();
@@ -45,7 +45,7 @@ static void look_and_hold(void)
 	pthread_barrier_wait(&t.met);
 }
 
-// What was asked before has been served: a reading of the session stands behind it.
+// Waits until the session has served all earlier requests, by sending one more.
 static void await_served(void)
 {
 	t.answers[OTHER].count = 0;
@@ -83,7 +83,7 @@ static void each_look_is_answered_and_the_session_stays(void **state)
 	begin();
 	look(FIRST, ANYBODY, 5);
 	assert_shown(FIRST, 5);
-	look(SECOND, ANYBODY, 12); // on from there
+	look(SECOND, ANYBODY, 12); // continues from tick 5
 	assert_shown(SECOND, 12);
 	look(THIRD, ANYBODY, TICKS);
 	assert_shown(THIRD, TICKS);
@@ -203,7 +203,7 @@ static void a_core_that_nobody_needs_goes(void **state)
 	assert_shown(FIRST, 5);
 	assert_true(t.memory_held > alone);
 	double due_s = INFINITY;
-	while (due_s == INFINITY) { // it is put away after the answer
+	while (due_s == INFINITY) { // the core is idle only after the answer
 		sched_yield();
 		due_s = cau_past_views_due_s(&t.h->past);
 	}

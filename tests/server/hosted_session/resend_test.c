@@ -58,7 +58,8 @@ static void an_answer_of_an_older_version_names_no_method_and_goes_to_any(void *
 static void a_damaged_answer_is_handed_over_as_it_is(void **state)
 {
 	(void)state;
-	const char *open = "{\"jsonrpc\":\"2.0\",\"id\":\"session.pause"; // no end: names no method
+	// the id has no end, so it names no method
+	const char *open = "{\"jsonrpc\":\"2.0\",\"id\":\"session.pause";
 	assert_ptr_equal(resent(CAU_METHOD_SESSION_RESUME, open).text, open);
 	assert_string_equal(resent(CAU_METHOD_SESSION_RESUME, "").text, "");
 }

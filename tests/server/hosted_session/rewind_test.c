@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session that is rewound, and requests that reach it meanwhile. Where the rewind fails the
-// session is as it was.
+// A session is rewound while other requests arrive. If the rewind fails, the session is as before.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -13,7 +12,7 @@
 #include "server/hosted_session/hosted_fixture.h"
 
 enum { CREATED, STEPPED, BACK, OTHER, NEXT };
-// A session that is stepped so far has a checkpoint there.
+// A session that is stepped this far has a checkpoint at TICKS.
 enum { TICKS = 40, BACK_TICK = 5 };
 
 static void step(int asked, int64_t ticks)
@@ -24,7 +23,7 @@ static void step(int asked, int64_t ticks)
 	assert_int_equal(hosted_await(asked)->status, CAU_OK);
 }
 
-// A session at TICKS that goes back to BACK_TICK, and stands still there if it is to be held.
+// Rewinds a session from TICKS to BACK_TICK. The builder stops at `held_at`.
 static void go_back(int held_at)
 {
 	hosted_begin(NOWHERE, CREATED);
@@ -52,7 +51,7 @@ static cau_status take_hash(void *user, const cau_store_checkpoint *checkpoint)
 	return CAU_OK;
 }
 
-// As it was after the steps. No thread has it any more.
+// Checks that the session is as after the steps. No thread uses it any more.
 static void assert_as_it_was(void)
 {
 	uint64_t hash = 0;

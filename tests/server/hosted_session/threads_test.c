@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session among threads: losses are held up until they meet a moment of an enable's way exactly,
-// and then come at random.
+// A session among threads. First, losses are timed to meet each moment on the way of an enable
+// exactly. Then they come at random.
 #include "server/hosted_session/threads_world.h"
 
 #include <setjmp.h>
@@ -13,7 +13,7 @@ static void assert_all_well(void)
 {
 	threads_await_answers();
 	threads_await_steps(2);
-	cau_store_flush(threads.store); // what would be answered a second time has been
+	cau_store_flush(threads.store); // a second answer to a request would have come by now
 	for (int i = 0; i < threads.request_count; i++)
 		assert_int_equal(threads.requests[i].answers, 1);
 	pthread_mutex_lock(&threads.lock);
@@ -22,7 +22,7 @@ static void assert_all_well(void)
 	pthread_mutex_unlock(&threads.lock);
 }
 
-// An enable that meets a loss: the session's thread, or the store's, stands still at the moment.
+// Makes an enable meet a loss: the session's or the store's thread stops at the moment `at`.
 static request *enable_meets(moment at, loss kind)
 {
 	request *enable = NULL;
@@ -52,7 +52,7 @@ static void assert_a_loss_holds(moment at, loss kind)
 	bool taken = threads_done(enable);
 	assert_true(at != WAITING || !taken || kind == OFF_BY_ANOTHER);
 	assert_true(at <= TAKEN || taken);
-	threads_await_steps(2); // the one that had begun, and one more
+	threads_await_steps(2); // the tick that had begun, and one more
 	uint64_t ticks = lit_ticks();
 	threads_await_steps(3);
 	assert_int_equal(lit_ticks(), ticks);
@@ -62,7 +62,7 @@ static void assert_a_loss_holds(moment at, loss kind)
 		cau_hosted_store_takes(threads.h, true, NULL);
 	assert_true(threads_done(threads_take_over(0, 0)));
 	assert_true(threads_done(threads_energize(0, 0, true)));
-	threads_await_steps(2); // the first of them is checked tick by tick in check_tool
+	threads_await_steps(2); // check_tool checks the first of these ticks
 	assert_true(lit_ticks() > ticks);
 	assert_true(threads_done(threads_energize(1, 0, false)));
 	pthread_mutex_lock(&threads.lock);
@@ -94,7 +94,8 @@ static void await_turn(int client)
 	pthread_mutex_unlock(&threads.lock);
 }
 
-// A pause is never refused; to resume needs a store that has room.
+// Pauses and resumes the session. A pause is never refused. A resume is refused while the store is
+// full.
 static void pause_and_resume(int client)
 {
 	threads_ask(client, CAU_ORDER_PAUSE, CAU_METHOD_SESSION_PAUSE, 0);
@@ -106,7 +107,8 @@ static void pause_and_resume(int client)
 	}
 }
 
-// The store has room, or has not; who waits for room sees it once the session was told.
+// Notes whether the store has capacity. Threads that wait for it are woken after the session was
+// notified.
 static void tell_room(bool room)
 {
 	if (room)
@@ -131,7 +133,7 @@ static void ask_something(int client, uint64_t *random)
 		threads_take_over(client, tool);
 	} else if (what < 99) {
 		pause_and_resume(client);
-	} else { // longer than its deadline
+	} else { // sends nothing for longer than the client's deadline
 		threads_await_steps(20);
 	}
 }
@@ -153,7 +155,8 @@ static void *lose_at_random(void *user)
 	(void)user;
 	while (!threads.ended) {
 		threads_await_steps(1 + next_random(&random) % 4);
-		for (uint64_t i = next_random(&random) % 512; i > 0; i--) // somewhere within a tick
+		// waits a random time within a tick
+		for (uint64_t i = next_random(&random) % 512; i > 0; i--)
 			atomic_thread_fence(memory_order_seq_cst);
 		int client = (int)(next_random(&random) % CLIENTS);
 		uint64_t what = next_random(&random) % 10;
@@ -193,7 +196,7 @@ static void nothing_is_lit_after_its_loss_whatever_comes_when(void **state)
 	for (int i = 0; i < CLIENTS; i++)
 		pthread_join(asking[i], NULL);
 	threads_await_answers();
-	threads_await_steps(2); // while losses still come
+	threads_await_steps(2); // while losses still happen
 	pthread_mutex_lock(&threads.lock);
 	threads.ended = true;
 	pthread_cond_broadcast(&threads.changed);

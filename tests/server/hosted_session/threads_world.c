@@ -17,7 +17,7 @@ threads_world threads;
 
 static const char *const tool_names[TOOLS] = {"hook", "probe"};
 
-// ---- what is seen -------------------------------------------------------------------------------
+// ---- observations -------------------------------------------------------------------------------
 
 static void note_wrong(const char *what, uint64_t tick, int tool)
 {
@@ -35,7 +35,7 @@ static void meet(moment here)
 	pthread_barrier_wait(&threads.over);
 }
 
-// The client of an enable is in its number.
+// Returns the client of an enable, which its number contains.
 static int client_of(uint64_t asked)
 {
 	return (int)(asked % CLIENTS);
@@ -84,13 +84,13 @@ static void see_step(const cau_session *session)
 	meet(lit ? STEPPING : WAITING);
 }
 
-// The first tick that has not begun. Under the session's lock.
+// Returns the first tick that has not begun. Called under the session's lock.
 static uint64_t next_tick(const cau_hosted *h)
 {
 	return h->decisions.logic->tick + (h->decisions.logic->acting == CAU_ACT_STEP);
 }
 
-// Told under the session's lock: what is decided is what is told.
+// Called under the session's lock, so that the decisions are those of the notification.
 static void see_drives(const cau_hosted *h)
 {
 	pthread_mutex_lock(&threads.lock);
@@ -131,7 +131,7 @@ static void see_armed(void *user)
 	meet(APPLIED);
 }
 
-// The store asks for the time as it begins to write.
+// Called when the store begins to write, because it asks for the time then.
 static int64_t see_commit(void)
 {
 	struct timespec now;
@@ -159,7 +159,7 @@ static void see_answer(void *user, const cau_reply *reply, const cau_outcome *ou
 	pthread_mutex_unlock(&threads.lock);
 }
 
-// ---- what is asked ------------------------------------------------------------------------------
+// ---- requests -----------------------------------------------------------------------------------
 
 static cau_order *new_order(int client, cau_order_kind kind, cau_method method, request **asked)
 {
@@ -178,7 +178,7 @@ static cau_order *new_order(int client, cau_order_kind kind, cau_method method, 
 	return order;
 }
 
-// One that is refused at once is answered by whoever submitted it.
+// Submits an order. If it is refused at once, answers its request here.
 static void submit(cau_order *order, request *r)
 {
 	cau_error error = {0};
@@ -257,7 +257,7 @@ void threads_await_steps(uint64_t count)
 
 // ---- losses -------------------------------------------------------------------------------------
 
-// Nothing that the client asked for up to `asked` heats a tick that begins from now on.
+// Notes that the client's requests up to `asked` heat no tick that begins from now on.
 static void mark_loss(int client, uint64_t asked)
 {
 	cau_hosted *h = threads.h;
@@ -291,7 +291,7 @@ static cau_scene_def *make_scene(void)
 	cau_scene_def *scene = calloc(1, sizeof *scene);
 	cau_default_scene_def(scene);
 	snprintf(scene->name, sizeof scene->name, "threads");
-	scene->step_s = 0.002; // many ticks in little time
+	scene->step_s = 0.002; // gives many ticks in little time
 	scene->layer_count = 1;
 	cau_default_layer_def(&scene->layers[0], CAU_LAYER_FASCIA);
 	snprintf(scene->layers[0].name, sizeof scene->layers[0].name, "sheet");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The world of a session among threads: those that ask, those that bring losses, the worker that
-// steps and the store that commits. The double's step looks at each tick's tools: lit is what was
-// decided when the tick began, and nothing that was asked for before a loss.
+// A session among threads: clients that send requests, threads that cause losses, the worker that
+// steps, and the store that commits. The double checks the tools of each tick. A tool must be
+// energized exactly if that was decided when the tick began, and never by an enable from before a
+// loss.
 #pragma once
 
 #include "hosted_session/internal.h"
@@ -9,19 +10,21 @@
 enum {
 	CLIENTS = 2,
 	TOOLS = 2,
-	ROUNDS = 1500, // of each client
+	ROUNDS = 1500, // requests of each client
 	REQUESTS = 2 * CLIENTS * ROUNDS + 512,
-	IN_FLIGHT = 4, // of a client; with the cuts between two ticks the core's queue holds them
+	// most unanswered requests of a client; the core's queue also holds the cut-offs between two
+	// ticks
+	IN_FLIGHT = 4,
 };
 
-// Of an enable's way through the session.
+// A moment on the way of an enable through the session.
 typedef enum moment {
 	NOWHERE,
-	WAITING,    // between its coming in and its application
-	TAKEN,      // while the core takes it
-	APPLIED,    // between its application and the tick
-	COMMITTING, // while its row is written
-	STEPPING,   // within the tick that it heats
+	WAITING,    // between the enable's arrival and its application
+	TAKEN,      // while the core takes the enable
+	APPLIED,    // between the enable's application and the tick
+	COMMITTING, // while the enable's row is being written
+	STEPPING,   // within the tick that the enable heats
 	MOMENT_COUNT
 } moment;
 
@@ -33,15 +36,15 @@ typedef struct request {
 	int client;
 } request;
 
-// What is known of a tool's energy, from what everybody is told of it.
+// What the notifications to clients say about a tool's energy.
 typedef struct tool_book {
 	bool on;
-	uint64_t lit_from, dark_from; // ticks
+	uint64_t lit_from, dark_from; // ticks from which energy is on and off
 	uint64_t asked;               // number of the newest enable that the core took
 	uint64_t lit_ticks;
 } tool_book;
 
-// Enables of a client up to this number heat no tick from this one on.
+// The client's enables up to this number heat no tick from `from_tick` on.
 typedef struct loss_mark {
 	uint64_t asked, from_tick;
 } loss_mark;
@@ -56,38 +59,38 @@ typedef struct threads_world {
 	_Atomic(cau_hosted *) h;
 	request requests[REQUESTS];
 	atomic_int request_count;
-	// Meeting: the thread that comes to the moment waits while another brings the loss.
-	atomic_int wanted; // moment
+	// A meeting: the thread that reaches the moment waits while another thread causes the loss.
+	atomic_int wanted; // the moment at which the next thread waits
 	pthread_barrier_t met, over;
 	atomic_bool ended;
-	_Atomic uint64_t asked[CLIENTS]; // newest enable that came in, by its number
-	// Guarded by the lock, which is taken within the session's.
+	_Atomic uint64_t asked[CLIENTS]; // number of the client's newest enable that arrived
+	// Guarded by the lock, which may be taken inside the session's lock.
 	pthread_mutex_t lock;
 	pthread_cond_t changed;
 	tool_book tools[TOOLS];
 	loss_mark marks[CLIENTS];
 	uint64_t steps, answered, wrongs;
 	int in_flight[CLIENTS];
-	bool full; // the store, as the session was told
+	bool full; // the session was notified that the store is full
 	char wrong[160];
 } threads_world;
 
 extern threads_world threads;
 
-// A setup and a teardown of cmocka.
+// Setup and teardown for cmocka.
 int threads_begin(void **state);
 int threads_end(void **state);
 
-// ---- what is asked, as from `client`; whoever wants to know awaits the request
+// ---- requests of `client`; the caller may wait for the returned request
 request *threads_ask(int client, cau_order_kind kind, cau_method method, int tool);
 request *threads_take_over(int client, int tool);
 request *threads_energize(int client, int tool, bool on);
 void threads_move(int client, int tool, double x_m);
 
-// Awaits the answer: whether it was granted.
+// Waits for the answer. Returns true if the request succeeded.
 bool threads_done(request *r);
-void threads_await_answers(void); // to all requests
+void threads_await_answers(void); // waits for the answers to all requests
 void threads_await_steps(uint64_t count);
 
-// Brings a loss: what was asked for before it heats no tick that begins from now on.
+// Causes a loss. Requests of the client from before the loss heat no tick that begins later.
 void threads_lose(loss kind, int client);

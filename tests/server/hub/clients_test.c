@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a client is given: a number, a client_id that others may see, a secret that nobody else may.
+// The values that a client gets: a number, a client_id that others may see, and a secret token that
+// no other client may see.
 #include "hub/hub.h"
 
 #include <setjmp.h>
@@ -13,7 +14,7 @@
 
 enum {
 	CLIENTS = 100,
-	// Of two random texts of 32 hex digits twelve in a row agree by chance once in 10^11.
+	// Two random texts of 32 hex digits share twelve consecutive digits by chance once in 10^11.
 	SHARED_DIGITS = 12,
 };
 
@@ -64,7 +65,7 @@ static cau_client attach(const char *client_id, const char *resume)
 	return attach_of("", client_id, resume);
 }
 
-// Whether any SHARED_DIGITS of the secret stand in the text.
+// True if SHARED_DIGITS consecutive digits of the secret are in the text.
 static bool tells_of(const char *text, const char *secret)
 {
 	char part[SHARED_DIGITS + 1] = {0};
@@ -117,7 +118,7 @@ static void a_client_id_that_is_said_stays(void **state)
 	assert_int_not_equal(attach("", "").asker.client, client.asker.client);
 }
 
-// Stored answers are found by the client_id: no owner has that of another.
+// Stored answers are found by the client_id, so no two owners may have the same one.
 static void client_ids_are_bound_to_their_owner(void **state)
 {
 	(void)state;
@@ -145,7 +146,8 @@ static void client_ids_are_bound_to_their_owner(void **state)
 	                        made.asker.client_id);
 }
 
-// Another token after a lost connection: what is sent again must still act once.
+// The client has another token after a lost connection. A request that is sent again must still act
+// once.
 static void resuming_keeps_the_client_id_whoever_owns_the_token(void **state)
 {
 	(void)state;

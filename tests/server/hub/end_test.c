@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The end of the hub's sessions, which transports may still hold.
+// The end of the hub's sessions while transports still hold them.
 #include "hub/hub.h"
 
 #include <setjmp.h>
@@ -68,7 +68,7 @@ static int open_hub(void **state)
 	return cau_hub_create(&t.hub, &def, NULL) ? -1 : 0;
 }
 
-// As the daemon does it.
+// Stops as the daemon does.
 static void stop(void)
 {
 	if (t.stopped)
@@ -128,7 +128,7 @@ static cau_hosted *make_session(void)
 	return hosted;
 }
 
-// Energy off at a tick that does not come: it waits.
+// Returns an energy-off for a tick that does not come, so that the order waits.
 static cau_order *order_for_later(void)
 {
 	cau_order *order = calloc(1, sizeof *order);
@@ -141,8 +141,8 @@ static cau_order *order_for_later(void)
 	return order;
 }
 
-// As a transport's mailbox holds it. Who lets it go after the hub has stopped is told nothing more:
-// the transport that would hear of it may be half gone.
+// The test holds a session as a transport's mailbox does. Its release after the hub's stop sends no
+// more answers, because the transport may be partly destroyed.
 static void a_session_that_is_held_outlives_the_hubs_stop(void **state)
 {
 	(void)state;
@@ -169,7 +169,8 @@ static cau_order *order_about_hook(int asked, cau_order_kind kind, cau_method me
 	return order;
 }
 
-// What follows in the daemon's end may wait: for DDS, for moves, for a slow disk.
+// Energy must be off when the call returns, because the next steps of the daemon's end may wait:
+// for DDS, for moves, for a slow disk.
 static void as_time_stops_energy_goes_off_within_the_call(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sessions that a daemon begins with, of which it says how many are not there yet: until they
-// are it takes no new ones. What clients make does not count.
+// The sessions that a daemon starts with. The hub reports how many are not there yet, and the
+// daemon takes no new sessions until then. Sessions of clients do not count.
 #include "hub/hub.h"
 
 #include <setjmp.h>
@@ -26,9 +26,9 @@ static struct {
 	cau_hub *hub;
 	pthread_mutex_t lock;
 	pthread_cond_t news;
-	bool holds;   // whoever builds waits
-	int building; // who does
-	int made;     // answers to who made a session
+	bool holds;   // threads that build wait
+	int building; // number of threads that build
+	int made;     // number of sessions whose creator was answered
 } t;
 
 static void armed(void *user)
@@ -36,7 +36,7 @@ static void armed(void *user)
 	(void)user;
 }
 
-// Of the double: a core that is being built stands here while it is to.
+// Hook of the double: a thread that builds a core waits here while `holds` is set.
 static void stand(cau_build_stage next)
 {
 	(void)next;
@@ -147,7 +147,7 @@ static void ask_for(const char *name)
 	cau_hub_submit_creation(t.hub, small_creation(name, reply));
 }
 
-// ---- the tests
+// ---- tests
 static void one_that_a_client_makes_does_not_count(void **state)
 {
 	(void)state;
@@ -179,7 +179,8 @@ static void those_of_the_store_count_until_they_are_there(void **state)
 	ask_for("elbow");
 	hold(false);
 	await_made(3);
-	// They come up on the workers, after those who built them; nobody is told.
+	// The sessions start on the workers, after the builder. No notification reports this, so the
+	// test polls.
 	while (cau_hub_resuming(t.hub))
 		usleep(1000);
 	assert_int_equal(cau_hub_count(t.hub), 3);
@@ -196,7 +197,7 @@ static void the_demo_counts(void **state)
 	assert_int_equal(cau_hub_resuming(t.hub), 1);
 	ask_for("knee");
 	hold(false);
-	await_made(1); // the clerk's second
+	await_made(1); // the clerk's second creation
 	while (cau_hub_resuming(t.hub))
 		usleep(1000);
 	assert_int_equal(cau_hub_count(t.hub), 2);

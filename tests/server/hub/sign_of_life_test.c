@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signs of life by the sender's clock: delays, pile-ups, drift, and clocks that are set.
+// Signs of life by the sender's clock: delays, messages that arrive all at once, drift, and clocks
+// that are set.
 #include "hub/sign_of_life.h"
 
 #include <math.h>
@@ -11,16 +12,17 @@
 
 #define DEADLINE_S 0.25
 #define PERIOD_S 0.05
-#define AHEAD_S 1e5 // the client's clock minus the server's
+#define AHEAD_S 1e5 // client's clock minus the server's clock
 
-// The time of heartbeat `k` of those that begin at `from_s`.
+// Returns the time of heartbeat `k` of a series that begins at `from_s`.
 static double beat_s(double from_s, int k)
 {
 	return from_s + k * PERIOD_S;
 }
 
-// Sends `count` heartbeats from `from_s` on, one a period by the server's time, each on its way for
-// `delay_s`. The client's clock runs `rate` times as fast as the server's. Returns the last answer.
+// Sends `count` heartbeats from `from_s` on, one for each period of the server's clock. Each
+// travels for `delay_s`. The client's clock runs `rate` times as fast as the server's. Returns the
+// last result.
 static double send(cau_sign_of_life *sign, double from_s, int count, double delay_s, double rate)
 {
 	double alive_s = 0;
@@ -32,7 +34,7 @@ static double send(cau_sign_of_life *sign, double from_s, int count, double dela
 	return alive_s;
 }
 
-// The same without delay, after the client's clock was set forward by `leap_s`.
+// Sends heartbeats without delay, after the client's clock was set forward by `leap_s`.
 static double send_after_leap(cau_sign_of_life *sign, double from_s, int count, double leap_s)
 {
 	double alive_s = 0;
@@ -43,7 +45,7 @@ static double send_after_leap(cau_sign_of_life *sign, double from_s, int count, 
 	return alive_s;
 }
 
-// Delivers `count` heartbeats, sent from `from_s` on, at once at `arrival_s`.
+// Delivers `count` heartbeats, sent from `from_s` on, all at once at `arrival_s`.
 static double pile_up(cau_sign_of_life *sign, double from_s, int count, double arrival_s,
                       double leap_s)
 {
@@ -62,7 +64,7 @@ static void a_late_message_tells_when_it_was_sent(void **state)
 	assert_true(send(&sign, 10, 20, 0.02, 1) > 10.95);
 	double alive_s = cau_sign_of_life_hear(&sign, 11.32, AHEAD_S + 11, DEADLINE_S);
 	assert_float_equal(alive_s, 11.02, 1e-6);
-	// A steady delay is not seen as one.
+	// A constant delay cannot be detected.
 	alive_s = cau_sign_of_life_hear(&sign, 11.37, AHEAD_S + 11.35, DEADLINE_S);
 	assert_float_equal(alive_s, 11.37, 1e-6);
 }
@@ -77,7 +79,8 @@ static void what_piled_up_counts_as_of_its_sending(void **state)
 		double goes_on_s = 20 + stops_s[i];
 		int count = (int)ceil((stops_s[i] - 0.6) / PERIOD_S - 1e-6);
 		double alive_s = pile_up(&sign, 20, count, goes_on_s, 0);
-		assert_true(alive_s < goes_on_s - 0.59); // silent for longer than the deadline
+		// the client was silent for longer than the deadline
+		assert_true(alive_s < goes_on_s - 0.59);
 	}
 }
 
@@ -100,7 +103,7 @@ static void an_answer_never_goes_back_nor_ahead(void **state)
 static void drift_is_followed(void **state)
 {
 	(void)state;
-	const double rates[] = {0.999, 1.001}; // ten times what a bad crystal does
+	const double rates[] = {0.999, 1.001}; // ten times the drift of a bad crystal
 	for (int i = 0; i < 2; i++) {
 		cau_sign_of_life sign = {0};
 		double alive_s = send(&sign, 10, 72000, 0.001, rates[i]);
@@ -120,7 +123,8 @@ static void a_clock_set_back_is_silent_for_one_window(void **state)
 	assert_true(alive_s > 1015.9);
 }
 
-// A client's machine that sleeps, with its clock, has been silent; then it is measured again.
+// If the client's machine sleeps together with its clock, the client was silent. Then its clock is
+// measured again.
 static void a_clock_that_stood_still_is_measured_again(void **state)
 {
 	(void)state;
@@ -134,7 +138,8 @@ static void a_clock_set_forward_is_measured_first(void **state)
 	(void)state;
 	cau_sign_of_life sign = {0};
 	send(&sign, 10, 200, 0.001, 1);
-	// In a pile of the time from 20 to 20.7 the clock is set an hour forward.
+	// Among messages of the time from 20 to 20.7 that arrive at once, the clock is set an hour
+	// forward.
 	pile_up(&sign, 20, 2, 20.7, 0);
 	assert_true(pile_up(&sign, 20.1, 4, 20.7, 3600) < 20.1);
 	assert_true(send_after_leap(&sign, 20.75, 25, 3600) > 21.9);

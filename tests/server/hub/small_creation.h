@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A paused session of one sheet and a hook, to be asked of a hub.
+// Returns a request to a hub: a paused session with one sheet and a hook.
 #pragma once
 
 #include <stdio.h>

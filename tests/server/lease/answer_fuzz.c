@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers of etcd: whatever comes, what is read of it is within its bounds.
+// Fuzzes the answers of etcd: whatever is read from them is within its bounds.
 #include <stdlib.h>
 #include <string.h>
 

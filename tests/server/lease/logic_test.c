@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lease over all orders: a model of etcd, of stores and their copies, and of answers that come
-// late or never, with every sequence up to a depth, and long ones by chance.
+// The lease's logic in all orders of events. A model has etcd, stores and their copies, and answers
+// that come late or never. The test runs every sequence up to a depth, and long random ones.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,28 +41,28 @@ static void a_generation_has_one_text(void **state)
 }
 
 // ---- renewals
-// etcd's side of a lease, on the true time. An answer may say more than was asked, as after a new
-// leader.
+// etcd's side of a lease, in true time. An answer may have a longer time to live than was asked
+// for, as after a change of etcd's leader.
 typedef struct server {
 	double ends_s, ttl_s;
 } server;
 
 typedef struct outcome {
 	double there,
-		back; // parts of the limit that request and answer take; above 1 together: too late
+		back; // parts of the limit that request and answer take; a sum above 1 is too late
 	bool arrives;
 	bool unreadable;
 } outcome;
 
 static const outcome outcomes[] = {
 	{0, 0, true, false},      {0.1, 0.8, true, false},
-	{0.9, 0.05, true, false}, {0.2, 2.0, true, false}, // taken, and the answer comes too late
-	{0, 0, false, false},                              // lost on the way
+	{0.9, 0.05, true, false}, {0.2, 2.0, true, false}, // etcd renews, but the answer comes too late
+	{0, 0, false, false},                              // the request is lost
 	{0, 0, true, true},
 };
 enum { OUTCOMES = sizeof outcomes / sizeof *outcomes, RENEWALS_DEEP = 7 };
 
-// A renewal takes its course. True time passes.
+// Plays one renewal with this outcome. True time passes.
 static void renew(cau_lease_logic *logic, server *etcd, const outcome *o, double limit_s,
                   double *now_s)
 {
@@ -80,7 +80,7 @@ static void renew(cau_lease_logic *logic, server *etcd, const outcome *o, double
 	                 *now_s);
 }
 
-// Whatever the daemon does until it acts next, etcd still keeps the label for it.
+// Checks that etcd keeps the label for the daemon until the daemon acts next.
 static void check_kept(const cau_lease_logic *logic, const server *etcd, double now_s)
 {
 	if (!logic->lost && now_s < logic->held_until_s)
@@ -137,7 +137,7 @@ static void who_is_answered_keeps_it(void **state)
 	server etcd = {15, 15};
 	double now_s = 0;
 	cau_lease_begin(&logic, &rules, 0, 15);
-	// Two of three addresses do not answer, each time.
+	// Each time two of three addresses do not answer.
 	for (int i = 0; now_s < 1000; i++) {
 		cau_lease_step step = cau_lease_next(&logic, now_s);
 		assert_int_not_equal(step.kind, CAU_LEASE_END);
@@ -155,26 +155,26 @@ static void what_is_lost_stays_lost(void **state)
 	cau_lease_logic logic;
 	cau_lease_begin(&logic, &rules, 0, 10);
 	assert_int_equal(cau_lease_next(&logic, 8.9).kind, CAU_LEASE_RENEW);
-	cau_lease_answer(&logic, CAU_RENEWED, 8.9, 10, 9.0); // the margin is 1 s: too late
+	cau_lease_answer(&logic, CAU_RENEWED, 8.9, 10, 9.0); // the margin is 1 s, so this is too late
 	assert_int_equal(cau_lease_next(&logic, 9.0).kind, CAU_LEASE_END);
 	cau_lease_begin(&logic, &rules, 0, 10);
 	cau_lease_answer(&logic, CAU_RENEWAL_GONE, 2.5, 0, 2.6);
 	assert_int_equal(cau_lease_next(&logic, 2.6).kind, CAU_LEASE_END);
 	cau_lease_answer(&logic, CAU_RENEWED, 2.6, 10, 2.7);
 	assert_int_equal(cau_lease_next(&logic, 2.7).kind, CAU_LEASE_END);
-	cau_lease_begin(&logic, &rules, 0, 4); // granted for less
+	cau_lease_begin(&logic, &rules, 0, 4); // granted for a shorter time than asked for
 	assert_int_equal(cau_lease_next(&logic, 3.1).kind, CAU_LEASE_END);
 }
 
 // ---- claims
-// Stores of one label, on two machines or one: each is served by a process that makes its way in
-// steps, any of which may be its last. Copies are made at any time.
+// The stores of one label, on one machine or two. Each is served by a process that takes steps and
+// may be killed after any of them. Stores are copied at any time.
 enum { STORES = 3, STEPS_DEEP = 9, WALKS = 20000, WALK_STEPS = 40 };
 
 typedef struct file {
-	bool is_there, is_copy; // not opened since it was copied
+	bool is_there, is_copy; // is_copy: not opened since it was copied
 	cau_generation held, next;
-	int writes; // how many of all that were ever acknowledged it has
+	int writes; // how many of all acknowledged writes it has
 } file;
 
 typedef enum phase { DOWN, NOTED, CLAIMED, SERVES } phase;
@@ -182,17 +182,17 @@ typedef enum phase { DOWN, NOTED, CLAIMED, SERVES } phase;
 typedef struct process {
 	phase phase;
 	bool has_next;
-	uint64_t read_revision; // of etcd, when it was judged
+	uint64_t read_revision; // etcd's revision when the claim was judged
 } process;
 
 typedef struct world {
 	file file[STORES];
 	process process[STORES];
 	cau_generation known;
-	int holder; // whose lease lives; -1: none
+	int holder; // process whose lease has not ended; -1: none
 	uint64_t revision, mark;
-	int writes; // acknowledged so far, by whomever
-	bool taken; // --take-label was said: then the operator answers for what is missing
+	int writes; // writes acknowledged so far, by all processes
+	bool taken; // --take-label was given: missing writes are then the operator's responsibility
 } world;
 
 static cau_claim claim_of(const world *w, int i, bool take_label)
@@ -215,7 +215,7 @@ static void judge_and_note(world *w, int i, bool take_label)
 	cau_lease_choose(&claim, &w->process[i].has_next, ++w->mark);
 	w->file[i].held = claim.held;
 	w->file[i].next = claim.next;
-	w->file[i].is_copy = false; // the note names its file
+	w->file[i].is_copy = false; // the store notes its own file, so it is no copy any more
 	w->process[i].read_revision = w->revision;
 	w->process[i].phase = NOTED;
 	w->taken = w->taken || take_label;
@@ -225,7 +225,7 @@ static void claim_it(world *w, int i)
 {
 	w->process[i].phase = DOWN;
 	if (w->process[i].read_revision != w->revision)
-		return; // another was faster; it starts over
+		return; // another process was faster, so this one starts again
 	w->known = w->file[i].next;
 	w->holder = i;
 	w->revision++;
@@ -239,7 +239,7 @@ static void serve(world *w, int i)
 	for (int j = 0; j < STORES; j++)
 		assert_true(j == i || w->process[j].phase != SERVES);
 	if (!w->taken)
-		assert_int_equal(w->file[i].writes, w->writes); // nothing acknowledged is missing
+		assert_int_equal(w->file[i].writes, w->writes); // no acknowledged write is missing
 }
 
 static void advance(world *w, int i)
@@ -266,29 +266,29 @@ static void copy(world *w, int from, int to)
 	w->file[to].is_copy = w->file[from].held.number > 0 || w->file[from].next.number > 0;
 }
 
-// Some step of the world. False: not possible now.
+// Makes something happen in the world. Returns false if that is not possible now.
 static bool happen(world *w, int what)
 {
 	int i = what % STORES;
 	process *p = &w->process[i];
 	switch (what / STORES) {
-	case 0: // the next thing that a process does
+	case 0: // the process takes its next step
 		if (w->file[i].is_there)
 			advance(w, i);
 		return w->file[i].is_there;
-	case 1: // it is killed
+	case 1: // the process is killed
 		if (p->phase == DOWN)
 			return false;
 		*p = (process){0};
 		return true;
-	case 2: // a lease ends: whoever held it has ended before, as the renewals' tests say
+	case 2: // a lease ends; its holder has ended before, as the tests of renewals show
 		if (w->holder != i)
 			return false;
 		w->holder = -1;
 		w->revision++;
 		*p = (process){0};
 		return true;
-	case 3: // a copy of the first store, whatever is done with it
+	case 3: // the first store is copied, whatever its process is doing
 		if (i == 0 || p->phase != DOWN || w->holder == i)
 			return false;
 		copy(w, 0, i);
@@ -328,7 +328,7 @@ static void nothing_is_served_twice_and_nothing_older_in_every_order(void **stat
 	(void)state;
 	world w = begin();
 	go_through(&w, STEPS_DEEP);
-	// From where a store has been served, and has a copy from before its last words.
+	// Start again from a store that has been served and has a copy without its last writes.
 	for (int i = 0; i < 4; i++)
 		advance(&w, 0);
 	copy(&w, 0, 1);
@@ -338,11 +338,11 @@ static void nothing_is_served_twice_and_nothing_older_in_every_order(void **stat
 	assert_true(worlds > 100000);
 }
 
-// Long histories by chance, the operator's hand among them.
+// Long random histories, some with the operator's --take-label.
 static void nor_in_long_histories(void **state)
 {
 	(void)state;
-	uint64_t random = 88172645463325252u; // xorshift
+	uint64_t random = 88172645463325252u; // state of the generator xorshift
 	int served = 0;
 	for (int walk = 0; walk < WALKS; walk++) {
 		world w = begin();
@@ -351,7 +351,7 @@ static void nor_in_long_histories(void **state)
 			random ^= random >> 7;
 			random ^= random << 17;
 			int most = walk % 2 ? HAPPENINGS_BY_HAND : HAPPENINGS;
-			// every second time a process goes on, else few ever come to serve
+			// Every second time a process takes a step; otherwise few would ever serve.
 			happen(&w, (int)((random >> 8) % (uint64_t)(random % 2 ? STORES : most)));
 		}
 		served += w.writes > 1;
@@ -359,7 +359,7 @@ static void nor_in_long_histories(void **state)
 	assert_true(served > WALKS / 10);
 }
 
-// Killed after any of its steps a daemon comes up again, by itself.
+// A daemon that is killed after any step starts again by itself.
 static void who_was_killed_comes_back(void **state)
 {
 	(void)state;
@@ -383,7 +383,7 @@ static void a_lease_is_taken_from_nobody(void **state)
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_WAIT);
 	claim.take_label = true;
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_WAIT);
-	claim.is_held_here = true; // by a process that is gone
+	claim.is_held_here = true; // held by an earlier process with this store, which has ended
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_CLAIM);
 	claim = (cau_claim){.held = held, .known = other};
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_REFUSE);
@@ -395,7 +395,7 @@ static void a_lease_is_taken_from_nobody(void **state)
 	assert_int_equal(claim.next.number, 8);
 	cau_lease_choose(&claim, &has_next, 100); // another attempt of the same start
 	assert_int_equal(claim.next.mark, 99);
-	claim = (cau_claim){.held = held}; // an etcd that lost its data
+	claim = (cau_claim){.held = held}; // etcd has lost its data
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_REFUSE);
 	assert_non_null(strstr(error.reason, "lost its data"));
 }

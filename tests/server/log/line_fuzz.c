@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever a value holds, the line reads back as the fields that were written, and in JSON is an
-// object.
+// Fuzzes the values in a log line: the line reads back as the fields that were written, and in JSON
+// it is an object.
 #include "log/line.h"
 
 #include <stdio.h>

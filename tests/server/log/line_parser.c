@@ -80,11 +80,12 @@ static bool parse_escape(cursor *c, line_field *field)
 	}
 }
 
-// What stands between quotes as it is: no control character, and nothing but well-formed UTF-8.
+// Reads a character that is not escaped between quotes: well-formed UTF-8, and no control
+// character.
 static bool parse_character(cursor *c, line_field *field)
 {
 	static const struct {
-		unsigned least, most; // of the code
+		unsigned least, most; // range of the code point
 		unsigned char mask, mark;
 		int more;
 	} forms[] = {{0x20, 0x7e, 0x80, 0x00, 0},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the fields of a log line by the letter of server/log/line.h, and nothing that departs from
-// it. Shares no code with the writer.
+// Reads the fields of a log line strictly by server/log/line.h, and refuses anything else. Shares
+// no code with the writer.
 #pragma once
 
 #include <stdbool.h>
@@ -10,7 +10,7 @@ enum { LINE_FIELDS_MOST = 64, LINE_VALUE_MOST = 512 };
 
 typedef struct line_field {
 	char key[32];
-	char value[LINE_VALUE_MOST]; // as it was before escapes
+	char value[LINE_VALUE_MOST]; // the value before it was escaped
 	size_t value_bytes;
 } line_field;
 
@@ -19,5 +19,5 @@ typedef struct line_fields {
 	int count;
 } line_fields;
 
-// False if the bytes are not fields with one space between two.
+// Returns false if the bytes are not fields with one space between two.
 bool line_parse(const char *text, size_t bytes, line_fields *fields);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines are written with whatever names clients can think of, and read back by a strict parser.
+// Writes lines with hostile names, as clients might choose them, and reads them back with a strict
+// parser.
 #include "log/line.h"
 
 #include <math.h>
@@ -31,7 +32,7 @@ static void assert_line(const cau_log_line *line, const char *expected)
 	assert_memory_equal(line->text, expected, line->bytes);
 }
 
-// ---- generated values
+// ---- random values
 static uint64_t random_state = 7;
 
 static unsigned random_below(unsigned most)
@@ -40,7 +41,7 @@ static unsigned random_below(unsigned most)
 	return (unsigned)(random_state >> 33) % most;
 }
 
-// Mostly what would break a line, or a careless parser of one.
+// Makes a value, mostly from parts that would break a line or a careless parser.
 static size_t random_value(char *value)
 {
 	static const char *const parts[] = {"\n",
@@ -166,7 +167,7 @@ static void a_line_without_room_says_that_it_is_cut(void **state)
 	line_fields fields;
 	for (int i = 0; i < 20; i++)
 		cau_log_line_add(&line, "name", 4, value, sizeof value, false);
-	assert_true(line.bytes < CAU_LOG_LINE_BYTES); // and a line feed
+	assert_true(line.bytes < CAU_LOG_LINE_BYTES); // one byte is left for the line feed
 	assert_true(line_parse(line.text, line.bytes, &fields));
 	assert_string_equal(fields.fields[fields.count - 1].key, "cut");
 	for (int i = 0; i + 1 < fields.count; i++)
@@ -214,7 +215,8 @@ static void in_json_a_line_without_room_is_cut_and_still_an_object(void **state)
 	(void)state;
 	char value[400], key[] = "name0";
 	memset(value, 'x', sizeof value);
-	for (size_t bytes = 300; bytes < sizeof value; bytes++) { // the end falls on every byte
+	// so that the line is cut at every possible byte
+	for (size_t bytes = 300; bytes < sizeof value; bytes++) {
 		cau_log_line line = {.json = true};
 		line.bytes = (size_t)snprintf(line.text, sizeof line.text, "{\"head\":0");
 		for (key[4] = '0'; key[4] < '8'; key[4]++)

@@ -13,7 +13,7 @@
 
 #include "line_parser.h"
 
-// What one call writes to standard error.
+// Returns what one call writes to standard error.
 static char *written(void (*call)(void))
 {
 	static char text[4096];
@@ -78,7 +78,7 @@ static void what_clients_send_cannot_forge_lines(void **state)
 	line_fields fields;
 	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
 	assert_null(strchr(line, '\x1b'));
-	const char *tail = strstr(line, "Z ") + 2; // behind level and time
+	const char *tail = strstr(line, "Z ") + 2; // behind the level and the time
 	assert_true(line_parse(tail, strlen(tail) - 1, &fields));
 	assert_int_equal(fields.count, 4);
 	assert_string_equal(fields.fields[0].value, "d1-x event=y");

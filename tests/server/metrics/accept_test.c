@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which format an Accept header gets.
+// Checks which format an Accept header gets.
 #include "metrics/exposition.h"
 
 #include <setjmp.h>
@@ -18,13 +18,13 @@ static const char *const get_text[] = {
 	"application/json",
 	"application/openmetrics-text;q=0",
 	"application/openmetrics-text;q=0.0, */*",
-	"application/openmetrics-text;q=0, application/*",       // the closest range counts
-	"application/openmetrics-text; q=0.3, text/plain;q=0.9", // wanted less
+	"application/openmetrics-text;q=0, application/*",       // the most specific range counts
+	"application/openmetrics-text; q=0.3, text/plain;q=0.9", // OpenMetrics has a lower weight
 	"application/openmetrics-text;q=0.4, text/*;q=0.5",
 	"application/openmetrics-text;q=0.4, */*;q=0.5",
-	"application/openmetrics-text;version=0.0.1", // another version than ours
+	"application/openmetrics-text;version=0.0.1", // a version that we do not write
 	"application/openmetrics-text;version=2.0.0, text/plain",
-	"text/plain, application/*", // alike: the one that is named
+	"text/plain, application/*", // equal weights: the format that is named more specifically
 	"application/openmetrics-text-and-more",
 	"application/openmetrics-text;q=nonsense",
 	"application/openmetrics-text;q=1.5",
@@ -41,12 +41,14 @@ static const char *const get_open[] = {
 	"APPLICATION/OpenMetrics-Text;VERSION=1.0.0;Q=0.9, text/plain;q=0.1",
 	"application/openmetrics-text,text/plain",
 	"text/plain ,\tapplication/openmetrics-text",
-	"application/openmetrics-text;q=0.5, */*;q=0.5", // alike: the one that is named
+	"application/openmetrics-text;q=0.5, */*;q=0.5", // equal weights: the format that is named more
+                                                     // specifically
 	"application/*",
 	"application/*, text/plain;q=0.999",
 	"text/plain;q=0.5, application/openmetrics-text;q=0.501",
-	"text/plain;version=1.0.0, application/openmetrics-text;q=0.1", // a text that we do not have
-	// as Prometheus 2 and 3 ask
+	"text/plain;version=1.0.0, application/openmetrics-text;q=0.1", // a version of text that we do
+                                                                    // not write
+	// the headers of Prometheus 2 and 3
 	("application/openmetrics-text;version=1.0.0;q=0.5,application/openmetrics-text;version=0.0.1;"
      "q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2"),
 	("application/openmetrics-text;version=1.0.0;escaping=allow-utf-8;q=0.6,"

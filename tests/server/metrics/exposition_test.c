@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two formats, byte by byte.
+// Compares both formats byte by byte.
 #include "metrics/exposition.h"
 
 #include <math.h>

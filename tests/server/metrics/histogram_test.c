@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a histogram counts where, and that threads lose nothing of each other's.
+// Checks the buckets of a histogram, and that threads do not lose each other's counts.
 #include "metrics/histogram.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session moves between two daemons. Who may be killed when: tests/e2e/move.test.mjs.
+// A session moves between two daemons. tests/e2e/move.test.mjs tests which process may be killed
+// when.
 #include <string.h>
 
 #include "server/move/two_daemons.h"
@@ -26,7 +27,7 @@ static void a_session_moves_and_its_old_id_leads_to_it(void **state)
 	assert_false(cau_hub_moved(t.target.hub, "d2-knee", &to));
 }
 
-// The target builds it from its rows where no core was built beforehand.
+// If no core was built in advance, the target builds it from the session's rows.
 static void it_moves_without_a_core_that_waits(void **state)
 {
 	(void)state;
@@ -62,7 +63,8 @@ static void a_move_that_is_cancelled_leaves_the_session_and_frees_the_id(void **
 	assert_int_equal(make_session(&t.target, "knee"), CAU_OK);
 }
 
-// As the daemon ends: the suspended session goes on and is drained; no courier begins another move.
+// When the daemon ends, the suspended session resumes and is drained. No courier can continue the
+// move.
 static void as_the_daemon_ends_no_move_goes_on(void **state)
 {
 	(void)state;
@@ -78,7 +80,7 @@ static void as_the_daemon_ends_no_move_goes_on(void **state)
 	assert_int_equal(t.answer.code, CAU_RPC_DRAINING);
 }
 
-// ---- proofs
+// ---- proofs and seals
 static void a_seal_is_of_every_piece_in_its_order(void **state)
 {
 	(void)state;

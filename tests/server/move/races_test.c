@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that come while another is between its decision and its end: each is held at a fault
-// point meanwhile.
+// Requests that arrive between the decision and the end of another request. The other request is
+// stopped at a fault point meanwhile.
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include "server/move/two_daemons.h"
 #include "store/rows.h"
 
-// A move up to its decision, with a core that waits at the target.
+// Carries a move up to its decision, with a core that waits at the target.
 static void decide(char proof[CAU_PROOF_BYTES])
 {
 	char receipt[CAU_PROOF_BYTES];
@@ -20,7 +20,7 @@ static void decide(char proof[CAU_PROOF_BYTES])
 	commit(receipt, proof);
 }
 
-// Asks the target to accept, and returns once that is held at the fault point.
+// Asks the target to accept. Returns once the request is stopped at the fault point.
 static void accept_up_to(const char *fault_point, const char *proof)
 {
 	cau_move_asked asked = {.what = CAU_MOVE_ACCEPT};
@@ -50,7 +50,7 @@ static void put_session(cau_rows_writer *writer)
 	cau_rows_put(writer, &row);
 }
 
-// The target is given the first piece of another move, of a session to the same id.
+// Sends the target the first piece of another move, for a session with the same id.
 static cau_status give_first_piece_of_another(bool with_session)
 {
 	static const char lock[] = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
@@ -76,7 +76,7 @@ static void a_first_piece_without_a_session_is_refused(void **state)
 	assert_int_equal(give_first_piece_of_another(true), CAU_OK);
 }
 
-// ---- while an acceptance is carried out
+// ---- requests during an acceptance
 static void a_new_move_does_not_end_an_arrival_that_is_being_placed(void **state)
 {
 	(void)state;
@@ -122,7 +122,7 @@ static void a_repeated_accept_waits_for_the_disk(void **state)
 	a_repeated_accept_waits_for_the_first("move_accepted", 0);
 }
 
-// The session is in the store and not among the hub's yet: as if it could not be brought up.
+// The session is in the store, but not among the hub's yet, as if it could not be resumed.
 static void a_session_that_is_being_placed_is_not_destroyed(void **state)
 {
 	(void)state;
@@ -138,7 +138,7 @@ static void a_session_that_is_being_placed_is_not_destroyed(void **state)
 	assert_true(serves(&t.target, "d2-knee"));
 }
 
-// The hub asks whether the session arrives, and the acceptance ends at that moment.
+// Called when the hub asks whether the session is arriving. The acceptance ends at this moment.
 static bool arrives_no_longer(void *user, const char *id)
 {
 	set_gate(NULL);
@@ -206,7 +206,7 @@ static void destroy_session(side *s, const char *id)
 	cau_hosted_release(hosted);
 }
 
-// One session, and one that has ended and waits to be reaped.
+// Creates one session, and one that has ended and waits to be reaped.
 static void fill_places(void)
 {
 	assert_int_equal(make_session(&t.target, "first"), CAU_OK);
@@ -222,7 +222,7 @@ static void the_last_piece_may_be_sent_again_while_it_is_accepted(void **state)
 	decide(proof);
 	accept_up_to("move_accepted", proof);
 	cau_move_asked asked = {.what = CAU_MOVE_RECEIVE, .piece = t.last, .piece_bytes = t.last_bytes};
-	t.last = NULL; // taken
+	t.last = NULL; // the request owns the bytes now
 	assert_int_equal(ask(&t.target, asked, CAU_METHOD_MOVE_RECEIVE), CAU_OK);
 	read_result(CAU_METHOD_MOVE_RECEIVE, &received);
 	assert_true(received.has_receipt);
@@ -230,12 +230,12 @@ static void the_last_piece_may_be_sent_again_while_it_is_accepted(void **state)
 	assert_int_equal(await(&t.held), CAU_OK);
 }
 
-// A core that was built beforehand and finds no place among the hub's sessions.
+// A core was built in advance, and there is no free slot among the hub's sessions.
 static void a_core_without_a_place_is_cleared_away_before_a_new_move(void **state)
 {
 	(void)state;
 	char receipt[CAU_PROOF_BYTES], proof[CAU_PROOF_BYTES];
-	t.target.config.max_sessions = 1; // two places, until ended sessions are reaped
+	t.target.config.max_sessions = 1; // two slots, until ended sessions are reaped
 	begin_move();
 	carry_part();
 	assert_int_equal(ASK(target, READY), CAU_OK);
@@ -248,11 +248,12 @@ static void a_core_without_a_place_is_cleared_away_before_a_new_move(void **stat
 	assert_int_equal(give_first_piece_of_another(true), CAU_BAD_STATE);
 	assert_non_null(strstr(t.answer.reason, "try again"));
 	cau_moves_reap(t.target.moves);
-	assert_int_equal(give_first_piece_of_another(true), CAU_ALREADY_EXISTS); // in the store
+	// the session exists in the store
+	assert_int_equal(give_first_piece_of_another(true), CAU_ALREADY_EXISTS);
 	assert_int_equal(show(CAU_MOVE_ACCEPT, CAU_METHOD_MOVE_ACCEPT, proof), CAU_NOT_FOUND);
 }
 
-// ---- as the daemon ends
+// ---- requests when the daemon ends
 static void no_core_is_built_once_the_builder_may_have_ended(void **state)
 {
 	(void)state;
@@ -300,7 +301,7 @@ static void nothing_is_forgotten_once_the_daemon_ends(void **state)
 	assert_int_equal(t.held.code, CAU_RPC_DRAINING);
 }
 
-// ---- while a piece is read
+// ---- requests while a piece is read
 static void a_move_is_not_decided_while_a_piece_is_read(void **state)
 {
 	(void)state;

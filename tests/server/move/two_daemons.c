@@ -10,11 +10,11 @@
 
 two_daemons t;
 
-// ---- fault points: the thread that comes to the one that is shut waits there
+// ---- fault points: a thread that reaches the shut one waits there
 static struct {
 	pthread_mutex_t lock;
 	pthread_cond_t changed;
-	const char *shut; // its name; NULL: none is
+	const char *shut; // name of the shut fault point; NULL: none
 	bool reached;
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
@@ -83,7 +83,7 @@ static int open_side(side *s, const char *label)
 	                                                                                        : 0;
 }
 
-// In the daemon's order.
+// Closes in the daemon's order.
 static int close_side(side *s)
 {
 	cau_moves_drain(s->moves);
@@ -171,7 +171,7 @@ bool is_answered(const answer *a)
 	return came;
 }
 
-// Until only so many requests are under way, held at a fault point.
+// Waits until only `held` requests remain, all stopped at a fault point.
 void await_mover(side *s, int held)
 {
 	while (cau_builder_busy(s->mover) > held)
@@ -210,7 +210,7 @@ void read_result(cau_method method, void *result)
 	cau_rpc_finish(&message);
 }
 
-// The key that an answer gives.
+// Copies the key of an answer.
 static void take_key(char key[CAU_PROOF_BYTES], bool given, const char *text)
 {
 	assert_true(given);
@@ -235,7 +235,7 @@ void begin_move(void)
 	memcpy(t.move, begun.move, sizeof t.move);
 }
 
-// Carries the next piece. False: the source gives none now.
+// Carries the next piece. Returns false if the source gives none now.
 bool carry_piece(cau_wire_move_received *received)
 {
 	if (ASK(source, READ))
@@ -261,7 +261,8 @@ void carry_part(void)
 	cau_wire_move_received received = {0};
 	while (pieces < PIECES_MOST && carry_piece(&received))
 		pieces++;
-	assert_int_equal(t.answer.status, CAU_BAD_STATE); // the rest, once it is suspended
+	// the remaining pieces are sent once the session is suspended
+	assert_int_equal(t.answer.status, CAU_BAD_STATE);
 	assert_in_range(pieces, 1, PIECES_MOST - 1);
 	assert_false(received.has_receipt);
 }

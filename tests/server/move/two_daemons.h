@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two daemons' hubs and moves in one process, on the double of the core, and a courier between
-// them: it moves `d1-knee` of the source to the target, where it is `d2-knee`.
+// The hubs and moves of two daemons in one process, on the double of the core, and a courier. The
+// courier moves `d1-knee` of the source to the target, where its id is `d2-knee`.
 #pragma once
 
 #include <pthread.h>
@@ -16,7 +16,7 @@
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, open_both, close_both)
 
-enum { PIECES_MOST = 64 }; // a small session takes two
+enum { PIECES_MOST = 64 }; // a small session takes two pieces
 
 typedef struct side {
 	char folder[40], file[64];
@@ -43,31 +43,32 @@ typedef struct two_daemons {
 	pthread_mutex_t lock;
 	pthread_cond_t answered;
 	answer answer;
-	answer held; // to a request that is held at a fault point while others come
+	answer held; // answer to a request that is stopped at a fault point while others come
 	char move[CAU_NAME_BYTES];
-	uint32_t pieces;     // that were carried
-	cau_move_hash seal;  // of the last of them
-	unsigned char *last; // its bytes, malloc'ed
+	uint32_t pieces;     // number of pieces that were carried
+	cau_move_hash seal;  // seal of the last carried piece
+	unsigned char *last; // bytes of the last carried piece; malloc'ed
 	size_t last_bytes;
 } two_daemons;
 
 extern two_daemons t;
 
 int open_both(void **state);
-int close_both(void **state); // opens the gate first
+int close_both(void **state); // first opens the gate
 
-// ---- fault points: the thread that comes to the one of this name waits there. NULL: none waits.
+// ---- fault points
+//   A thread that reaches the fault point of this name waits there. NULL: no thread waits.
 void set_gate(const char *name);
-void await_gate(void); // until a thread waits
+void await_gate(void); // waits until a thread has reached the gate
 
 // ---- requests and answers
 cau_reply reply_to(answer *a, cau_method method);
 cau_status await(const answer *a);
 bool is_answered(const answer *a);
-// Until only so many requests are under way, held at a fault point.
+// Waits until only `held` requests remain, all stopped at a fault point.
 void await_mover(side *s, int held);
 cau_status make_session(side *s, const char *name);
-// Asks about the move, and does not wait for the answer.
+// Sends a request about the move, without waiting for the answer.
 void send_request(side *s, cau_move_asked asked, cau_method method, answer *a);
 cau_status ask(side *s, cau_move_asked asked, cau_method method);
 #define ASK_WITH(side, NAME, ...)                                                                  \
@@ -79,10 +80,10 @@ bool serves(side *s, const char *id);
 
 // ---- the courier's steps
 void begin_move(void);
-// Carries the next piece. False: the source gives none now.
+// Carries the next piece. Returns false if the source gives none now.
 bool carry_piece(cau_wire_move_received *received);
 void carry_part(void);
 void hold_and_carry_rest(char receipt[CAU_PROOF_BYTES]);
 void commit(const char *receipt, char proof[CAU_PROOF_BYTES]);
-// Shows the target a key.
+// Sends a key to the target.
 cau_status show(cau_move_what what, cau_method method, const char *key);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This program stands in the build tree as an installed one stands under its prefix.
+// This program is in the build tree in the same place as an installed program under its prefix.
 #include "places/places.h"
 
 #include <limits.h>
@@ -28,7 +28,7 @@ static void what_is_not_there_is_not_found(void **state)
 	char path[PATH_MAX] = "before";
 	assert_false(cau_place_find("nowhere", path, sizeof path));
 	assert_string_equal(path, "");
-	assert_false(cau_place_find("scenes/fascia.json", path, sizeof path)); // no folder
+	assert_false(cau_place_find("scenes/fascia.json", path, sizeof path)); // a file, not a folder
 	assert_string_equal(path, "");
 }
 

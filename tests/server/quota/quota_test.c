@@ -17,7 +17,7 @@ static cau_config wide(void)
 	return config;
 }
 
-// How many of `wanted` requests at once pass.
+// Returns how many of `wanted` requests at the same time are accepted.
 static int take(cau_quota *quota, cau_allowance *connection, const char *address, cau_role role,
                 double now_s, int wanted, cau_error *error)
 {
@@ -31,7 +31,7 @@ static void a_connection_has_its_minute(void **state)
 {
 	(void)state;
 	cau_config config = wide();
-	config.quota_connection = 6; // one in ten seconds
+	config.quota_connection = 6; // one request every ten seconds
 	cau_quota *quota = cau_quota_create(&config);
 	cau_allowance one = {0}, other = {0};
 	cau_error error = {0};
@@ -76,7 +76,7 @@ static void roles_do_not_use_up_each_others(void **state)
 	cau_quota_destroy(quota);
 }
 
-// What one bound refuses is not taken from the others.
+// A request that one allowance refuses takes nothing from the others.
 static void a_refusal_takes_nothing(void **state)
 {
 	(void)state;
@@ -109,7 +109,7 @@ static void more_addresses_than_are_remembered(void **state)
 		snprintf(text, sizeof text, "10.0.%d.%d", i / 256, i % 256);
 		take(quota, &connection, text, CAU_ROLE_VIEW, 1, 1, NULL);
 	}
-	// who has taken most is not forgotten
+	// The address that has taken most is not forgotten.
 	assert_int_equal(take(quota, &busy, "busy", CAU_ROLE_VIEW, 1, 1, NULL), 0);
 	cau_quota_destroy(quota);
 	cau_quota_destroy(NULL);

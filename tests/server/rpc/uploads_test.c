@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What uploads hold, by a model that counts the names' bytes anew after every step.
+// Checks the bytes of uploads against a model that counts them again after every step.
 #include "rpc/uploads.h"
 
 #include <setjmp.h>
@@ -15,7 +15,7 @@ enum { CONNECTIONS = 3, NAMES = 6, STEPS = 20000, CONNECTION_MOST = 400000, ALL_
 static cau_config config;
 static cau_uploads uploads[CONNECTIONS];
 static cau_upload_total total;
-static int64_t held[CONNECTIONS][NAMES]; // the model; 0: none
+static int64_t held[CONNECTIONS][NAMES]; // the model: bytes of each name; 0: none
 
 static int begin_anew(void **state)
 {

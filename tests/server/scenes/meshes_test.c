@@ -34,7 +34,7 @@ static void meshes_travel_in_one_block(void **state)
 	assert_int_equal(read->meshes[0].byte_count, 7);
 	assert_memory_equal(read->meshes[0].bytes, "v 0 0 0", 7);
 	assert_memory_equal(read->meshes[2].bytes, "f 1 2 3\n", 8);
-	assert_memory_equal(scene->meshes[2].bytes, "f 1 2 3\n", 8); // points into the block now
+	assert_memory_equal(scene->meshes[2].bytes, "f 1 2 3\n", 8); // now it points into the block
 	free(block);
 	free(scene);
 	free(read);

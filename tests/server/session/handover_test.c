@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every state that two daemons, their disks and a courier can come to while a session moves, with
-// all of them killed anywhere, messages lost, disks that refuse and moves that are begun anew.
-// In each: at most one serves, and the session is in one store at least. From each, once both are
-// up, the courier's way of going on leads to exactly one that serves.
+// Searches every state of two daemons, their disks and two couriers while a session moves. All of
+// them may be killed at any time, messages may be lost, disks may refuse, and moves may begin
+// again. In each state at most one daemon serves, and at least one store has the session. From each
+// state, once both daemons are up, the courier's continuation leads to exactly one daemon that
+// serves.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,13 +18,13 @@
 
 enum { MOVES_MOST = 2, STATES_MOST = 1 << 20 };
 
-typedef struct disk { // of the target
-	uint8_t move;     // 0: nothing is there
+typedef struct disk { // the target's disk
+	uint8_t move;     // number of the move whose rows are on the disk; 0: none
 	bool whole, accepted;
 } disk;
 
 typedef struct courier {
-	uint8_t carried; // the move that it is at
+	uint8_t carried; // number of the courier's move
 	bool saw_whole, has_proof, was_kept;
 } courier;
 
@@ -31,19 +32,19 @@ typedef struct world {
 	cau_leaving leaving;
 	cau_coming coming;
 	bool source_up, target_up;
-	uint8_t begun;                     // moves so far
-	uint8_t move;                      // that the source knows; 0: none
-	bool tombstone;                    // on the source's disk
-	bool may_surface;                  // the disk refused it, and it may be there after a crash
-	bool writing, clearing, accepting; // on their way to a disk
-	uint8_t coming_move;               // that the target knows
+	uint8_t begun;    // number of moves so far
+	uint8_t move;     // number of the source's move; 0: none
+	bool tombstone;   // the tombstone is on the source's disk
+	bool may_surface; // the disk refused the tombstone, which may still appear after a crash
+	bool writing, clearing, accepting; // these writes are on their way to a disk
+	uint8_t coming_move;               // number of the target's move
 	disk target;
-	courier at_work, waiting; // two, by turns
+	courier at_work, waiting; // two couriers that alternate
 } world;
 
 // ---- the search ---------------------------------------------------------------------------------
 static world *queue;
-static int *slots; // of the queue, by hash
+static int *slots; // hash table of the states in `queue`
 static int known;
 
 static uint64_t hash_of(const world *w)
@@ -66,7 +67,7 @@ static void add(const world *w)
 	slots[slot] = ++known;
 }
 
-// ---- what each does -----------------------------------------------------------------------------
+// ---- events -------------------------------------------------------------------------------------
 static bool source_serves(const world *w)
 {
 	return w->source_up && cau_leaving_serves(&w->leaving);
@@ -81,12 +82,12 @@ static void check(const world *w)
 {
 	assert_false(source_serves(w) && target_serves(w));
 	bool there = w->target.move && w->target.whole;
-	assert_true(!w->tombstone || (there && w->target.move == w->move)); // not lost
-	assert_true(!w->target.accepted || w->tombstone);                   // not twice
+	assert_true(!w->tombstone || (there && w->target.move == w->move)); // the session is not lost
+	assert_true(!w->target.accepted || w->tombstone); // the session is not served twice
 	assert_true(!w->may_surface || !cau_leaving_serves(&w->leaving) || !w->source_up);
 }
 
-// What the source does; the courier, if it hears, is told.
+// Carries out the source's act. If `heard`, the courier receives the answer.
 static void heed(world *w, cau_leaving_act act, bool heard)
 {
 	switch (act) {
@@ -234,7 +235,8 @@ static void crash_target(world w, bool written)
 	add(&w);
 }
 
-// Another courier, or the same anew: it knows what the target lists.
+// Replaces the courier by a new one, or by the same one after a restart. It knows what the target
+// lists.
 static void new_courier(world w)
 {
 	w.at_work.carried = w.target_up ? w.coming_move : 0;
@@ -306,9 +308,9 @@ static void expand(world w)
 	}
 }
 
-// ---- how it ends --------------------------------------------------------------------------------
+// ---- the end of a move --------------------------------------------------------------------------
 
-// Disks that take what they are given, and sessions that come to stand still.
+// Completes all writes and suspensions: the disks accept everything.
 static void settle(world *w)
 {
 	if (w->leaving.state == CAU_LEAVING_STOPS)
@@ -326,8 +328,9 @@ static void settle(world *w)
 	}
 }
 
-// What `cautery move` does for an unfinished move, with both up: asks the target what is in doubt,
-// the source about it, and takes its word to the target. Without anything in doubt time does it.
+// Does what `cautery move` does for an unfinished move, with both daemons up. It asks the target
+// which session is in doubt, asks the source about the move, and takes the source's answer to the
+// target. If no session is in doubt, a timeout ends the move.
 static void resume(world w)
 {
 	w.source_up = w.target_up = true;
@@ -378,7 +381,7 @@ static void test_at_most_one_serves_and_one_in_the_end(void **state)
 	free(slots);
 }
 
-// What no honest courier does.
+// Events that no honest courier causes.
 static void test_a_proof_without_the_rows_serves_nothing(void **state)
 {
 	(void)state;

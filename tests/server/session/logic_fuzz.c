@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each four bytes are one event or act of the property test's world (world.h): a fuzzer that sees
-// which branches it takes finds sequences that chance does not.
+// Each four bytes are one event or act in the world of the property test (world.h). A fuzzer that
+// sees the branches taken finds sequences that random tests do not.
 #include <stdlib.h>
 #include <string.h>
 
 #include "fuzz/fuzz_target.h"
 #include "server/session/world.h"
 
-enum { EVENTS_MOST = 200 }; // an order at most each, and TICKETS are more
+enum { EVENTS_MOST = 200 }; // each event has at most one order, and TICKETS is larger
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generated interleavings of orders, signs of life, losses, time and the worker's acts. A failing
-// one is shrunk and printed as a script of a few lines.
+// Random interleavings of orders, signs of life, losses, time and the worker's acts. A failing
+// sequence is shortened and printed as a script of a few lines.
 //     test_server_session_logic [SEQUENCES [FIRST_SEED]]
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@ typedef struct sequence {
 	int count;
 } sequence;
 
-// splitmix64: every seed is as good as any other.
+// splitmix64: all seeds are equally good.
 static uint64_t next_random(uint64_t *state)
 {
 	uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -24,8 +24,9 @@ static uint64_t next_random(uint64_t *state)
 	return z ^ (z >> 31);
 }
 
-// Chance seldom pauses a session and then advances it. So every fourth sequence begins paused, and
-// a quarter of what follows are advances, most of them the driver's, and half is the worker's.
+// Raises the share of advances, because random sequences seldom pause a session and then advance
+// it. Every fourth sequence begins paused. A quarter of its other codes are advances, most of them
+// by the driver, and half are acts of the worker.
 static void favour_advances(sequence *s)
 {
 	static const uint32_t pause[] = {0x008100a0, 0x00000034, 0x00000034};
@@ -49,54 +50,54 @@ static void generate(sequence *s, uint64_t seed)
 		favour_advances(s);
 }
 
-// Each failed once, or is of a rule that chance seldom tries.
+// Sequences that failed once, or that test a rule which random sequences seldom reach.
 static const sequence found[] = {
 	{{0xff0040a0, 0x7e7e7e7e, 0x7e7e7e7e, 0x7e7e7e7e, 0xff070707, 0x54545454, 0x54545454,
       0x57575757, 0x00054000, 0x54545401, 0x54545454, 0x57575757, 0x57575757, 0x47474747,
       0x4747bd47, 0x7e7e7ebd, 0x7e7e7e7e, 0x5656567e, 0x56565656, 0x56565656, 0x7e7e5656,
       0x7e7e7e7e, 0x7e7e7e7e, 0x7e7e7e7e, 0x57577e7e, 0x57575757},
-     26}, // removed, asked to light, turned off, added again
+     26}, // a tool is removed, enabled, turned off, and added again
 	{{0xff0040a0, 0x7e7e7e7e, 0x7e7e7e7e, 0x7e7e7e7e, 0x2d7e0800, 0xbdb44747, 0x474747bd,
       0x56565656, 0x56565656, 0x47474747, 0xbd4747bd, 0x7e7e7e7e, 0x7e7e7e7e, 0x56565656,
       0x56565656, 0x56565656, 0x7e7e7e56},
-     17}, // asked to light before it was added
+     17}, // a tool is enabled before it is added
 	{{0x006e0701, 0xb8b8b800, 0xe0b8b8b8, 0x0050f038, 0x92929292, 0xffffff92, 0xffffffff,
       0xffffc4ff, 0xfffbffff, 0xffffff29, 0xffffffff, 0xffffffff, 0x3fffffff, 0x2cffffff,
       0xffffffff, 0xffffffff, 0xffffffff},
-     17}, // the store was full between that and its coming
+     17}, // the store is full between the enable and the adding of the tool
 	{{0xe5cb71c6, 0x0ff40913, 0x54e64909, 0x3dbb8778, 0x8fea5008, 0xc1046b99, 0xe7f04567,
       0x193ccc58, 0x5b3bb61e, 0x8628a593, 0x62ce6fdf, 0xa368a494, 0x06dcd659, 0xe7fef21a},
-     14}, // turned off while the session went to a state that has it
+     14}, // a tool is turned off during a rewind to a state that has the tool
 	{{0x329e74df, 0xba221c75, 0x2c75a1c6, 0x32ea6f20, 0xdee652e5, 0xfab88340, 0x84d39233,
       0xe9111eb3, 0xb41c207b, 0xddd509b8, 0xb0069d92, 0x1d616e1a, 0x68e20b7e, 0xb79ca257,
       0xc058681f, 0xa2648415, 0xaded6892, 0xbd394a5a, 0x7096e75d, 0xae5420da},
-     20}, // the store was full meanwhile
+     20}, // the store is full during a rewind
 	{{0x00000073, 0x00000073, 0x00810000, 0x00000073, 0x00000073, 0x0000008d,
       0x00000073, 0x00810000, 0x000000ed, 0x000000ed, 0x000000ed, 0x000000ed,
       0x00000011, 0x0000002a, 0x00000073, 0x00000073, 0x00000073, 0x00000073,
       0x00000073, 0x0000002a, 0x00000073, 0x00000073},
-     22}, // asked to light again, then silent, then alive
+     22}, // a driver enables again, is silent, and then gives a sign of life
 	{{0x00000073, 0x00000073, 0x02010180, 0x00000073, 0x00000133, 0x02810000, 0x00813700,
       0x00000073, 0x00000073, 0x00000032, 0x00000073, 0x00000073, 0x00000073, 0x00000073,
       0x0000008d, 0x00000073, 0x00000073, 0x0000008d, 0x0000002a, 0x00000073, 0x00000073,
       0x00000073, 0x00000073, 0x00000073, 0x00000073, 0x0000008d, 0x00000073, 0x00000073},
-     28}, // asked to light, removed, and added by an order that came before
+     28}, // a tool is enabled, removed, and added by an order that came before
 	{{0x008101c0, 0x00000094, 0x000000b4, 0x00000094, 0x000000b4, 0x01200060, 0x01200000,
       0x00000012, 0x00000012, 0x00000214, 0x000000b4, 0x000000b4, 0x000000b4, 0x000000b4,
       0x000000b4, 0x000000b4, 0x000000ed, 0x000000b4, 0x000000b4},
-     19}, // the store was full while the session went to a state that has the tool
+     19}, // the store is full during a rewind to a state that has the tool
 	{{0x008100a0, 0x00000034, 0x00000034, 0x00000034, 0x008101c0, 0x00000034, 0x00000034,
       0x01200060, 0x0001183c, 0x01a00040, 0x00000114, 0x00000034, 0x00000034, 0x00000034,
       0x00000034, 0x00000034, 0x00000034, 0x00000034, 0x00000034, 0x00000034, 0x00000034},
-     21}, // lit by an advance, and turned off, while the session went to a state that has the tool
+     21}, // an advance enables a tool, turned off in a rewind to a state that has the tool
 	{{0x008100a0, 0x00000034, 0x00000034, 0x00000034, 0x00810000, 0x00000034, 0x00000034,
       0x00000034, 0x0001001c, 0x00000034, 0x00000034, 0x000000ed, 0x000000ed, 0x000000ed,
       0x00000034, 0x00000034, 0x00000034, 0x00000034},
-     18}, // silent, while another client advances
+     18}, // a driver is silent while another client advances
 	{{0x008100a0, 0x00000034, 0x00000034, 0x00000034, 0x00810000, 0x00000034, 0x00000034,
       0x00000034, 0x0001053c, 0x000000ed, 0x000000ed, 0x000000ed, 0x00000011, 0x00000034,
       0x00000034, 0x00000034, 0x00000034, 0x00000034, 0x00000034},
-     19}, // silent after it asked to advance
+     19}, // a driver is silent after its request to advance
 };
 
 static bool holds(world *w, const sequence *s)
@@ -108,7 +109,7 @@ static bool holds(world *w, const sequence *s)
 	return world_end(w);
 }
 
-// Leaves out what the failure does not need.
+// Removes the codes that the failure does not need.
 static void shrink(world *w, sequence *s)
 {
 	for (int i = s->count; i-- > 0;) {
@@ -178,7 +179,7 @@ int main(int argc, char **argv)
 	       (unsigned long long)w->steps, (unsigned long long)w->lit_steps,
 	       (unsigned long long)w->lit_advances);
 	bool seen = w->steps > count / 100 && w->lit_steps > count / 1000 &&
-	            w->lit_advances > count / 1000; // else it shows nothing
+	            w->lit_advances > count / 1000; // otherwise the test covers too little
 	world_destroy(w);
 	return seen ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -30,7 +30,8 @@ void oracle_end_lockstep(world *w)
 	w->advance_left = 0;
 }
 
-// In lock-step a client is alive until a tick is to begin that is beyond its deadline's ticks.
+// True if the client is not silent. In lock-step a client is silent when a tick begins that exceeds
+// its deadline in ticks.
 static bool is_alive(const world *w, const tool_book *tool, int client)
 {
 	if (w->lockstep && client == w->lockstep)
@@ -38,7 +39,7 @@ static bool is_alive(const world *w, const tool_book *tool, int client)
 	return tool->alive_s[client] + tool->deadline_s > w->now_s;
 }
 
-// Nothing that came in after it takes this client's enable back.
+// True if no later event makes this client's enable void.
 static bool stands(const world *w, const tool_book *tool, int client, uint64_t enable)
 {
 	return tool->there && tool->driver == client && enable > tool->dark &&
@@ -46,7 +47,7 @@ static bool stands(const world *w, const tool_book *tool, int client, uint64_t e
 	       enable > w->no_store;
 }
 
-// The newest of all that concerns its energy is an enable of its driver, who is there.
+// True if the newest event about the tool's energy is an enable of its present driver.
 static bool is_enabled(const world *w, const tool_book *tool)
 {
 	return tool->enable && stands(w, tool, tool->enabler, tool->enable);
@@ -67,7 +68,8 @@ static bool is_silent(const world *w, const tool_book *tool)
 	return is_enabled(w, tool) && !is_alive(w, tool, tool->enabler);
 }
 
-// A paused session makes the ticks that were asked for, in lock-step those of its client alone.
+// Counts a tick of a paused session. It must have been requested, in lock-step by the client in
+// lock-step.
 static void count_steps(world *w)
 {
 	int64_t *left = w->lockstep ? &w->advance_left : &w->steps_left;
@@ -126,14 +128,15 @@ void oracle_check_tick(world *w)
 	w->steps++;
 }
 
-// ---- what was overtaken -------------------------------------------------------------------------
+// ---- void orders --------------------------------------------------------------------------------
 
 static bool is_for_later(const world *w, const ticket_book *ticket)
 {
 	return ticket->asked.tick > w->tick;
 }
 
-// What goes with its asker's hold on its tool: its use, and what was asked for at later ticks.
+// True if the order becomes void when its asker loses its tool: it uses the tool, or is for a later
+// tick.
 static bool is_of_hold(const world *w, const ticket_book *ticket)
 {
 	cau_ask ask = ticket->asked.ask;
@@ -153,7 +156,7 @@ static bool is_from(const ticket_book *ticket, int client)
 	return !ticket->answers && (int)ticket->asked.asker.client == client;
 }
 
-// A silent driver's advances go with the rest.
+// Makes a silent driver's advances void.
 static void void_advances(world *w, int driver, uint64_t before, bool doubted)
 {
 	for (int i = 0; i < w->ticket_count; i++) {
@@ -216,7 +219,8 @@ static int count_waiting(const world *w, int client, bool later)
 	return count;
 }
 
-// Of a tool that is not there: what was asked for before will not light it once it is.
+// Notes an energy-off for a tool that does not exist. Earlier enables have no effect when the tool
+// is added.
 void oracle_note_off_of_none(world *w, const char *tool, uint64_t before)
 {
 	for (int i = 0; i < w->ticket_count; i++) {
@@ -236,13 +240,14 @@ void oracle_check_room(world *w, const ticket_book *ticket)
 	int client = (int)ticket->asked.asker.client, bound = cau_logic_later_most(QUEUE);
 	if (w->ended || !w->store_takes || off || ticket->asked.ask == CAU_ASK_PAUSE)
 		return;
-	for (int i = 0; i < w->ticket_count; i++) // it counts there or here
+	for (int i = 0; i < w->ticket_count; i++) // an order that may be void counts in either queue
 		if (w->tickets[i].doubted && !w->tickets[i].answers && is_for_later(w, &w->tickets[i]))
 			return;
-	if (w->working && w->action.act == CAU_ACT_ORDER) // what it overtakes is counted with its end
+	// orders that the present act makes void are counted at its end
+	if (w->working && w->action.act == CAU_ACT_ORDER)
 		return;
 	bool later = is_for_later(w, ticket), full;
-	if (later) // beside itself
+	if (later) // not counting the order itself
 		full = count_waiting(w, client, true) - ticket->kept >= bound ||
 		       count_waiting(w, 0, true) - ticket->kept >= QUEUE ||
 		       count_waiting(w, 0, true) + count_waiting(w, 0, false) - ticket->kept >= 2 * QUEUE;
@@ -269,7 +274,7 @@ static bool is_stepping(const world *w)
 	return false;
 }
 
-// All that an advance does, and when.
+// True if everything in the advance is allowed now.
 static bool may_advance(const world *w, const ticket_book *ticket)
 {
 	int client = (int)ticket->asked.asker.client;
@@ -286,7 +291,7 @@ static bool may_advance(const world *w, const ticket_book *ticket)
 	return true;
 }
 
-// Whether the order may be done, as the page has it.
+// True if protocol/README.md allows the order.
 static bool may(const world *w, const ticket_book *ticket)
 {
 	const cau_asked *asked = &ticket->asked;
@@ -316,7 +321,7 @@ static bool may(const world *w, const ticket_book *ticket)
 	}
 }
 
-// An enable that nothing has overtaken must be taken.
+// True if no event has made the enable void, so that it must be accepted.
 static bool must_enable(const world *w, const ticket_book *ticket)
 {
 	const tool_book *tool = oracle_book((world *)w, ticket->asked.tool);
@@ -348,14 +353,14 @@ static void note_silence(world *w, uint64_t came)
 	}
 }
 
-// Once a silence was looked at, a sign of life does not undo it.
+// A silence that was found is not undone by a later sign of life.
 void oracle_note_silence(world *w)
 {
 	note_silence(w, w->came);
 }
 
-// Nor does one that comes in after the deadline, whether anybody has looked or not. What comes in
-// with it counts, and what came in before does not.
+// A sign of life after the deadline does not undo the silence, even if no check found it. Requests
+// that come with the sign count; earlier requests do not.
 void oracle_note_life(world *w, int client, const char *name, double alive_s)
 {
 	note_silence(w, w->came - 1);
@@ -388,16 +393,16 @@ void oracle_note_coming(world *w, const ticket_book *ticket)
 		oracle_darken(tool, ticket->came);
 }
 
-// ---- cuts ---------------------------------------------------------------------------------------
+// ---- energy cut-off -----------------------------------------------------------------------------
 
-// Dark, whatever lit it: what came in by then lights it no more.
+// Turns the tool's energy off. Enables that came in by `came` do not turn it on again.
 static void cut(tool_book *tool, uint64_t came)
 {
 	oracle_darken(tool, came);
 	tool->enable = 0;
 }
 
-// The coming in of the order of this kind and tool that waits first; 0: none does.
+// Returns the arrival of the first waiting order of this kind and tool; 0: there is none.
 static uint64_t waits(const world *w, cau_ask ask, const char *tool)
 {
 	for (int i = 0; i < w->ticket_count; i++) {
@@ -410,10 +415,11 @@ static uint64_t waits(const world *w, cau_ask ask, const char *tool)
 
 static uint64_t oldest(uint64_t a, uint64_t b)
 {
-	return a && b ? (a < b ? a : b) : a + b; // 0: none
+	return a && b ? (a < b ? a : b) : a + b; // 0 means none
 }
 
-// A pause makes its cuts one after the other, and darkens all tools with the first.
+// True for a cut-off of a pause. A pause makes its cut-offs one after the other; the first makes
+// earlier enables of all tools void.
 static bool is_cut_of_pause(world *w)
 {
 	uint64_t pause = oldest(w->paused, waits(w, CAU_ASK_PAUSE, ""));
@@ -426,7 +432,8 @@ static bool is_cut_of_pause(world *w)
 	return true;
 }
 
-// So does a step or a resume that ends lock-step; which of them is known once it is decided.
+// True for a cut-off of a step or a resume that ends lock-step. Which of the two it is becomes
+// known when it is decided.
 static bool is_cut_of_leaving(world *w)
 {
 	if (strcmp(w->action.drive.cut_cause, "lock-step has ended") != 0)
@@ -504,14 +511,14 @@ static void note_advance(world *w, ticket_book *ticket)
 			note_enable(w, oracle_book(w, part->tool), ticket, part->limit);
 	}
 	ticket->stepping = true;
-	if (ticket->voided) // its client was lost while the core took it
+	if (ticket->voided) // its client was lost while the core took the advance
 		return;
 	w->lockstep = (int)ticket->asked.asker.client;
 	w->advance_tick = w->tick;
 	w->advance_left = ticket->asked.ticks;
 }
 
-// What an order that was done leads to, as the page has it.
+// Notes the results of an order that was done, as protocol/README.md states them.
 void oracle_note_done(world *w, ticket_book *ticket)
 {
 	const cau_asked *asked = &ticket->asked;
@@ -525,7 +532,7 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		tool->there = true;
 		tool->driver = ticket->came > w->gone[client] ? client : 0;
 		tool->deadline_s = DEADLINE_S;
-		oracle_darken(tool, ticket->came); // it is a new one
+		oracle_darken(tool, ticket->came); // an added tool is a new tool
 		break;
 	case CAU_ASK_TOOL_REMOVE:
 		if (tool->lit)
@@ -567,7 +574,7 @@ void oracle_note_done(world *w, ticket_book *ticket)
 	}
 }
 
-// It changes hands with the decision.
+// The driver changes when the order is decided.
 static void note_change(world *w, const ticket_book *ticket)
 {
 	int client = (int)ticket->asked.asker.client, to = (int)ticket->asked.to.client;
@@ -577,8 +584,8 @@ static void note_change(world *w, const ticket_book *ticket)
 		change_driver(w, ticket, to && ticket->came < w->gone[to] ? 0 : to);
 }
 
-// It is dark from the decision on. One that was for this tick, or waited for the disk, takes off
-// too what came in later and was lit before.
+// Energy is off when the order is decided. An off for this tick, or one that waited for the disk,
+// also ends an enable that came later but took effect earlier.
 static void note_off(world *w, const ticket_book *ticket)
 {
 	tool_book *tool = oracle_book(w, ticket->asked.tool);
@@ -587,7 +594,8 @@ static void note_off(world *w, const ticket_book *ticket)
 	cut(tool, ticket->came);
 }
 
-// A pause, a step or a resume ends lock-step with the decision; so it does, refused after its cuts.
+// A pause, a step or a resume ends lock-step when it is decided. This also holds if it is refused
+// after its energy cut-offs.
 static void note_left(world *w, const ticket_book *ticket, bool orders)
 {
 	cau_ask ask = ticket->asked.ask;
@@ -601,7 +609,8 @@ static void note_left(world *w, const ticket_book *ticket, bool orders)
 		oracle_end_lockstep(w);
 }
 
-// The worker looks for silence before lock-step begins. True: the advance is of a silent client.
+// Notes that the worker checks for silence before lock-step begins. Returns true if the advance is
+// from a silent client.
 static bool note_silence_at_advance(world *w, const ticket_book *ticket)
 {
 	bool silent = false;

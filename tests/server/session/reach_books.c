@@ -41,7 +41,7 @@ bool reach_is_silent(const reach_state *books, const reach_tool *tool)
 	return by_ticks ? books->steps && books->since : !tool->fresh;
 }
 
-// They go with the hold on any tool.
+// Makes the client's advances void, because they depend on all of its tools.
 static void overtake_advances(reach_state *books, int client)
 {
 	for (int i = 0; i < books->order_count; i++)

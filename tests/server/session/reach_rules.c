@@ -34,7 +34,7 @@ static bool drives_are_as_before(const reach_move *m, bool but_for_life)
 	       m->logic->stepping == before->stepping;
 }
 
-// ---- what comes in ------------------------------------------------------------------------------
+// ---- events that come in ------------------------------------------------------------------------
 
 static bool has_effect(const reach_move *m, cau_effect_kind kind)
 {
@@ -49,7 +49,7 @@ static bool has_left(const reach_move *m)
 	return m->before->lockstep && !m->logic->lockstep;
 }
 
-// The ticks that are left go with lock-step.
+// The end of lock-step drops its remaining ticks.
 static void note_lockstep(reach_move *m)
 {
 	if (has_left(m))
@@ -67,13 +67,14 @@ static void take(reach_move *m, cau_logic_event taken)
 	must(m, !idle || !newly_due || has_effect(m, CAU_EFFECT_WAKE), "the worker is not woken");
 }
 
-// What an order that came in leads to at once.
+// Notes the immediate results of an order that came in.
 static void note_coming(reach_move *m, const reach_event *e, bool queued)
 {
 	bool off = e->ask == CAU_ASK_ENERGY_OFF, pause = e->ask == CAU_ASK_PAUSE;
 	if (m->before->ended)
 		return;
-	if (off && (!e->later || !queued)) // without room one for later acts now
+	// if the queue is full, an off for a later tick takes effect now
+	if (off && (!e->later || !queued))
 		reach_darken(&m->books, e->tool, 0);
 	if (e->ask == CAU_ASK_ADVANCE && e->to == REACH_OFF)
 		reach_darken(&m->books, e->tool, 0);
@@ -89,7 +90,8 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 		                                                        .later = (uint8_t)e->later};
 }
 
-// What the machine is compared with: before, with those dark who were silent by now.
+// Prepares the state for comparison: `before`, with the energy of drivers off that were silent by
+// now.
 static void expect_silence_cut(reach_move *m)
 {
 	cau_effects ignored;
@@ -118,7 +120,7 @@ static void do_order(reach_move *m, const reach_event *e)
 		asked.parts[0].off = turns_off;
 		strcpy(asked.parts[0].tool, reach_tool_names[e->tool]);
 	}
-	reach_note_silence(&m->books); // one that comes after the deadline does not undo the silence
+	reach_note_silence(&m->books); // a sign of life after the deadline does not undo the silence
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &asked});
 	bool off = e->ask == CAU_ASK_ENERGY_OFF, pause = e->ask == CAU_ASK_PAUSE;
 	bool refused = has_effect(m, CAU_EFFECT_REFUSE);
@@ -174,7 +176,7 @@ static void end(reach_move *m, bool drain)
 	take(m, (cau_logic_event){.kind = drain ? CAU_LOGIC_DRAIN : CAU_LOGIC_END});
 }
 
-// ---- the worker begins --------------------------------------------------------------------------
+// ---- the worker begins an act -------------------------------------------------------------------
 
 static bool off_waits(const reach_move *m, int tool)
 {
@@ -185,8 +187,8 @@ static bool off_waits(const reach_move *m, int tool)
 	return false;
 }
 
-// No tick begins with energy that nobody wants, nor without energy that somebody does; none after a
-// pause, but those that session.step asked for.
+// Checks the start of a tick. Exactly the wanted tools have energy. After a pause only ticks of
+// session.step begin.
 static void check_step(reach_move *m)
 {
 	bool stepped = m->before->state == CAU_SESSION_PAUSED;
@@ -206,8 +208,8 @@ static void check_step(reach_move *m)
 		m->books.steps--;
 }
 
-// Whoever has work is told to do it: at once, or as soon as a border begins. What has ended owes
-// nothing but answers.
+// Checks that the worker rests only if there is nothing to do. After the end it only has answers to
+// give.
 static void check_rest(reach_move *m)
 {
 	for (int i = 0; i < m->books.tool_count && !m->logic->ended; i++) {
@@ -264,8 +266,9 @@ static void check_decision(reach_move *m)
 	}
 }
 
-// A tool goes dark when its change of hands or a pause begins, even if who asked for that is gone
-// before it ends; or since the worker sees a silence before the watchdog does.
+// Notes energy that goes off when the worker begins a change of driver or a pause, even if the
+// asker is gone before that ends. Energy also goes off if the worker finds a silence before the
+// watchdog does.
 static void note_cut_begun(reach_move *m)
 {
 	int place = reach_head(&m->books);
@@ -276,7 +279,7 @@ static void note_cut_begun(reach_move *m)
 		bool by_order = pauses || (changes && order->tool == i);
 		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled || has_left(m))
 			continue;
-		if (m->books.pause_place) // it has no place of its own among the orders
+		if (m->books.pause_place) // this pause is not among the orders
 			reach_darken_before(&m->books, i, m->books.pause_place);
 		else if (by_order)
 			reach_darken_before(&m->books, i, place);
@@ -285,7 +288,7 @@ static void note_cut_begun(reach_move *m)
 	}
 }
 
-// Lock-step ends by a pause, a step or a resume, which darken what was asked for before them.
+// Notes the end of lock-step by a pause, a step or a resume, which make earlier enables void.
 static void note_left(reach_move *m)
 {
 	int place = reach_head(&m->books), pause = m->books.pause_place;
@@ -299,7 +302,7 @@ static void note_left(reach_move *m)
 		reach_darken_before(&m->books, i, by_order ? place : pause);
 }
 
-// The worker looks for silence before lock-step begins.
+// Notes that the worker checks for silence before lock-step begins.
 static void note_look(reach_move *m)
 {
 	int place = reach_head(&m->books);
@@ -330,7 +333,7 @@ static void work(reach_move *m, double now_s)
 		check_rest(m);
 }
 
-// ---- and ends -----------------------------------------------------------------------------------
+// ---- the worker ends an act ---------------------------------------------------------------------
 
 static void note_order_done(reach_move *m, bool done)
 {
@@ -349,7 +352,7 @@ static void note_order_done(reach_move *m, bool done)
 		reach_darken_before(&m->books, order.tool, place);
 	} else if (order.ask == CAU_ASK_GO || order.ask == CAU_ASK_PAUSE) {
 		for (int i = 0; i < m->books.tool_count; i++)
-			reach_darken_before(&m->books, i, place); // what came in later counts
+			reach_darken_before(&m->books, i, place); // enables that came later count
 	} else if (order.ask == CAU_ASK_STEP) {
 		m->books.steps = order.ticks;
 	} else if (order.ask == CAU_ASK_DESTROY) {
@@ -357,7 +360,8 @@ static void note_order_done(reach_move *m, bool done)
 	}
 }
 
-// A pause that was sent before pauses nothing.
+// Notes the result of the search for an earlier answer. A pause that was answered before does not
+// pause again.
 static void note_looked(reach_move *m, reach_what what)
 {
 	reach_order *order = &m->books.orders[m->books.looks - 1];
@@ -375,7 +379,8 @@ static cau_outcome_kind outcome_of(reach_what what)
 	return what == REACH_DONE ? CAU_DONE : what == REACH_NOT_DONE ? CAU_NOT_DONE : CAU_POSTPONED;
 }
 
-// An advance that was overtaken may have lost its client, and then makes no ticks.
+// Checks lock-step after an order. An advance may have lost its client meanwhile; then no ticks are
+// computed for it.
 static void note_lockstep_done(reach_move *m, const reach_order *order)
 {
 	bool ends = order->ask == CAU_ASK_PAUSE || order->ask == CAU_ASK_RESUME ||
@@ -428,7 +433,7 @@ static void do_worker(reach_move *m, const reach_event *e)
 		finish(m, e->what);
 }
 
-// ---- all of it ----------------------------------------------------------------------------------
+// ---- all events ---------------------------------------------------------------------------------
 
 static bool core_may_refuse(const reach_state *state)
 {
@@ -475,7 +480,7 @@ bool reach_can_be(const reach_event *e, const reach_state *state)
 	}
 }
 
-// What is true of every state.
+// Checks the rules that hold in every state.
 static void check_state(reach_move *m)
 {
 	const cau_logic *logic = m->logic;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One event in one state of a session's machine, and what must be true of it: rules that keep their
-// own books beside the machine's.
+// Applies one event to one state of a session's machine, and checks the result by rules that keep
+// their own books beside the machine.
 #pragma once
 
 #include "server/session/reach_state.h"
@@ -10,19 +10,19 @@ typedef enum reach_what {
 	REACH_ALIVE,
 	REACH_AWAY,
 	REACH_FORGET,
-	REACH_SILENCE,    // time passes until all are silent
-	REACH_LOOK,       // the watchdog looks
-	REACH_STORE,      // it fills, or has room again
-	REACH_COMMITTED,  // what was on its way to the disk is there
+	REACH_SILENCE,    // time passes until all drivers are silent
+	REACH_LOOK,       // the watchdog checks for silence
+	REACH_STORE,      // the store becomes full, or has capacity again
+	REACH_COMMITTED,  // all batches are on the disk
 	REACH_WORK_EARLY, // the worker asks before the next tick is due
-	REACH_WORK,       // or when it is
+	REACH_WORK,       // the worker asks when the next tick is due
 	REACH_DONE,
-	REACH_NOT_DONE,  // by the core; what was looked for is answered
-	REACH_POSTPONED, // what was looked for is on its way to the disk
+	REACH_NOT_DONE,  // the core refuses the order, or the store has its earlier answer
+	REACH_POSTPONED, // the order's earlier answer is on its way to the disk
 	REACH_FAULTED,   // a step ends in numerical trouble
 	REACH_ARRIVE_DARK,
 	REACH_ARRIVE_LIT,
-	REACH_STAY, // what was to be gone to cannot be
+	REACH_STAY, // a rewind, reset or restore fails
 	REACH_DRAIN,
 	REACH_END,
 	REACH_WHAT_COUNT
@@ -34,21 +34,21 @@ typedef struct reach_event {
 	reach_what what;
 	cau_ask ask;
 	int client, tool, to;
-	int later; // the order is for so many ticks from now
+	int later; // number of ticks from now at which the order takes effect
 	bool numbered;
 } reach_event;
 
 typedef struct reach_move {
 	cau_logic *logic, *scratch;
-	const cau_logic *before; // the event; of all events of a state, so none changes it
-	bool
-		silence_is_cut; // `scratch` is `before`, with energy off for drivers that are silent by now
+	// machine before the event; shared by all events of a state, so no event changes it
+	const cau_logic *before;
+	bool silence_is_cut; // `scratch` is `before` with the energy of silent drivers off
 	cau_action action;
 	cau_effects effects;
 	reach_state books;
-	const char *wrong; // NULL: nothing
+	const char *wrong; // the broken rule; NULL: none
 } reach_move;
 
 bool reach_can_be(const reach_event *event, const reach_state *state);
-// `move` holds the state in `logic`, `before` and `books`.
+// Applies the event to `move->logic`. `before` and `books` must hold the same state.
 void reach_do(reach_move *move, const reach_event *event);

@@ -13,7 +13,7 @@ static void *grow(void *old, size_t count, size_t bytes)
 	return grown;
 }
 
-// Stirred so that the low bits are as good as the others.
+// Mixes the words so that the low bits are as random as the others.
 static uint32_t hash_of(const reach_packed *state)
 {
 	uint64_t hash = state->word[0] * 0x9e3779b97f4a7c15u;

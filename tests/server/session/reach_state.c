@@ -44,9 +44,10 @@ bool reach_is_fresh(double alive_s, double now_s)
 	return alive_s + REACH_DEADLINE_S > now_s;
 }
 
-// ---- a machine of a state -----------------------------------------------------------------------
+// ---- decode a state into a machine --------------------------------------------------------------
 
-// Orders have even moments, so that a pause can stand between any two.
+// Returns the moment of the order at this place. Orders have even moments, so that a pause fits
+// between any two.
 static uint64_t moment_of_place(int place)
 {
 	return 2 * (uint64_t)place;
@@ -148,9 +149,9 @@ void reach_copy_machine(const cau_logic *from, cau_logic *to)
 	       sizeof *from - behind + (size_t)from->count * sizeof *from->waiting);
 }
 
-// ---- a state of a machine -----------------------------------------------------------------------
+// ---- encode a machine as a state ----------------------------------------------------------------
 
-// The orders of a machine as they came, the one that is served among them.
+// The orders of a machine in order of arrival, including the order being served.
 typedef struct line {
 	const cau_waiting *orders[REACH_QUEUE + 1];
 	int count, serves, looks; // places from 1; 0: none
@@ -179,7 +180,7 @@ static line line_of(const cau_logic *logic)
 	return made;
 }
 
-// What means nothing to this kind of order is left out.
+// Encodes an order. Members that this kind of order does not use stay 0.
 static void encode_order(const cau_logic *logic, const cau_waiting *from, reach_order *to)
 {
 	const cau_asked *asked = &from->asked;
@@ -204,7 +205,7 @@ static void encode_order(const cau_logic *logic, const cau_waiting *from, reach_
 	to->ticks = asked->ask == CAU_ASK_STEP || advances ? (uint8_t)asked->ticks : 0;
 }
 
-// The newest of the orders about this tool's energy that came in by `moment`.
+// Returns the place of the newest order about this tool's energy that came in by `moment`, or 0.
 static uint8_t place_of(const line *orders, const char *tool, uint64_t moment)
 {
 	for (int i = orders->count; i-- > 0;) {
@@ -301,9 +302,10 @@ void reach_swap_tools(const reach_state *state, reach_state *swapped)
 		swapped->cutting = !state->cutting;
 }
 
-// ---- as it is kept ------------------------------------------------------------------------------
+// ---- packing ------------------------------------------------------------------------------------
 
-// Each member goes to a place of its own; what is beyond its bits is gathered in `beyond`.
+// Puts each member at its own bits. Bits of a value that exceed the member's size are collected in
+// `beyond`.
 #define JOIN(name, bits)                                                                           \
 	at -= (bits);                                                                                  \
 	word |= (uint64_t)from->name << at;                                                            \
@@ -344,7 +346,7 @@ static uint64_t pack_time(const reach_state *from)
 void reach_pack(const reach_state *state, reach_packed *packed)
 {
 	*packed = (reach_packed){{0, pack_time(state)}};
-	for (int i = 0; i < state->order_count; i++) // beyond them there is nothing
+	for (int i = 0; i < state->order_count; i++) // there are no orders beyond the count
 		packed->word[0] |= pack_order(&state->orders[i]) << i * ORDER_BITS;
 	for (int i = 0; i < state->tool_count; i++)
 		packed->word[1] |= pack_tool(&state->tools[i]) << (TIME_BITS + i * TOOL_BITS);

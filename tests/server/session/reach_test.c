@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every state that a session's machine can come to, by breadth first: two clients (one an admin)
-// order, live, look away and go, the store fills, empties and commits, time passes, the session
-// steps, goes back, stays, ends, and the worker asks, does and is refused, in every order. In each
-// state and after each event rules are checked that keep their own books (reach_rules.c). A search
-// that closes is a proof: what it does not reach cannot happen with these events. With --long two
-// tools with all events close too, in half an hour of processor time and 1.6 GB. Of one tool with a
-// queue of two and all events the first states are looked at, nearest to the beginning first, and
-// its line says "not closed".
+// Breadth-first search through every state that a session's machine can reach. Two clients (one an
+// admin) send orders, give signs of life, hide their page and disconnect. The store becomes full,
+// has capacity again and commits. Time passes. The session steps, is rewound, stays and ends. The
+// worker asks for acts, does them and is refused. All of this happens in every order. In each state
+// and after each event, rules are checked that keep their own books (reach_rules.c).
 //
-// What makes them finite, and why nothing is lost by it:
-//   - Moments, times and ticks count only by how they compare, and a state keeps just that: places
-//     among the orders that wait, fresh or silent, how many ticks ahead (one; session.step: two).
-//   - What an order does not use of its asker is left out (reach_state.c).
-//   - The two tools differ by name and by who is cut first. A state stands for the one with the
-//     tools in each other's place too, and events are tried on both: so all that is reachable in
-//     either order is found.
-//   - The queue holds one order or two beside the one that is served, or one and one for a later
-//     tick, and two tools are not searched with two orders: bounds, no symmetries. The generated
-//     sequences have queues of six.
-// Left to the generated sequences (logic_test.c): tools that come and go, motion, and what only
-// passes through the queue (tissue, snapshots, questions, speed).
+// A search that closes is a proof: a state that it does not reach cannot occur with these events.
+// With --long, two tools with all events close too, in half an hour of processor time and 1.6 GB.
+// For one tool with a queue of two and all events, only the states nearest to the start are
+// searched, and the printed line says "not closed".
+//
+// Why the searches are finite, and why this loses nothing:
+//   - Moments, times and ticks matter only in comparison, and a state keeps just that: places among
+//     the waiting orders, fresh or silent, how many ticks ahead (one; session.step: two).
+//   - Values of the asker that an order does not use are left out (reach_state.c).
+//   - The two tools differ by name and by which is cut off first. A state also represents the state
+//     with the tools exchanged, and events are tried on both. So everything is found that can be
+//     reached in either order.
+//   - The queue holds one or two orders beside the order being served, or one order and one for a
+//     later tick. Two tools are not searched with two orders. These are bounds, not symmetries. The
+//     random sequences have queues of six.
+//
+// The random sequences (logic_test.c) cover the rest: adding and removing tools, motion, and orders
+// that only pass through the queue (tissue, snapshots, questions, speed).
 //     test_server_session_reach [--long | STATES_MOST]
 #include <assert.h>
 #include <stdio.h>
@@ -30,33 +33,35 @@
 #include "server/session/reach_search.h"
 
 enum {
-	OFF = 1,           // energy is turned off, by anybody
-	HAND = 2,          // tools are handed over
-	LOSS = 4,          // clients look away and are gone
-	STORE = 8,         // it fills, and has room again
-	PAUSE = 16,        // and resume
-	GO = 32,           // rewinds, which arrive or stay
+	OFF = 1,           // any client turns energy off
+	HAND = 2,          // clients hand tools over
+	LOSS = 4,          // clients hide their page and disconnect
+	STORE = 8,         // the store becomes full, and has capacity again
+	PAUSE = 16,        // pause and resume
+	GO = 32,           // rewinds, which succeed or fail
 	FAULT = 64,        // steps end in numerical trouble
-	LATER = 128,       // energy for the tick after
-	RESEND = 256,      // orders that may have been sent before
+	LATER = 128,       // enables and offs for the next tick
+	RESEND = 256,      // orders that may be resends
 	STEP = 512,        // session.step
 	END = 1024,        // the session is destroyed or lost, the daemon ends
-	ALL = 2 * END - 1, // but for the next
+	ALL = 2 * END - 1, // all events except LOCKSTEP
 	LOCKSTEP = 2048,   // session.advance
 	EVENTS_MOST = 128,
 	STATES_OF_PART = 10000000,
-	STATES_HELD = 200000000, // beyond this a search that should close has failed to
+	STATES_HELD = 200000000, // limit of a search that should close; reaching it is a failure
 };
 
 typedef struct search {
 	const char *name;
 	int tools, capacity;
 	unsigned with;
-	enum { SHORT, LONG, PART } how; // in the suite; with --long; with --long, its first states
+	// SHORT: always; LONG: with --long; PART: with --long, only the first states
+	enum { SHORT, LONG, PART } how;
 } search;
 
-// One tool alone with everything; two tools and longer queues in parts, each without what
-// multiplies the states of the others; and the whole of both, which takes long or is too much.
+// First one tool with almost all events. Then two tools and longer queues, in parts that each leave
+// out events which multiply the states of the others. Last the complete searches, which take long
+// or cannot close.
 static const search searches[] = {
 	{"one tool, a queue of one", 1, 1, ALL & ~(unsigned)(RESEND | STEP | LATER | END), SHORT},
 	{"one tool, a queue of one, resends", 1, 1,
@@ -84,7 +89,7 @@ static const search searches[] = {
 	{"two tools, a queue of one, all but later ticks", 2, 1, ALL & ~(unsigned)LATER, LONG},
 };
 
-// ---- the alphabet -------------------------------------------------------------------------------
+// ---- the events of a search ---------------------------------------------------------------------
 
 static reach_event events[EVENTS_MOST];
 static int event_count;
@@ -95,7 +100,7 @@ static void add(reach_event made)
 	events[event_count++] = made;
 }
 
-// An order, and the same as one that may have been sent before.
+// Adds an order, and with RESEND also the same order as a possible resend.
 static void add_order(const search *s, reach_event made)
 {
 	made.what = REACH_ORDER;
@@ -112,7 +117,7 @@ static void add_energy(const search *s, cau_ask ask, int client, int tool)
 		add((reach_event){.ask = ask, .client = client, .tool = tool, .later = 1});
 }
 
-// Of ticks alone, and with what it does to a tool's energy.
+// Adds advances with ticks only, and advances that turn each tool's energy on or off.
 static void add_advances(const search *s, int client)
 {
 	reach_event advances = {.what = REACH_ORDER, .ask = CAU_ASK_ADVANCE, .client = client};
@@ -154,7 +159,7 @@ static void add_client(const search *s, int client)
 	add((reach_event){.what = REACH_FORGET, .client = client});
 }
 
-// What there is besides orders and clients, and with what.
+// Returns the flag of a search that an event needs; 0: every search has the event.
 static unsigned needs(reach_what what)
 {
 	static const unsigned of[REACH_WHAT_COUNT] = {
@@ -199,7 +204,7 @@ static void print_event(const reach_event *e)
 	fprintf(stderr, "\n");
 }
 
-// Between two lines the tools may have changed places.
+// Prints the path to a state. Between two lines the tools may have been exchanged.
 static void print_way(const reach_found *found, uint32_t number)
 {
 	if (!number)
@@ -216,7 +221,7 @@ static void fail(const reach_found *found, uint32_t number, const reach_event *l
 	print_event(last);
 }
 
-// Of a state and that with the tools in each other's place, always the same.
+// Chooses one of a state and the state with the tools exchanged, always the same one.
 static void choose(const reach_state *state, reach_packed *chosen)
 {
 	reach_state swapped;
@@ -234,11 +239,12 @@ static void choose(const reach_state *state, reach_packed *chosen)
 typedef struct searching {
 	reach_found found;
 	reach_move move;
-	cau_logic *before; // the machine of the state whose events are tried
+	cau_logic *before; // machine of the state whose events are being tried
 	uint64_t moves;
 } searching;
 
-// Every event of a state that has been found. False: something is wrong, or the search is full.
+// Applies every event to a state that was found. Returns false after an error, or if the search is
+// full.
 static bool expand(searching *s, const reach_state *from, uint32_t number)
 {
 	reach_decode(from, s->before);
@@ -281,7 +287,7 @@ static cau_logic *make_machine(void)
 	return made;
 }
 
-// `bounded`: that it is not over when there is no more room is no failure.
+// Runs one search. `bounded`: the search may end at its limit of states without failing.
 static bool run(const search *what, uint32_t most, bool bounded)
 {
 	cau_logic *before = make_machine();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A machine whose memory is spoilt in one place: it is faulted, its tool is cut, every asker gets
-// an answer, and it goes on after it went elsewhere in time. In every build.
+// One value of a machine is corrupted. In every build the session is then faulted, its tool's
+// energy is cut off, and every request is answered. The session works again after a rewind.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -44,7 +44,7 @@ static void ask(spoilt *s, uint64_t ticket, cau_ask what)
 	take(s, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &asked});
 }
 
-// The worker, until it has nothing to do.
+// Lets the worker act until it has nothing to do.
 static void work(spoilt *s)
 {
 	for (int i = 0; i < ACTS_MOST; i++) {
@@ -74,7 +74,7 @@ static void arrive(spoilt *s, bool lit)
 	                          .tool_count = 1});
 }
 
-// Running, the hook driven and on.
+// Returns a running session whose hook has a driver and energy on.
 static spoilt begin(void)
 {
 	spoilt s = {.logic = malloc(cau_logic_bytes(CAPACITY)), .now_s = 1};
@@ -90,7 +90,7 @@ static spoilt begin(void)
 	return s;
 }
 
-// ---- what is spoilt -----------------------------------------------------------------------------
+// ---- corruptions --------------------------------------------------------------------------------
 
 static void spoil_steps(cau_logic *logic)
 {
@@ -149,7 +149,7 @@ static void spoil_speed(cau_logic *logic)
 
 static const struct {
 	void (*spoil)(cau_logic *logic);
-	bool keeps_tool; // the spoilt machine still knows that there is a hook
+	bool keeps_tool; // the corrupted machine still knows the hook
 } cases[] = {
 	{spoil_steps, true},         {spoil_lit, true},   {spoil_driver, true},  {spoil_moment, true},
 	{spoil_cut, true},           {spoil_name, false}, {spoil_drives, false}, {spoil_count, true},
@@ -167,7 +167,7 @@ static void expect_off(const spoilt *s)
 		assert_false(s->logic->drives[i].enabled);
 }
 
-// Whatever call finds it.
+// Checks that the machine is safe, whichever call found the corruption.
 static void expect_safe(spoilt *s, bool keeps_tool)
 {
 	expect_off(s);
@@ -249,12 +249,12 @@ static void acts_out_of_order_are_found(void **state)
 {
 	(void)state;
 	spoilt s = begin();
-	cau_logic_done(s.logic, s.now_s, CAU_DONE, &s.effects); // of nothing
+	cau_logic_done(s.logic, s.now_s, CAU_DONE, &s.effects); // no act was under way
 	expect_safe(&s, true);
 	s = begin();
 	s.now_s += 1;
 	cau_logic_next(s.logic, s.now_s, &s.action, &s.effects);
-	cau_logic_next(s.logic, s.now_s, &s.action, &s.effects); // twice
+	cau_logic_next(s.logic, s.now_s, &s.action, &s.effects); // a second call before the act is done
 	assert_int_equal(s.action.act, CAU_ACT_NOTHING);
 	expect_safe(&s, true);
 }

@@ -9,7 +9,7 @@
 
 #include "server/session/oracle.h"
 
-#define TICK_S 0.0625 // powers of two: sums are exact
+#define TICK_S 0.0625 // a power of two, so that sums are exact
 
 const char *const world_tool_names[TOOLS] = {"hook", "jaws"};
 const char *const world_ask_names[CAU_ASK_COUNT] = {
@@ -90,7 +90,8 @@ static cau_asker asker_of(int client)
 	return asker;
 }
 
-// One tool, or both; energy on, for some ticks, off, or as it is.
+// Chooses what an advance does: with one tool or both; energy on, on for some ticks, off, or
+// unchanged.
 static void choose_parts(cau_asked *asked, uint32_t more)
 {
 	enum { ON = 1, LIMITED, OFF };
@@ -138,7 +139,7 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 		snprintf(ticket->asked.tool, sizeof ticket->asked.tool, "%s", world_tool_names[tool]);
 	if (ask == CAU_ASK_ADVANCE)
 		choose_parts(&ticket->asked, more);
-	if (more / 16 % 4 == 0) // it sends its clock: its orders are no signs of life
+	if (more / 16 % 4 == 0) // the client sends its clock, so its orders are no signs of life
 		ticket->asked.alive_s = w->life_s[client];
 	if (ask == CAU_ASK_HAND_OVER)
 		ticket->asked.to = asker_of((int)(more % (CLIENTS + 1)));
@@ -156,13 +157,14 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	if (ask == CAU_ASK_ENERGY_OFF && now && !w->tools[tool].there && !w->ended)
 		oracle_note_off_of_none(w, world_tool_names[tool], ticket->came);
 	note_off_parts(w, ticket);
-	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers) // it found no room, and acts at once
+	// the queue is full, so the off takes effect at once
+	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers)
 		oracle_darken(&w->tools[tool], ticket->came);
 	if (ask == CAU_ASK_PAUSE && ticket->answers && !w->ended)
 		w->paused = ticket->came;
 }
 
-// A sign of life that was `lag` thirds of the deadline on its way.
+// Gives a sign of life that was sent `lag` thirds of the deadline ago.
 static void alive(world *w, int client, int tool, int lag)
 {
 	const char *name = tool < 0 ? "" : world_tool_names[tool];
@@ -218,7 +220,8 @@ static void store(world *w, bool takes)
 
 // ---- the worker ---------------------------------------------------------------------------------
 
-// The state that was gone to has the jaws where the present has none, and none where it has.
+// Exchanges the presence of the jaws: the state after a rewind has them if the present has not, and
+// the reverse.
 static void exchange_jaws(world *w)
 {
 	tool_book *jaws = &w->tools[1];
@@ -254,8 +257,8 @@ static void arrive(world *w, bool lit)
 	                          .tool_count = count});
 }
 
-// The program is killed: what waits is lost, nobody drives, and the core comes up with everything
-// on that was ever on.
+// Kills and restarts the program. Waiting orders are lost, no tool has a driver, and the core
+// starts with all tools energized.
 static void restart(world *w)
 {
 	if (w->ended)
@@ -263,7 +266,7 @@ static void restart(world *w)
 	say(w, "killed, and restarted\n");
 	for (int i = 0; i < w->ticket_count; i++)
 		if (!w->tickets[i].answers)
-			w->tickets[i].answers = 1; // nobody hears it
+			w->tickets[i].answers = 1; // the answer reaches no client
 	for (int i = 0; i < TOOLS; i++) {
 		w->tools[i].driver = 0;
 		w->tools[i].enable = 0;
@@ -322,7 +325,7 @@ static void begin_work(world *w)
 static cau_outcome_kind finish_order(world *w, uint32_t more)
 {
 	ticket_book *ticket = oracle_ticket(w, w->action.ticket);
-	// Every call of the core that returns a status may refuse; turning energy off returns none.
+	// Every call of the core that returns a status may refuse. Turning energy off returns none.
 	bool core_may_refuse = ticket->asked.ask < CAU_ASK_ENERGY_OFF ||
 	                       ticket->asked.ask == CAU_ASK_GO || ticket->asked.ask == CAU_ASK_ADVANCE;
 	bool done = !(core_may_refuse && more % 4 == 0);
@@ -388,7 +391,8 @@ static void end_work(world *w, uint32_t more)
 	bool pauses = w->action.act == CAU_ACT_LOOK && is_pause(w);
 	cau_logic_done(w->logic, w->now_s, outcome, &w->effects);
 	take_effects(w);
-	// A tick may begin while a pause waits for the disk; the oracle has none wait.
+	// A tick may begin while a pause waits for the disk. The oracle does not model this, so it
+	// commits.
 	if (outcome == CAU_POSTPONED && (pauses || more % 16 == 1))
 		take(w, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
 }
@@ -417,7 +421,8 @@ static void work(world *w, uint32_t more)
 
 // ---- one code -----------------------------------------------------------------------------------
 
-// Half of all is c1 about the hook, so that tools are lit often enough for something to go wrong.
+// Half of the orders are from client 1 about the hook. So energy is on often enough to reveal
+// errors.
 static void order_of_code(world *w, uint32_t code)
 {
 	static const cau_ask often[] = {CAU_ASK_ENERGY_ON, CAU_ASK_ENERGY_ON,  CAU_ASK_ENERGY_OFF,
@@ -466,7 +471,7 @@ bool world_do(world *w, uint32_t code)
 	return !*w->wrong;
 }
 
-// ---- the whole ----------------------------------------------------------------------------------
+// ---- the world ----------------------------------------------------------------------------------
 
 world *world_create(void)
 {

@@ -20,7 +20,7 @@ static const char *const names[] = {"fascia",         "fat",          "fat-neoho
                                     "strain-none-on", "strain-x-off", "strain-x-on",
                                     "strain-xy-off",  "strain-xy-on"};
 
-static const double decimal_m = 1e-5; // places in scripts have five decimals
+static const double decimal_m = 1e-5; // coordinates in scripts have five decimals
 
 static char *read_file(const char *folder, const char *name, const char *ending, size_t *bytes)
 {
@@ -53,7 +53,7 @@ static double distance(const double a[3], const double b[3])
 	            (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-// From first to last command: on once, off once, in the order of ticks, and printed alike each
+// Each script turns energy on once and off once, is in the order of ticks, and is the same each
 // time.
 static void each_scene_has_a_script(void **state)
 {
@@ -89,8 +89,8 @@ static void each_scene_has_a_script(void **state)
 	}
 }
 
-// The tool is hot from above the tissue on, dwells and is drawn as long as the cut says, and is off
-// when it leaves.
+// Energy is on from above the tissue until the tool leaves. The tool dwells and moves as long as
+// the cut says.
 static void the_cut_is_drawn_as_described(void **state)
 {
 	(void)state;
@@ -130,7 +130,8 @@ static void the_cut_is_drawn_as_described(void **state)
 	assert_true(fabs(drawn_m - distance(cut->from_m, cut->to_m)) < 1e-4);
 	double seconds = (double)(drawn - arrived) * scene->step_s;
 	double wanted_s = cut->dwell_s + distance(cut->from_m, cut->to_m) / cut->speed_m_s;
-	assert_true(fabs(seconds - wanted_s) < 0.1); // within the ticks between two moves
+	// moves are some ticks apart, which allows a small difference
+	assert_true(fabs(seconds - wanted_s) < 0.1);
 	free(text);
 	free(scene);
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One hash however cautery-sim is run, on the real core. The first argument is the program.
+// The hash is the same however cautery-sim is run, on the real core. The first argument is the
+// program.
 #include "program_run.h"
 
-// Under sanitizers, where this takes minutes, one other run: two threads and a snapshot while edges
-// part. Alike hashes are the other builds' business, and a race would show in this run.
+// Compares the hashes of several runs. Under sanitizers, where a run takes minutes, it makes only
+// one other run, with two threads and a snapshot while edges part. Other builds compare the rest,
+// and this run would show a race.
 static void expect_one_hash(const char *scene, const char *seconds, const char *snapshots[3])
 {
 	char arguments[256], first[17], other[17];
@@ -24,8 +26,8 @@ static void expect_one_hash(const char *scene, const char *seconds, const char *
 	}
 }
 
-// Before, while and after edges part (the needle is hot from 1.0 s and at the tissue from 1.5 s
-// on).
+// Snapshots before, while and after edges part. The needle is hot from 1.0 s on and touches the
+// tissue from 1.5 s on.
 static void one_hash_over_threads_and_snapshots(void **state)
 {
 	(void)state;

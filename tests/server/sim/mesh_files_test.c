@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real mesh files, whole: each is cut for ten seconds by the program, without a fault, and parts.
-// The folder comes from CAUTERY_MESHES; without it the test is skipped.
+// Runs the program on real mesh files. It cuts each for ten seconds without a fault, and edges
+// part. The folder comes from CAUTERY_MESHES; without it the test is skipped.
 #include "sim_fixture.h"
 
 #include <sys/wait.h>
 
 typedef struct mesh_file {
 	const char *name;
-	const char *unit_m; // makes it the size of an organ
+	const char *unit_m; // the unit that gives the mesh the size of an organ
 } mesh_file;
 
 static const mesh_file files[] = {
@@ -44,7 +44,8 @@ int main(int argument_count, char **arguments)
 		puts("skipped: CAUTERY_MESHES names no folder with real meshes");
 		return 77;
 	}
-	size_t count = CAU_TEST_SANITIZED ? 2 : sizeof files / sizeof *files; // a solid and a surface
+	// the first two are a solid and a surface
+	size_t count = CAU_TEST_SANITIZED ? 2 : sizeof files / sizeof *files;
 	for (size_t i = 0; i < count; i++) {
 		int removed = removed_elements(arguments[1], folder, &files[i]);
 		printf("%s: %d elements removed\n", files[i].name, removed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene around a block of hexahedra, 120 x 120 x 30 units.
+// Makes a scene around a block of hexahedra, 120 x 120 x 30 units.
 #include "sim/mesh_scene.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #include "cautery/scene_json.h"
 #include "sim_fixture.h"
 
-enum { N = 9 }; // vertices on a side
+enum { N = 9 }; // vertices on a horizontal side
 
 static const char *write_block(const char *name)
 {
@@ -50,18 +50,18 @@ static void a_scene_is_made_around_the_mesh(void **state)
 	assert_int_equal(scene->layer_count, 2);
 	assert_int_equal(scene->layers[0].kind, CAU_LAYER_FAT);
 	assert_string_equal(scene->layers[1].of, "fat");
-	// 60 % of the extent, at the surface.
+	// The cut is over 60 % of the extent, at the surface.
 	assert_true(fabs(scene->cut.to_m[0] - scene->cut.from_m[0] - 0.072) < 1e-12);
 	assert_true(fabs(scene->cut.from_m[2] - 0.03) < 1e-12 &&
 	            fabs(scene->cut.to_m[2] - 0.03) < 1e-12);
 	assert_string_equal(scene->cut.tool, scene->tools[0].name);
 	assert_true(scene->tools[0].pose.position_m[2] > 0.03);
 	assert_true(scene->gravity_m_s2[2] == 0.0);
-	// Its edges are 15 mm long, diagonals longer.
+	// The block's edges are 15 mm long, its diagonals longer.
 	double radius_m = scene->tools[0].hot_radius_m;
 	assert_true(radius_m > 0.015 && radius_m < 0.015 * sqrt(3.0));
 	assert_true(fabs(scene->cut.speed_m_s - radius_m / 1.5) < 1e-12);
-	// It is a scene like any other.
+	// The made scene can be written and read like any other scene.
 	assert_int_equal(cau_scene_to_json(scene, text, sizeof text, &bytes, &error), CAU_OK);
 	assert_int_equal(cau_scene_from_json("made", text, bytes, again, &error), CAU_OK);
 	assert_memory_equal(scene, again, sizeof *scene);
@@ -106,7 +106,7 @@ static void refusals_name_the_options(void **state)
 	(void)state;
 	cau_error error = {0};
 	cau_scene_def *scene = malloc(sizeof *scene);
-	cau_mesh_wish wish = wish_of(write_block("large.mesh"), 1); // of 120 m
+	cau_mesh_wish wish = wish_of(write_block("large.mesh"), 1); // 120 m long
 	assert_int_equal(sim_mesh_scene(&wish, scene, &error), CAU_BAD_MESH);
 	assert_non_null(strstr(error.reason, "did you mean millimetres (--unit-m 0.001)?"));
 	assert_string_equal(error.path, "");

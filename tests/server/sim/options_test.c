@@ -13,11 +13,11 @@
 
 enum { MOST = 16 };
 
-// Reads a command line given as words; the complaint goes to `complaint`.
+// Reads a command line that is given as words. The error message goes to `complaint`.
 static bool read_words(const char *const *words, sim_options *options, char *complaint,
                        size_t bytes)
 {
-	static char copies[MOST][64]; // the options borrow their text from the arguments
+	static char copies[MOST][64]; // the options borrow their texts from the arguments
 	char *arguments[MOST + 1] = {0};
 	int count = 0;
 	for (; words[count]; count++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery-sim as a program that tests run.
+// Runs the program cautery-sim in tests.
 #pragma once
 
 #include "sim_fixture.h"
@@ -8,7 +8,7 @@
 
 static const char *program; // the test's first argument
 
-// Runs the program with these arguments; its standard output goes to `output`. Returns its exit
+// Runs the program with these arguments. Its standard output goes to `output`. Returns its exit
 // code.
 static inline int run_program(const char *arguments, char *output, size_t bytes)
 {
@@ -24,7 +24,7 @@ static inline int run_program(const char *arguments, char *output, size_t bytes)
 	return WEXITSTATUS(status);
 }
 
-// The hash in the JSON object that is the last line of output.
+// Reads the hash in the JSON object in the last line of output.
 static inline void read_hash(const char *arguments, char hash[17])
 {
 	char output[8192];

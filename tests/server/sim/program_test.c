@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program as its users have it, on the real core: exit codes and output. The first argument is
-// the program.
+// Runs the program as users do, on the real core, and checks exit codes and output. The first
+// argument is the program.
 #include "program_run.h"
 
 #include <math.h>
@@ -10,7 +10,8 @@ static void exit_codes_are_as_documented(void **state)
 	(void)state;
 	char output[4096];
 	fixture_write(fixture_path("bad.jsonl"), "{\"command\":\"nope\"}\n");
-	fixture_write(fixture_path("late.jsonl"), // the second finds its tool gone at their tick
+	// at the tick of the second command its tool is already removed
+	fixture_write(fixture_path("late.jsonl"),
 	              "{\"command\":\"tool.remove\",\"tool\":\"needle\",\"tick\":3}\n"
 	              "{\"command\":\"tool.energize\",\"tool\":\"needle\",\"tick\":3,"
 	              "\"energized\":true}\n");
@@ -39,7 +40,7 @@ static void exit_codes_are_as_documented(void **state)
 	}
 }
 
-// The message names the file of a scene that the core refuses, not the script.
+// If the core refuses a scene, the message names the scene's file, not the script.
 static void a_bad_scene_is_told_with_its_file(void **state)
 {
 	(void)state;
@@ -55,7 +56,7 @@ static void a_bad_scene_is_told_with_its_file(void **state)
 	assert_non_null(strstr(output, "bad.json\",\"path\":\"layers[0].mesh\""));
 }
 
-// A column's number by its name, or -1.
+// Returns the index of the column with this name, or -1.
 static int column_of(const char *head, const char *name)
 {
 	const char *place = strstr(head, name);
@@ -75,7 +76,8 @@ static double cell_of(const char *line, int column)
 	return atof(line);
 }
 
-// Runs 5 s of the scene's cut without files and with them, whose ticks go to ticks.csv.
+// Runs 5 s of the scene's cut without output files and with them: the hash must be the same. The
+// ticks are written to ticks.csv.
 static void expect_files_change_nothing(const char *scene)
 {
 	char arguments[512], plain[17], with_files[17];
@@ -88,14 +90,15 @@ static void expect_files_change_nothing(const char *scene)
 	assert_string_equal(with_files, plain);
 }
 
-// Sheets and fat, whose rotations of one step are where the next one starts from.
+// Sheets and fat: each step starts with the rotations of the step before, which files must not
+// change.
 static void files_change_nothing(void **state)
 {
 	(void)state;
 	expect_files_change_nothing("layers");
 }
 
-// Of a hot hook that is pulled through taut fascia, which moves and holds energy.
+// The scene has a hot hook that is pulled through taut fascia, which moves and has energy.
 static void ticks_tell_energies_and_times(void **state)
 {
 	(void)state;
@@ -114,7 +117,8 @@ static void ticks_tell_energies_and_times(void **state)
 	free(text);
 }
 
-// A needle that cuts by power: the ledger accounts for the energy, and power stays within 30 W.
+// A needle that cuts by electric power: the ledger accounts for all energy, and power stays within
+// 30 W.
 static void ticks_tell_the_ledger(void **state)
 {
 	(void)state;
@@ -132,7 +136,7 @@ static void ticks_tell_the_ledger(void **state)
 		out += cell_of(last, column_of(text, *column));
 	assert_true(in > 1);
 	assert_true(fabs(in - out) < 1e-6 * in);
-	double watts = 0, ohm = 0; // in some ticks nothing is within reach
+	double watts = 0, ohm = 0; // in some ticks no tissue is within reach
 	double vapour_kg = 0;
 	for (const char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
 		watts = fmax(watts, cell_of(line, column_of(text, "needle_delivered_w")));
@@ -140,7 +144,7 @@ static void ticks_tell_the_ledger(void **state)
 		if (line <= last)
 			vapour_kg += cell_of(line, column_of(text, "vapour_kg_s")) / 60;
 	}
-	// By the enthalpy of evaporation, and the warmth of water between 37 and 100 degC.
+	// Expected from the enthalpy of evaporation and from heating water from 37 to 100 degC.
 	double boiled_j = cell_of(last, column_of(text, "boiled_j"));
 	assert_true(boiled_j > 0 &&
 	            fabs(vapour_kg * (2.257e6 + 4186 * 63) - boiled_j) < 1e-6 * boiled_j);
@@ -149,7 +153,7 @@ static void ticks_tell_the_ledger(void **state)
 	free(text);
 }
 
-// The scene's own cut divides the artery, which bleeds from then on.
+// The scene's own cut divides the artery, which then bleeds.
 static void ticks_report_vessels(void **state)
 {
 	(void)state;
@@ -171,7 +175,7 @@ static void ticks_report_vessels(void **state)
 	free(text);
 }
 
-// A cold hook presses taut fascia, which pushes it up.
+// A cold hook presses on taut fascia, which pushes it up.
 static void ticks_tell_forces(void **state)
 {
 	(void)state;
@@ -195,7 +199,8 @@ static void ticks_tell_forces(void **state)
 	free(text);
 }
 
-// All but the stages' times, which come last: the same bytes, whenever and with how many threads.
+// All columns but the last, the stages' times, have the same bytes in each run and with any number
+// of threads.
 static void ticks_are_the_same_but_for_their_times(void **state)
 {
 	(void)state;

@@ -34,7 +34,7 @@ static void a_script_runs_to_its_end_and_a_second_more(void **state)
 	                 CAU_OK);
 	assert_int_equal(result.ticks, 100);
 	assert_int_equal(result.commands, 3);
-	// Applied at the border before the step to tick 31.
+	// Energy goes on before the step to tick 31.
 	assert_true(result.energized_s > 30.5 / 60.0 && result.energized_s < 31.5 / 60.0);
 	assert_true(result.hash != 0);
 	assert_false(in_input);
@@ -54,7 +54,7 @@ static void seconds_cut_a_script_short(void **state)
 	assert_int_equal(result.commands, 1);
 }
 
-// The hash does not depend on a change of sessions, whenever it comes, and it does on the commands.
+// The hash depends on the commands, but not on a change of sessions, whenever it comes.
 static void a_snapshot_changes_nothing(void **state)
 {
 	(void)state;
@@ -106,7 +106,7 @@ static void a_refused_command_names_its_line(void **state)
 	assert_non_null(strstr(error.reason, "script line 3"));
 }
 
-// The double faults the tick after a force of 1,000 N.
+// The double faults at the tick after a force of 1,000 N.
 static void a_fault_ends_the_run_and_is_told(void **state)
 {
 	(void)state;
@@ -140,7 +140,7 @@ static void statistics_have_a_line_a_tick(void **state)
 		commas += *c == ',';
 	}
 	assert_int_equal(lines, 31);
-	assert_int_equal(commas % lines, 0); // as many cells in each line
+	assert_int_equal(commas % lines, 0); // each line has the same number of cells
 	assert_memory_equal(text, "tick,time_s,", 12);
 	assert_non_null(strstr(text, "\n30,0.5,"));
 	for (const char *const *column =

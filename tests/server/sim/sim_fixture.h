@@ -44,7 +44,7 @@ static inline void fixture_write(const char *path, const char *text)
 	assert_int_equal(fclose(file), 0);
 }
 
-// The caller frees. Zero-terminated.
+// Reads a file. The caller frees the text, which has a zero at its end.
 static inline char *fixture_read(const char *path, size_t *bytes)
 {
 	FILE *file = fopen(path, "rb");
@@ -60,7 +60,7 @@ static inline char *fixture_read(const char *path, size_t *bytes)
 	return text;
 }
 
-// One layer and one hook above it.
+// Returns a scene with one layer and one hook above it.
 static inline cau_scene_def *fixture_scene(void)
 {
 	cau_scene_def *scene = malloc(sizeof *scene);
@@ -80,7 +80,7 @@ static inline cau_scene_def *fixture_scene(void)
 	return scene;
 }
 
-// Removes the folder and what is in it.
+// Removes the folder with everything in it.
 static inline int fixture_remove(void **state)
 {
 	(void)state;

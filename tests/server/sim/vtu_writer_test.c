@@ -8,7 +8,7 @@ typedef struct data {
 	uint64_t bytes;
 } data;
 
-// The bytes of the array of that name, by its offset in the appended block.
+// Returns the bytes of the array with this name, found by its offset in the appended block.
 static data find_array(const char *text, size_t bytes, const char *name)
 {
 	char attribute[64];
@@ -102,7 +102,7 @@ static void energize_hook(cau_session *session)
 	assert_int_equal(cau_session_step(session, &error), CAU_OK);
 }
 
-// Every vertex of the double has 37 for a scalar that is watched; its hook is at 170 degC.
+// In the double, every vertex has 37 for an observed scalar, and the hook has 170 degC.
 static void files_tell_scalars_and_tools(void **state)
 {
 	(void)state;
@@ -119,7 +119,7 @@ static void files_tell_scalars_and_tools(void **state)
 	assert_int_equal(sim_vtu_begin(fixture_path("tools"), &vtu, &error), CAU_OK);
 	assert_int_equal(sim_vtu_write(&vtu, session, &error), CAU_OK);
 	cau_session_frame(session, &frame);
-	assert_null(frame.stress); // watched for the file alone
+	assert_null(frame.stress); // the stress was observed only for the file
 
 	char *text = fixture_read(fixture_path("tools/tissue-00000001.vtu"), &bytes);
 	for (const char *const *name = (const char *const[]){"temperature_c", "stress_pa", NULL}; *name;
@@ -145,7 +145,7 @@ static void files_tell_scalars_and_tools(void **state)
 	const cau_tool_state *hook = &frame.tools[0];
 	data position = find_array(text, bytes, "position_m");
 	assert_int_equal(position.bytes, 2 * 24);
-	for (size_t c = 0; c < 3; c++) // upright: the shaft's end is above the tip
+	for (size_t c = 0; c < 3; c++) // the shaft is upright: its end is above the tip
 		assert_float_equal((float)(number_at(position, 3 + c) - number_at(position, c)),
 		                   c == 2 ? (float)hook->definition.shaft_length_m : 0, 1e-7F);
 	assert_true(number_at(position, 2) == hook->pose.position_m[2]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A copy is taken while commands come in; what it holds is a beginning of the log, whole.
+// A copy is taken while commands arrive. The copy has a complete beginning of the log.
 #include "store_fixture.h"
 
 #include <pthread.h>
@@ -14,7 +14,7 @@ enum { COMMANDS = 400 };
 
 typedef struct writing {
 	cau_store *store;
-	atomic_int stored; // so many are acknowledged
+	atomic_int stored; // number of acknowledged commands
 } writing;
 
 static void *write_on(void *user)

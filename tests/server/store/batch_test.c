@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches copy what they are given and refuse what cannot be stored, without changing.
+// Batches copy their arguments. They refuse what cannot be stored, and stay unchanged.
 #include "store_fixture.h"
 
 #include <string.h>
@@ -107,7 +107,7 @@ static void a_lent_snapshot_comes_back_with_the_batch(void **state)
 	assert_int_equal(cau_store_lend_checkpoint(batch, &row, count_return, &error), CAU_OK);
 	assert_ptr_equal(batch->first->as.checkpoint.snapshot.data, snapshot);
 	assert_true(cau_store_batch_bytes(batch) > sizeof snapshot);
-	assert_int_equal(given_back, 0); // after a failure it is the caller's
+	assert_int_equal(given_back, 0); // after a failure the snapshot still belongs to the caller
 	cau_store_batch_destroy(batch);
 	assert_int_equal(given_back, 1);
 }

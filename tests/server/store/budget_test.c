@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The budget of the whole store: of all sessions the oldest checkpoint goes first, what is marked
-// stays, and the daemon is told.
+// The budget of the whole store: the oldest checkpoint of all sessions is removed first, marked
+// states stay, and the daemon is notified.
 #include <string.h>
 #include <unistd.h>
 
@@ -28,7 +28,7 @@ static cau_status note_tick(void *user, const cau_store_checkpoint *checkpoint)
 	return CAU_OK;
 }
 
-// Whether a session has a checkpoint at this very tick.
+// True if the session has a checkpoint at exactly this tick.
 static bool has(cau_store *store, const char *session, uint64_t tick)
 {
 	uint64_t newest = UINT64_MAX;
@@ -36,8 +36,9 @@ static bool has(cau_store *store, const char *session, uint64_t tick)
 	return newest == tick;
 }
 
-// Checkpoints of two sessions at ticks 0 to 6000, by turns; knee's at 1000 is marked. 1.4 MB, and
-// 0.1 MB of tables and indices.
+// Makes a store with checkpoints of two sessions at ticks 0 to 6000, alternating between the
+// sessions. That of "knee" at tick 1000 is marked. The checkpoints have 1.4 MB, the tables and
+// indices 0.1 MB.
 static cau_store *fill(struct fixture *fixture)
 {
 	cau_store *store = retention_open(fixture);
@@ -56,7 +57,7 @@ static void of_all_sessions_the_oldest_goes_first(void **state)
 	cau_store *store = fill(fixture);
 	fixture->config.store_bytes = 1100000;
 	store = retention_retire(fixture, store, &removal);
-	assert_int_equal(removal.budget.dropped, 5); // to 1,045 kB, so that some room is there
+	assert_int_equal(removal.budget.dropped, 5); // down to 1,045 kB, so that a twentieth is free
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
 	assert_in_range(removal.budget.bytes, 945000, 1045000);
 	for (uint64_t tick = 0; tick <= 6000; tick += 1000) {
@@ -88,13 +89,14 @@ static void after_checkpoints_the_log_of_the_biggest_goes(void **state)
 	struct removal removal;
 	static uint64_t ticks[6000];
 	cau_store *store = fill(fixture);
-	retention_log(store, 0, 0, 6000); // knee's
+	retention_log(store, 0, 0, 6000); // log of "knee"
 	fixture->config.store_bytes = 750000;
 	store = retention_retire(fixture, store, &removal);
-	// the first, the newest two, and the marked one are left: 7 of 14
+	// 7 of 14 are left: of each session the first and the newest two, and the marked one
 	assert_int_equal(removal.budget.dropped, 7);
 	int left = read_ticks(store, "knee", 0, 0, 6000, ticks, 6000);
-	assert_in_range(left, 1000, 5000); // from one checkpoint to the next, and the newest stays
+	// the log is removed from one checkpoint to the next, and the newest stays
+	assert_in_range(left, 1000, 5000);
 	uint64_t oldest;
 	assert_int_equal(cau_store_read_oldest_tick(store, "knee", 0, &oldest, NULL), CAU_OK);
 	assert_true(oldest >= 1000);
@@ -144,13 +146,13 @@ static cau_status look_for(cau_store *store, const char *client, uint64_t sequen
 	return cau_store_read_answer(store, client, sequence, ignore_answer, NULL, NULL);
 }
 
-// Answers have a quarter of the budget. The oldest go first, and checkpoints stay.
+// Answers may use a quarter of the budget. The oldest are removed first, and checkpoints stay.
 static void answers_beyond_their_share_go_before_checkpoints(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
 	cau_store *store = fill(fixture);
-	for (int i = 0; i < 20; i++) { // 2 MB
+	for (int i = 0; i < 20; i++) { // 2 MB in all
 		put_answers(store, "anna", 1 + 100 * (uint64_t)i, 100);
 		retention_clock_ms += 1000;
 	}
@@ -159,7 +161,8 @@ static void answers_beyond_their_share_go_before_checkpoints(void **state)
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
 	assert_int_equal(removal.budget.dropped, 0);
 	assert_true(removal.budget.bytes <= 2500000);
-	assert_int_equal(look_for(store, "anna", 1), CAU_ALREADY_EXISTS); // it must not act again
+	// noted as forgotten: a resend must not act again
+	assert_int_equal(look_for(store, "anna", 1), CAU_ALREADY_EXISTS);
 	assert_int_equal(look_for(store, "anna", 2000), CAU_OK);
 	assert_int_equal(look_for(store, "anna", 2001), CAU_NOT_FOUND);
 	for (uint64_t tick = 0; tick <= 6000; tick += 1000)
@@ -167,13 +170,13 @@ static void answers_beyond_their_share_go_before_checkpoints(void **state)
 	cau_store_close(store);
 }
 
-// Within their share they stay, and sessions give.
+// Answers within their share stay, and checkpoints of sessions are removed instead.
 static void answers_within_their_share_stay(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
 	cau_store *store = fill(fixture);
-	put_answers(store, "anna", 1, 200); // 0.2 MB
+	put_answers(store, "anna", 1, 200); // 0.2 MB in all
 	fixture->config.store_bytes = 1300000;
 	store = retention_retire(fixture, store, &removal);
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
@@ -182,7 +185,7 @@ static void answers_within_their_share_stay(void **state)
 	cau_store_close(store);
 }
 
-// ---- told by a store that runs
+// ---- notices of a running store
 typedef struct told {
 	atomic_int count;
 	cau_store_budget_state states[8];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long a checkpoint of 4 MB takes from submission to its answer, and beside it a small request.
+// Measures how long a checkpoint of 4 MB takes from submission to its answer, and a small request
+// submitted with it.
 #include "store_fixture.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What thinning keeps over days, and what holes leave to be reached.
+// Which checkpoints thinning keeps over days, and which ticks can be reached if the log has holes.
 #include "store_fixture.h"
 
 #include <stdlib.h>
@@ -22,8 +22,8 @@ static void thin(struct cau_store_course *course)
 	}
 }
 
-// The longest replay to any tick between two neighbours is no longer than a quarter of its age, or
-// than checkpoints were apart when they were made.
+// Checks the replay between any two neighbours: its length is at most a quarter of its age, or the
+// distance at which checkpoints were made.
 static void check_replays(const struct cau_store_course *course, int64_t cadence)
 {
 	const struct cau_store_point *point = course->point;
@@ -35,7 +35,8 @@ static void check_replays(const struct cau_store_course *course, int64_t cadence
 	}
 }
 
-// Checkpoints at a steady pace for 64 hours of 60 ticks a second. Returns the most there ever were.
+// Makes checkpoints at a steady pace for 64 hours of 60 ticks a second, with thinning. Returns the
+// largest number that existed.
 static int live_through(int64_t cadence)
 {
 	static struct cau_store_point room[200];
@@ -53,7 +54,7 @@ static int live_through(int64_t cadence)
 	return most;
 }
 
-// The bounds of server/README.md, "Rewinding and history".
+// The bounds are from server/README.md, "Rewinding and history".
 static void the_number_of_checkpoints_grows_with_the_logarithm_of_time(void **state)
 {
 	(void)state;
@@ -96,7 +97,7 @@ static void holes_divide_what_can_be_reached(void **state)
 	(void)state;
 	struct cau_store_point point[] = {{.tick = 0},   {.tick = 100}, {.tick = 300},
 	                                  {.tick = 400}, {.tick = 500}, {.tick = 600}};
-	// The state at 300 is an island: its log is missing before and after.
+	// The state at 300 can be reached only by its checkpoint: the log is missing before and after.
 	struct cau_store_hole hole[] = {{150, 300}, {300, 400}, {450, 600}};
 	struct cau_store_course course = {point, hole, 6, 3};
 	static const int64_t expected[][2] = {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// kill -9 at any moment loses nothing that was acknowledged. A child writes batches and sends the
-// tick of each acknowledged one through a pipe; the parent kills it and looks into the store that
-// it left.
+// A kill -9 at any moment loses nothing that was acknowledged. A child process writes batches, and
+// sends the tick of each acknowledged one through a pipe. The parent kills the child and checks the
+// store.
 #include "store_fixture.h"
 
 #include <pthread.h>
@@ -16,11 +16,14 @@
 
 enum {
 	ROUNDS = 20,
-	IN_FLIGHT = 32,          // batches the child keeps waiting
-	SNAPSHOT_EVERY = 16,     // batches
-	SNAPSHOT_BYTES = 300000, // so that many kills fall into a long write or the folding of the log
-	MOST_ACKS = 400,         // that the parent waits for in a round
-	MOST_DELAY_US = 3000,    // after that, to hit other moments than just behind an acknowledgement
+	IN_FLIGHT = 32,      // batches that the child keeps waiting
+	SNAPSHOT_EVERY = 16, // batches between two snapshots
+	// so large that many kills occur during a long write or a fold of the log
+	SNAPSHOT_BYTES = 300000,
+	MOST_ACKS = 400, // acknowledgements that the parent waits for in a round, at most
+	// longest delay before the kill, so that kills also occur at other moments than right after an
+	// acknowledgement
+	MOST_DELAY_US = 3000,
 	MAX_TICKS = 100000,
 };
 
@@ -30,7 +33,7 @@ struct writer {
 	pthread_mutex_t mutex;
 	pthread_cond_t answered;
 	int in_flight;
-	uint64_t next_acknowledged; // ticks are acknowledged in order
+	uint64_t next_acknowledged; // ticks are acknowledged in this order
 };
 
 static void acknowledge(void *user, cau_status status, const char *reason)
@@ -86,8 +89,8 @@ static _Noreturn void write_forever(const cau_store_config *config, uint64_t tic
 }
 
 // ---- the parent -----------------------------------------------------------------------
-// Reads acknowledgements: `wanted` of them, kills the child, then reads those still in the pipe.
-// Returns the first tick that was not acknowledged.
+// Reads `wanted` acknowledgements, kills the child, then reads those still in the pipe. Returns the
+// first tick that was not acknowledged.
 static uint64_t run_until_killed(const cau_store_config *config, uint64_t first, int wanted,
                                  long delay_us)
 {
@@ -105,14 +108,15 @@ static uint64_t run_until_killed(const cau_store_config *config, uint64_t first,
 		assert_int_equal(read(ends[0], &tick, sizeof tick), sizeof tick);
 		assert_int_equal(tick, next++);
 	}
-	// Not waiting for anything: the moment of the kill is to be any.
+	// A delay without any condition, so that the kill can occur at any moment.
 	nanosleep(&(struct timespec){.tv_nsec = delay_us * 1000}, NULL);
 	assert_int_equal(kill(child, SIGKILL), 0);
 	while (read(ends[0], &tick, sizeof tick) == sizeof tick)
 		assert_int_equal(tick, next++);
 	close(ends[0]);
 	assert_int_equal(waitpid(child, &status, 0), child);
-	assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL); // not by its own failure
+	// the child did not end by its own failure
+	assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
 	return next;
 }
 
@@ -130,8 +134,8 @@ static cau_status see_answer(void *user, const cau_store_answer *answer)
 	return CAU_OK;
 }
 
-// Everything before `acknowledged` is there, in order, with nothing missing in what may follow.
-// Returns how many there are.
+// Checks that every command before `acknowledged` is in the store, in order, and that later ones
+// have no holes. Returns the number of commands.
 static uint64_t check_store(const cau_store_config *config, uint64_t acknowledged)
 {
 	static uint64_t ticks[MAX_TICKS];
@@ -160,7 +164,7 @@ static void kill_9_loses_nothing_acknowledged(void **state)
 	print_message("CAU_TEST_SEED=%u\n", seed);
 	fixture->config.commit_delay_ms = 1;
 	fixture->config.wal_bytes = 1000000;       // folded every few snapshots
-	fixture->config.retention_bytes = 3000000; // and retention at work
+	fixture->config.retention_bytes = 3000000; // so that retention works too
 	fixture->config.retention_interval_ms = 1;
 	cau_store *store = open_store(&fixture->config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);

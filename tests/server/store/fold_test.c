@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The write-ahead log stays near its bound, however much is written without a pause.
+// The write-ahead log stays near its bound during writing without a pause.
 #include "store_fixture.h"
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
@@ -8,7 +8,7 @@ enum {
 	BOUND_BYTES = 500000,
 	SNAPSHOT_BYTES = 100000,
 	COUNT = 200,
-	// Commits wait for a fold from four times the bound on; a group may lie above that.
+	// Commits wait for a fold from four times the bound on. The last group may go beyond that.
 	MOST_BYTES = 4 * BOUND_BYTES + 10 * SNAPSHOT_BYTES,
 };
 
@@ -30,7 +30,8 @@ static void the_log_stays_near_its_bound(void **state)
 		cau_store_get_metrics(store, &metrics);
 		assert_in_range(metrics.wal_bytes, 0, MOST_BYTES);
 	}
-	assert_true(metrics.database_bytes > COUNT * SNAPSHOT_BYTES / 2); // most has been folded
+	// most of the log has been folded
+	assert_true(metrics.database_bytes > COUNT * SNAPSHOT_BYTES / 2);
 	cau_store_close(store);
 }
 

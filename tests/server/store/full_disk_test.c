@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A disk that is really full: a small tmpfs in a mount namespace of the test's own, filled by a
-// ballast file. Needs root; skipped otherwise.
+// A disk that is really full: a small tmpfs in a mount namespace of the test, filled by a ballast
+// file. Needs root; skipped otherwise.
 #include "store_fixture.h"
 
 #include <errno.h>
@@ -18,7 +18,7 @@
 enum {
 	SNAPSHOT_BYTES = 500000,
 	RETRY_MS = 20,
-	PATIENCE_S = 20, // a recovery takes some RETRY_MS
+	PATIENCE_S = 20, // a recovery takes a few RETRY_MS
 };
 
 // ---- the disk -------------------------------------------------------------------------
@@ -43,7 +43,7 @@ static void ballast_path(const struct fixture *fixture, char path[256])
 	snprintf(path, 256, "%s/ballast", fixture->folder);
 }
 
-// Takes all the room there is.
+// Fills all the free space.
 static void fill_disk(const struct fixture *fixture)
 {
 	static const char block[4096] = {1};
@@ -104,7 +104,8 @@ static cau_store *open_watched(struct fixture *fixture, struct watch *watch)
 	return open_store(&fixture->config);
 }
 
-// One command and one checkpoint: half a megabyte that must be there whole or not at all.
+// Returns a batch with one command and one checkpoint: half a megabyte that must be stored
+// completely or not at all.
 static cau_store_batch *big_batch(uint64_t tick)
 {
 	static const char snapshot[SNAPSHOT_BYTES];
@@ -115,7 +116,7 @@ static cau_store_batch *big_batch(uint64_t tick)
 	return batch;
 }
 
-// Writes until the disk refuses; returns the tick that failed.
+// Writes until the disk refuses. Returns the tick that failed.
 static uint64_t write_until_full(cau_store *store, uint64_t tick)
 {
 	char reason[320];
@@ -126,7 +127,7 @@ static uint64_t write_until_full(cau_store *store, uint64_t tick)
 			assert_non_null(strstr(reason, "full"));
 			return tick;
 		}
-		assert_true(tick < 100); // the disk has 8 MB
+		assert_true(tick < 100); // the disk has only 8 MB
 	}
 }
 
@@ -155,7 +156,8 @@ static void a_full_disk_refuses_and_recovers(void **state)
 	while ((uint64_t)count < failed)
 		expected[count] = (uint64_t)count, count++;
 
-	// Full: says so, refuses at once, still reads, and tries at the configured rate only.
+	// A full store reports its state, refuses at once, still reads, and tries again only at the
+	// configured rate.
 	await_state(&watch, CAU_STORE_FULL);
 	cau_store_get_health(store, &health);
 	assert_int_equal(health.state, CAU_STORE_FULL);
@@ -171,7 +173,8 @@ static void a_full_disk_refuses_and_recovers(void **state)
 		cau_store_get_metrics(store, &after);
 	while (after.full_attempts < before.full_attempts + 5);
 	double took_s = cau_store_monotonic_s() - start_s;
-	assert_true(took_s > 4 * 1e-3 * RETRY_MS * 0.9); // 0.9: the first may have been under way
+	// 0.9: the first attempt may have been under way
+	assert_true(took_s > 4 * 1e-3 * RETRY_MS * 0.9);
 	assert_int_equal(after.full_count, 1);
 
 	free_disk(fixture);
@@ -196,7 +199,8 @@ static void a_full_disk_can_fill_again_and_a_full_store_can_be_closed(void **sta
 	for (int round = 0; round < 3; round++) {
 		fill_disk(fixture);
 		uint64_t first = 100 * (uint64_t)round;
-		count += (int)(write_until_full(store, first) - first); // what the log had room for
+		// batches that still fitted into the log
+		count += (int)(write_until_full(store, first) - first);
 		await_state(&watch, CAU_STORE_FULL);
 		free_disk(fixture);
 		await_state(&watch, CAU_STORE_READY);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A store that takes 2,000 requests a second stays within its budget: all that it keeps counts, the
-// answers too. The clock is the test's; requests are written as fast as the disk takes them. The
+// A store that takes 2,000 requests a second stays within its budget. All its records count, the
+// answers too. The test has its own clock; requests are written as fast as the disk takes them. The
 // argument is the number of minutes: two by default, one under sanitizers.
 #include <semaphore.h>
 #include <stdlib.h>
@@ -11,22 +11,22 @@
 enum {
 	REQUESTS_PER_S = 2000,
 	TICKS_PER_S = 60,
-	CHECKPOINT_S = 10, // as the daemon's setting
+	CHECKPOINT_S = 10, // the same as the daemon's setting
 	CLIENTS = 8,
 	BUDGET_BYTES = 20000000,
-	WAL_BYTES = 1000000, // small, so that the file shows what is in use
+	WAL_BYTES = 1000000, // small, so that the file's size shows what is in use
 };
 
 static int minutes = CAU_TEST_SANITIZED ? 1 : 2;
 static _Atomic int64_t clock_ms = 1700000000000;
-static sem_t committed; // one for each batch that is
+static sem_t committed; // posted once for each committed batch
 
 static int64_t test_clock_ms(void)
 {
 	return clock_ms;
 }
 
-// Payload and result as long as those of tool.move.
+// Adds a request. Payload and result are as long as those of tool.move.
 static void put_request(cau_store_batch *batch, uint64_t tick, uint64_t number)
 {
 	static const char payload[80] = "{}", result[100] = "{}";
@@ -62,7 +62,7 @@ static void submit(cau_store *store, cau_store_batch *batch, _Atomic int *failed
 {
 	cau_status status;
 	while ((status = cau_store_submit(store, batch, count_failure, failed, NULL)) == CAU_LIMIT)
-		sem_wait(&committed); // those that fill the queue will be
+		sem_wait(&committed); // the batches that fill the queue will be committed
 	assert_int_equal(status, CAU_OK);
 }
 
@@ -81,7 +81,7 @@ static void the_budget_holds_for_an_hour_of_requests(void **state)
 	cau_store_metrics metrics;
 	fixture->config.store_bytes = BUDGET_BYTES;
 	fixture->config.wal_bytes = WAL_BYTES;
-	fixture->config.queue_batches = TICKS_PER_S / 6; // commits of a tenth of a second
+	fixture->config.queue_batches = TICKS_PER_S / 6; // each commit has a tenth of a second of ticks
 	fixture->config.wall_clock_ms = test_clock_ms;
 	cau_store *store = open_store(&fixture->config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
@@ -101,7 +101,7 @@ static void the_budget_holds_for_an_hour_of_requests(void **state)
 	              (unsigned long long)number, 1e-6 * (double)most, 1e-6 * BUDGET_BYTES);
 	assert_int_equal(failed, 0);
 	assert_true((double)most <= 1.2 * BUDGET_BYTES);
-	// The newest request has its answer; the oldest is known to have acted.
+	// The newest request still has its answer; the oldest is known to have acted.
 	char client[32];
 	snprintf(client, sizeof client, "client-%u", (unsigned)(number % CLIENTS));
 	assert_int_equal(cau_store_read_answer(store, client, number, ignore_answer, NULL, NULL),

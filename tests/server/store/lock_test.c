@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One process per store, and one store per process.
+// A store is open in one process only, and only once in that process.
 #include "store_fixture.h"
 
 #include <signal.h>
@@ -19,7 +19,7 @@ static void a_second_open_in_the_process_is_refused(void **state)
 	assert_int_equal(cau_store_open(&fixture->config, &second, &error), CAU_BAD_STATE);
 	snprintf(pid, sizeof pid, "process %ld", (long)getpid());
 	assert_non_null(strstr(error.reason, pid));
-	// The first has lost nothing by that.
+	// The first store still has its locks.
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	cau_store_close(store);
 	cau_store_close(open_store(&fixture->config));
@@ -52,10 +52,11 @@ static void a_hard_link_is_the_same_store(void **state)
 	config.path = name;
 	assert_int_equal(cau_store_open(&config, &second, &error), CAU_BAD_STATE);
 	assert_non_null(strstr(error.reason, "another name"));
-	// The first has lost nothing by that: SQLite's locks, for one.
+	// The first store has lost nothing, such as SQLite's locks.
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	cau_store_close(store);
-	// Closed in order, the file is whole and has no log: any name will do.
+	// After an orderly close the file is complete and has no log, so any name of the file can be
+	// used.
 	store = open_store(&config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_ALREADY_EXISTS);
 	assert_int_equal(cau_store_open(&fixture->config, &second, NULL), CAU_BAD_STATE);
@@ -63,7 +64,7 @@ static void a_hard_link_is_the_same_store(void **state)
 	cau_store_close(open_store(&fixture->config));
 }
 
-// Opens the store, says so with one byte, and waits to be killed.
+// Opens the store, reports this with one byte, and waits to be killed.
 static _Noreturn void hold_store(const cau_store_config *config, int ready)
 {
 	cau_store *store;
@@ -95,7 +96,7 @@ static void another_process_is_refused_until_the_holder_dies(void **state)
 	close(ready[0]);
 }
 
-// Writes a session, says so with one byte, and waits to be killed.
+// Writes a session, reports this with one byte, and waits to be killed.
 static _Noreturn void write_and_hold(const cau_store_config *config, int ready)
 {
 	cau_store *store;
@@ -105,8 +106,9 @@ static _Noreturn void write_and_hold(const cau_store_config *config, int ready)
 	_exit(1);
 }
 
-// The killed one's last commits are in the log beside its name of the file. By the link they would
-// be lost, and by the first name the log would then spoil the file.
+// The killed process's last commits are in the log beside its name of the file. If the store were
+// opened by the link, they would be lost; and opened by the first name later, the log would damage
+// the file.
 static void
 a_hard_link_is_refused_while_another_process_lives_and_while_its_log_is_needed(void **state)
 {
@@ -134,7 +136,8 @@ a_hard_link_is_refused_while_another_process_lives_and_while_its_log_is_needed(v
 	assert_int_equal(waitpid(child, NULL, 0), child);
 	assert_int_equal(cau_store_open(&config, &store, &error), CAU_BAD_STATE);
 	assert_non_null(strstr(error.reason, fixture->path));
-	store = open_store(&fixture->config); // by its own name, at once, with all that was committed
+	// by its own name it opens at once, with everything that was committed
+	store = open_store(&fixture->config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_ALREADY_EXISTS);
 	cau_store_close(store);
 	store = open_store(&config);

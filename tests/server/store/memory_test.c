@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A store in memory: the same rows, no file, and nothing left once it is closed.
+// A store in memory: it keeps the same records, has no file, and leaves nothing when it is closed.
 #include "store_fixture.h"
 
 #include <dirent.h>
@@ -62,7 +62,7 @@ static void two_know_nothing_of_each_other_and_make_no_file(void **state)
 	while (readdir(folder))
 		files++;
 	closedir(folder);
-	assert_int_equal(files, 2); // . and ..
+	assert_int_equal(files, 2); // only . and ..
 	cau_store_close(one);
 	cau_store_close(other);
 }

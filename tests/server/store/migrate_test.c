@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Older schemas are migrated with all that they hold. The old layouts are written down here as they
-// were: they must not follow later changes of the schema.
+// Stores with older schemas are migrated with all their records. The old layouts are written here
+// as they were: they must not follow later changes of the schema.
 #include "store_fixture.h"
 
 #include <sqlite3.h>
@@ -32,10 +32,10 @@ static int64_t stored_version(const char *path)
 	return version;
 }
 
-// Version 0: ours by its application id, no tables yet.
+// Version 0: our application id, but no tables yet.
 static const char version_0[] = "PRAGMA journal_mode = WAL; PRAGMA application_id = 1130460532;";
 
-// Version 1: no table of clients.
+// Version 1: without the table of clients.
 static const char version_1[] =
 	"PRAGMA journal_mode = WAL; PRAGMA application_id = 1130460532; PRAGMA user_version = 1;"
 	"CREATE TABLE meta(name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
@@ -125,7 +125,7 @@ static void version_1_is_migrated_with_all_it_holds(void **state)
 		CAU_OK);
 	assert_true(answered && restored);
 	assert_int_equal(cau_store_read_clients(store, "d7-knee", see_client, clients, NULL), CAU_OK);
-	assert_string_equal(clients, "browser:14 robot:2 "); // found in the log
+	assert_string_equal(clients, "browser:14 robot:2 "); // the migration found them in the log
 	cau_store_close(store);
 	assert_int_equal(stored_version(fixture->path), CAU_STORE_SCHEMA_VERSION);
 }

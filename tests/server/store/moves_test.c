@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session goes from one store to another in pieces: all of it, each row once, whatever is added
-// between the two readings; and what the rows of moves promise.
+// A session moves from one store to another in pieces. All records arrive, each once, whatever is
+// added between the two readings. The records of moves keep their promises.
 #include "store_fixture.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
 enum { PATIENCE_MS = 30000 };
-enum { PIECE_BYTES = 300 }; // small, so that a session takes several
+enum { PIECE_BYTES = 300 }; // so small that a session takes several pieces
 
 static void put_request(cau_store_batch *batch, uint64_t tick, uint64_t sequence)
 {
@@ -68,7 +68,7 @@ static void fill_rest(cau_store *store)
 {
 	cau_store_batch *batch = cau_store_batch_create();
 	put_request(batch, 9, 12);
-	put_checkpoint(batch, 0, 0, 77); // in place of one that has gone already
+	put_checkpoint(batch, 0, 0, 77); // replaces a checkpoint that has already been sent
 	put_checkpoint(batch, 0, 10, 3);
 	cau_store_branch branch = {.session = "d1-knee", .branch = 1, .parent = 0, .fork_tick = 6};
 	assert_int_equal(cau_store_put_branch(batch, &branch, NULL), CAU_OK);
@@ -87,7 +87,7 @@ static cau_status take_piece(cau_store *to, const cau_rows_writer *piece)
 	return write_batch(to, batch, NULL);
 }
 
-// Returns how many pieces it took.
+// Carries all pieces. Returns how many there were.
 static int carry(cau_store_dump *dump, cau_store *to)
 {
 	bool over = false;
@@ -152,7 +152,8 @@ static void check_all(cau_store *to)
 		assert_int_equal(cau_store_read_answer(to, "anna", sequence, see_answer, &answers, NULL),
 		                 CAU_OK);
 	assert_int_equal(answers, 2);
-	assert_int_equal(cau_store_check_reach(to, "d2-knee", 0, 8, NULL), CAU_BAD_VALUE); // the gap
+	// tick 8 is in the gap
+	assert_int_equal(cau_store_check_reach(to, "d2-knee", 0, 8, NULL), CAU_BAD_VALUE);
 	assert_int_equal(read_ticks(to, "d2-knee", 1, 6, 99, ticks, 8), 1);
 }
 
@@ -219,7 +220,8 @@ static void a_session_goes_in_the_transaction_that_says_where(void **state)
 	const cau_store_moved row = moved_row();
 	cau_store_batch *batch = cau_store_batch_create();
 	assert_int_equal(cau_store_put_moved(batch, &row, NULL), CAU_OK);
-	assert_int_equal(write_batch(store, batch, NULL), CAU_NOT_FOUND); // there is none
+	// there is no such session any more
+	assert_int_equal(write_batch(store, batch, NULL), CAU_NOT_FOUND);
 	assert_int_equal(count_all(store, &sessions), 0);
 	fill_first(store);
 	batch = cau_store_batch_create();
@@ -228,7 +230,7 @@ static void a_session_goes_in_the_transaction_that_says_where(void **state)
 	assert_int_equal(count_all(store, &sessions), 1);
 	assert_int_equal(sessions, 0);
 	cau_store_close(store);
-	store = open_store(&fixture->config); // and stays so
+	store = open_store(&fixture->config); // still so after the store is opened again
 	assert_int_equal(count_all(store, &sessions), 1);
 	assert_int_equal(sessions, 0);
 	cau_store_close(store);
@@ -266,8 +268,8 @@ static cau_status look_for_answer(cau_store *store, const char *client)
 	return cau_store_read_answer(store, client, 11, ignore_answer, NULL, NULL);
 }
 
-// Moves the session away; its client's request 11 is answered, and so is one of no session. Nothing
-// is removed yet.
+// Moves the session away. Its client's request 11 has an answer, and so has a request without a
+// session. Nothing is removed yet.
 static cau_store *move_away(struct fixture *fixture)
 {
 	fixture->config.retention_interval_ms = INT32_MAX;
@@ -282,7 +284,8 @@ static cau_store *move_away(struct fixture *fixture)
 	return store;
 }
 
-// Opens the store again, and waits until it has removed something. Answers go first.
+// Opens the store again, and waits until retention has removed something. Answers are removed
+// first.
 static cau_store *retire_some(struct fixture *fixture, cau_store *store)
 {
 	cau_store_metrics metrics = {0};
@@ -308,7 +311,7 @@ static void answers_leave_with_their_session(void **state)
 	cau_store_close(store);
 }
 
-// A session that comes back before its old rows are gone has its answers.
+// A session that returns before its old records are removed still has its answers.
 static void answers_of_a_session_that_comes_back_stay(void **state)
 {
 	struct fixture *fixture = *state;
@@ -319,7 +322,7 @@ static void answers_of_a_session_that_comes_back_stay(void **state)
 	cau_store_close(store);
 }
 
-// One that comes back is led elsewhere by its old row until it is accepted.
+// For a session that returns, the old record of its move counts until it is accepted here.
 static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state)
 {
 	struct fixture *fixture = *state;
@@ -345,7 +348,7 @@ static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state
 	cau_store_close(store);
 }
 
-// The store stays sound, whatever a piece holds: the batch fails alone.
+// Whatever a piece contains, only its own batch fails, and the store stays sound.
 static void rows_that_come_twice_fail_their_batch_alone(void **state)
 {
 	struct fixture *fixture = *state;
@@ -373,7 +376,7 @@ static void rows_that_come_twice_fail_their_batch_alone(void **state)
 	cau_store_close(store);
 }
 
-// Without a reason of its own such a batch would be answered as if it were on the disk.
+// The batch must fail by itself: otherwise it would be answered as if it were on the disk.
 static void a_piece_of_no_session_fails_its_batch(void **state)
 {
 	struct fixture *fixture = *state;

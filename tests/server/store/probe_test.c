@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that are not a whole store of a known schema are refused with the reason, and neither they
-// nor their folder change.
+// Files that are not a sound store of a known schema are refused with the reason. Neither they nor
+// their folder change.
 #include "store_fixture.h"
 
 #include <dirent.h>
@@ -12,7 +12,7 @@
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
-// Every file of a folder with its bytes, as one text to compare.
+// Every file of a folder with its bytes, as one block to compare.
 struct picture {
 	size_t bytes;
 	char *data;
@@ -50,8 +50,7 @@ static struct picture take_picture(const char *folder)
 	return picture;
 }
 
-// Opens, expects the refusal and a reason that holds `phrase`, and that nothing in the folder
-// changed.
+// Opens the store. Expects the refusal, a reason with `phrase`, and an unchanged folder.
 static void expect_refusal(const struct fixture *fixture, cau_status expected, const char *phrase)
 {
 	cau_store *store = NULL;
@@ -77,7 +76,7 @@ static void execute(const char *path, const char *sql)
 	assert_int_equal(sqlite3_close(database), SQLITE_OK);
 }
 
-// A closed store with a session and a hundred kilobytes of log.
+// Makes a closed store with a session and a hundred kilobytes of log.
 static void make_store(const struct fixture *fixture)
 {
 	cau_store *store = open_store(&fixture->config);
@@ -123,7 +122,7 @@ static void a_newer_schema_is_refused(void **state)
 	expect_refusal(fixture, CAU_UNSUPPORTED, "schema 99");
 }
 
-// Copies of a store's files while it is open are what a crash leaves.
+// Copies a store's files while it is open, which gives the files that a crash leaves.
 static void copy_crashed(const struct fixture *fixture, const char *path)
 {
 	static const char *const suffixes[] = {"", "-wal"};
@@ -139,8 +138,8 @@ static void copy_crashed(const struct fixture *fixture, const char *path)
 	}
 }
 
-// Runs `sql` beside an open store, so that its effect is in the log alone, and gives the crashed
-// files as the only ones of a new fixture.
+// Makes a crashed store: runs `sql` beside an open store, so that its effect is only in the log,
+// and copies the files into a new fixture.
 static void crash_with(struct fixture *fixture, struct fixture *crashed, const char *sql)
 {
 	void *made;
@@ -257,7 +256,7 @@ static void a_new_store_takes_no_label_with_a_dash(void **state)
 	struct fixture *fixture = *state;
 	fixture->config.label = "or-1";
 	expect_refusal(fixture, CAU_BAD_VALUE, "`or-1` has a `-`");
-	// One that has such a label from before opens with it.
+	// A store that already has a label with a dash still opens with it.
 	fixture->config.label = "or1";
 	make_store(fixture);
 	execute(fixture->path, "UPDATE meta SET value = 'or-1' WHERE name = 'label'");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Groups, order of answers, and the bound on what waits. A callback that waits at a gate holds the
-// store's thread still, so that what queues up behind it is known exactly.
+// Groups, order of answers, and the bound on waiting batches. A callback that waits at a gate stops
+// the store thread, so that the test knows exactly which batches wait behind it.
 #include "store_fixture.h"
 
 #include <pthread.h>
@@ -26,7 +26,7 @@ static void wait_at_gate(void *user, cau_status status, const char *reason)
 	pthread_mutex_unlock(&gate->mutex);
 }
 
-// Makes session "knee" and leaves the store's thread waiting at the gate.
+// Makes session "knee" and leaves the store thread waiting at the gate.
 static void hold(cau_store *store, struct gate *gate)
 {
 	*gate = (struct gate){PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false, false};
@@ -87,7 +87,8 @@ static void what_queues_up_is_one_commit_answered_in_order(void **state)
 	for (int i = 0; i < 500; i++)
 		assert_int_equal(order.status[i], CAU_OK);
 	assert_int_equal(after.commits, before.commits + 1);
-	assert_int_equal(after.group_size[9], before.group_size[9] + 1); // 257 to 512 batches
+	// this bucket is for 257 to 512 batches
+	assert_int_equal(after.group_size[9], before.group_size[9] + 1);
 	assert_int_equal(after.batches, 501);
 	assert_int_equal(after.records, 501);
 	assert_int_equal(after.queue_batches, 0);
@@ -112,7 +113,7 @@ static void a_bad_batch_fails_whole_and_alone(void **state)
 	hold(store, &gate);
 	cau_store_batch *batch[4] = {
 		command_batch("knee", 0, 1),
-		command_batch("knee", 0, 2), // and tick 1 again, below
+		command_batch("knee", 0, 2), // tick 1 comes a second time below
 		command_batch("elbow", 0, 3),
 		command_batch("knee", 0, 4),
 	};
@@ -160,7 +161,8 @@ static void a_full_queue_refuses_and_keeps_what_it_has(void **state)
 	let_go(&gate);
 	cau_store_flush(store);
 	assert_int_equal(order.next, 10);
-	assert_int_equal(write_batch(store, late, NULL), CAU_OK); // it was still ours
+	// after the refusal the batch still belonged to the test
+	assert_int_equal(write_batch(store, late, NULL), CAU_OK);
 	uint64_t ticks[16];
 	assert_int_equal(read_ticks(store, "knee", 0, 0, 100, ticks, 16), 11);
 	cau_store_metrics metrics;
@@ -246,7 +248,7 @@ static void many_threads_submit_flush_and_look(void **state)
 		submitter[i] = (struct submitter){store, 1000 * (uint64_t)i};
 		assert_int_equal(pthread_create(&thread[i], NULL, submit_many, &submitter[i]), 0);
 	}
-	for (int i = 0; i < 20; i++) { // beside them: readers
+	for (int i = 0; i < 20; i++) { // meanwhile the main thread reads
 		cau_store_metrics metrics;
 		cau_store_get_metrics(store, &metrics);
 		assert_true(read_ticks(store, "knee", 0, 0, 10000, ticks, 800) <= 800);
@@ -263,7 +265,8 @@ static void it_moves_unless_a_commit_hangs(void **state)
 	struct gate gate;
 	cau_store *store = open_store(&fixture->config);
 	for (int round = 0; round < 3; round++)
-		while (!cau_store_moves(store)) // asked, it comes round by itself
+		while (!cau_store_moves(store)) // cau_store_moves asks the thread to look; the thread then
+		                                // looks without another wake
 			sched_yield();
 	hold(store, &gate);
 	cau_store_moves(store);

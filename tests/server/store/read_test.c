@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was written comes back: sessions, answers to resends, branches with their shared past,
+// Reads return what was written: sessions, answers to resends, branches with their shared past,
 // events.
 #include "store_fixture.h"
 
@@ -58,7 +58,7 @@ static void sessions_come_back_after_a_restart(void **state)
 	assert_string_equal(seen.state[0], "running");
 	assert_string_equal(seen.id[1], "elbow");
 	assert_string_equal(seen.state[1], "paused");
-	assert_int_equal(seen.mesh_bytes, 0); // the list leaves meshes out
+	assert_int_equal(seen.mesh_bytes, 0); // the list omits meshes
 	assert_int_equal(cau_store_read_session(store, "knee", see_session, &seen, NULL), CAU_OK);
 	assert_int_equal(seen.mesh_bytes, 10);
 	cau_store_close(store);
@@ -80,7 +80,7 @@ static void an_id_is_taken_until_its_session_is_deleted(void **state)
 	assert_int_equal(cau_store_read_session(store, "knee", see_session, &seen, NULL),
 	                 CAU_NOT_FOUND);
 	assert_int_equal(write_batch(store, command_batch("knee", 0, 6), NULL), CAU_NOT_FOUND);
-	// The same id again has nothing of the old one.
+	// A new session with the same id has no records of the old one.
 	uint64_t ticks[4];
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	assert_int_equal(read_ticks(store, "knee", 0, 0, 100, ticks, 4), 0);
@@ -134,7 +134,7 @@ static void a_resent_request_finds_its_first_answer(void **state)
 	                 CAU_NOT_FOUND);
 	assert_int_equal(write_batch(store, request_batch(10, 41, "{\"pinned\":3}"), NULL), CAU_OK);
 	assert_int_equal(write_batch(store, request_batch(11, 40, "late"), NULL), CAU_OK);
-	// A second act of the same request is refused, with all that is in its batch.
+	// A second command with the same request is refused, with its whole batch.
 	assert_int_equal(write_batch(store, request_batch(12, 41, "again"), reason),
 	                 CAU_ALREADY_EXISTS);
 	assert_non_null(strstr(reason, "41"));
@@ -172,7 +172,7 @@ struct pending {
 	cau_status inside;
 };
 
-// Runs on the store's thread, while the batch behind this one is taken and not yet answered.
+// Reads on the store thread while the next batch is taken and not yet answered.
 static void look_from_callback(void *user, cau_status status, const char *reason)
 {
 	struct pending *pending = user;
@@ -186,7 +186,7 @@ static void submit_two(void *user, cau_status status, const char *reason)
 {
 	struct pending *pending = user;
 	(void)status, (void)reason;
-	// Both wait until this returns, so they share a commit.
+	// Both batches wait until this returns, so they share a commit.
 	assert_int_equal(cau_store_submit(pending->store, request_batch(1, 1, "one"),
 	                                  look_from_callback, pending, NULL),
 	                 CAU_OK);
@@ -202,8 +202,8 @@ static void a_request_on_its_way_to_the_disk_is_known(void **state)
 	struct pending pending = {store, CAU_STATUS_COUNT};
 	assert_int_equal(cau_store_submit(store, session_batch("knee"), submit_two, &pending, NULL),
 	                 CAU_OK);
-	cau_store_flush(store); // the session
-	cau_store_flush(store); // and the two that its callback submitted
+	cau_store_flush(store); // commits the session
+	cau_store_flush(store); // commits the two batches that its callback submitted
 	assert_int_equal(pending.inside, CAU_BAD_STATE);
 	assert_int_equal(cau_store_read_answer(store, "browser-1", 2, see_answer, &seen, NULL), CAU_OK);
 	assert_string_equal(seen.result, "two");
@@ -260,7 +260,7 @@ static void expect_checkpoint(cau_store *store, int64_t branch, uint64_t tick, c
 	assert_string_equal(seen, expected ? expected : "");
 }
 
-// The log that a branch sees, as a test of whole ranges.
+// Checks that the branch sees a command at each tick from `from` on, `count` in all.
 static void expect_log(cau_store *store, int64_t branch, uint64_t from, uint64_t before, int count)
 {
 	static uint64_t ticks[2000];
@@ -276,20 +276,21 @@ static void a_branch_sees_its_past_and_not_its_siblings(void **state)
 	put_checkpoint(store, 0, 50, "root 50");
 	put_checkpoint(store, 0, 100, "root 100");
 	put_checkpoint(store, 0, 150, "root 150");
-	open_branch(store, 1, 0, 100, CAU_OK); // rewind to 100
+	open_branch(store, 1, 0, 100, CAU_OK); // a rewind to tick 100
 	log_ticks(store, 1, 100, 130);
 	put_checkpoint(store, 1, 120, "one 120");
 
 	expect_log(store, 0, 0, 1000, 200);
 	expect_log(store, 1, 0, 1000, 130);
-	expect_log(store, 1, 90, 110, 20); // across the fork
+	expect_log(store, 1, 90, 110, 20); // ticks on both sides of the fork
 	expect_log(store, 1, 100, 130, 30);
 	expect_checkpoint(store, 1, 1000, "one 120");
-	expect_checkpoint(store, 1, 119, "root 100"); // at the fork itself: shared
+	// the checkpoint at the fork tick itself is shared
+	expect_checkpoint(store, 1, 119, "root 100");
 	expect_checkpoint(store, 1, 99, "root 50");
 	expect_checkpoint(store, 1, 49, NULL);
 	expect_checkpoint(store, 0, 1000, "root 150");
-	put_checkpoint(store, 0, 150, "root 150 again"); // replaces
+	put_checkpoint(store, 0, 150, "root 150 again"); // replaces the first one
 	expect_checkpoint(store, 0, 160, "root 150 again");
 	cau_store_close(store);
 }
@@ -322,7 +323,7 @@ static void a_fork_before_the_parents_start_finds_the_owner(void **state)
 	assert_int_equal(cau_store_read_branches(store, "knee", see_branch, &seen, NULL), CAU_OK);
 	assert_int_equal(seen.count, 3);
 	assert_int_equal(seen.branch[0].parent, -1);
-	assert_int_equal(seen.branch[2].parent, 0); // not 1, which starts at 100
+	assert_int_equal(seen.branch[2].parent, 0); // not branch 1, which starts at tick 100
 	assert_int_equal(seen.branch[2].fork_tick, 40);
 	assert_true(seen.branch[0].left_ms > 0 && seen.branch[1].left_ms > 0);
 	assert_int_equal(seen.branch[2].left_ms, 0);
@@ -334,9 +335,9 @@ static void a_fork_before_the_parents_start_finds_the_owner(void **state)
 static void a_long_log_is_read_in_pieces_and_whole(void **state)
 {
 	cau_store *store = open_with_knee(state);
-	log_ticks(store, 0, 0, 1537); // six pieces and one row
+	log_ticks(store, 0, 0, 1537); // six pieces and one entry more
 	expect_log(store, 0, 0, 1000000, 1537);
-	expect_log(store, 0, 256, 768, 512); // exact pieces
+	expect_log(store, 0, 256, 768, 512); // exactly two pieces
 	assert_int_equal(cau_store_read_log(store, "knee", 5, 0, 10, NULL, NULL, NULL), CAU_NOT_FOUND);
 	assert_int_equal(cau_store_read_log(store, "hip", 0, 0, 10, NULL, NULL, NULL), CAU_NOT_FOUND);
 	cau_store_close(store);

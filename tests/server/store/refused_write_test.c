@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes that the system refuses for another reason than space: a limit on file size, which the
-// process sets on itself and lifts again. And a file that goes bad under a running store.
+// Writes that the system refuses for another reason than a full disk: a limit on file size, which
+// the process sets for itself and removes again. Also a file that is damaged under a running store.
 #include "store_fixture.h"
 
 #include <fcntl.h>
@@ -48,7 +48,7 @@ static void count_status(void *user, cau_status status, const char *reason)
 static void a_refused_write_fails_what_waits_and_recovers(void **state)
 {
 	struct fixture *fixture = *state;
-	static const double patience_s = 20.0; // it takes some of the 10 ms between attempts
+	static const double patience_s = 20.0; // the recovery takes a few of the 10 ms between attempts
 	struct tally tally = {0};
 	cau_store_health health;
 	uint64_t ticks[64];
@@ -58,7 +58,7 @@ static void a_refused_write_fails_what_waits_and_recovers(void **state)
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	assert_int_equal(write_batch(store, checkpoint_batch(1), NULL), CAU_OK);
 
-	limit_files(150000); // less than one snapshot, also when the log has been emptied
+	limit_files(150000); // less than one snapshot, even when the log is empty
 	int accepted = 0;
 	for (uint64_t tick = 2; tick < 12; tick++) {
 		cau_store_batch *batch = checkpoint_batch(tick);
@@ -70,7 +70,7 @@ static void a_refused_write_fails_what_waits_and_recovers(void **state)
 	cau_store_flush(store);
 	limit_files(RLIM_INFINITY);
 	assert_true(accepted > 0);
-	assert_int_equal(tally.io, accepted); // none can fit
+	assert_int_equal(tally.io, accepted); // no batch fits
 	assert_int_equal(tally.other, 0);
 
 	double end_s = cau_store_monotonic_s() + patience_s;
@@ -88,8 +88,8 @@ static void a_refused_write_fails_what_waits_and_recovers(void **state)
 	cau_store_close(store);
 }
 
-// Overwrites all but the file's first page, in a process of its own: closing a descriptor of the
-// file in this one would drop the locks that SQLite holds.
+// Overwrites all but the file's first page, in a child process. Closing a descriptor of the file in
+// this process would drop SQLite's locks on it.
 static void damage(const char *path)
 {
 	pid_t child = fork();
@@ -118,7 +118,7 @@ static void damage_found_while_running_is_final(void **state)
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	assert_int_equal(write_batch(store, checkpoint_batch(1), NULL), CAU_OK);
 	cau_store_close(store);
-	store = open_store(&fixture->config); // nothing in its cache
+	store = open_store(&fixture->config); // a new store has nothing in its cache
 	damage(fixture->path);
 	assert_int_equal(write_batch(store, checkpoint_batch(2), reason), CAU_CORRUPT);
 	cau_store_get_health(store, &health);
@@ -137,6 +137,6 @@ int main(void)
 		TEST(a_refused_write_fails_what_waits_and_recovers),
 		TEST(damage_found_while_running_is_final),
 	};
-	signal(SIGXFSZ, SIG_IGN); // the write returns EFBIG instead
+	signal(SIGXFSZ, SIG_IGN); // so that the write returns EFBIG instead
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What goes with time: branches that were left, answers, events, and the rows of a session that was
-// deleted.
+// What retention removes by age: left branches, answers, events, and the records of a deleted
+// session.
 #include "retention_fixture.h"
 
 #include "store/clock.h"
@@ -26,14 +26,15 @@ static void a_left_branch_goes_after_its_time_and_no_sooner(void **state)
 
 	retention_clock_ms = RETENTION_START_MS + 24 * RETENTION_HOUR_MS;
 	store = retention_retire(fixture, store, &removal);
-	assert_int_equal(removal.rows, 600 + 1); // commands from 400 on, the checkpoint at 900
+	// the commands from tick 400 on, and the checkpoint at 900
+	assert_int_equal(removal.rows, 600 + 1);
 	assert_true(removal.most <= 256);
 	assert_int_equal(retention_count_log(store, 0), 400);
-	assert_int_equal(retention_count_log(store, 1), 500); // whole: the shared past stayed
+	assert_int_equal(retention_count_log(store, 1), 500); // complete: the shared past stayed
 	assert_int_equal(retention_newest_checkpoint(store, 1, 450), 400);
 	assert_int_equal(retention_newest_checkpoint(store, 0, 1000), 400);
 	assert_int_equal(retention_count_branches(store), 2);
-	// What has gone cannot be forked from; what is left can.
+	// A removed part cannot be forked from; a part that is left can.
 	assert_int_equal(retention_open_branch(store, 2, 0, 401), CAU_NOT_FOUND);
 	assert_int_equal(retention_open_branch(store, 2, 0, 400), CAU_OK);
 	cau_store_close(store);
@@ -47,13 +48,15 @@ static void a_branch_without_children_goes_altogether(void **state)
 	retention_log(store, 0, 0, 100);
 	assert_int_equal(retention_open_branch(store, 1, 0, 80), CAU_OK);
 	retention_log(store, 1, 80, 120);
-	assert_int_equal(retention_open_branch(store, 2, 1, 90), CAU_OK); // 1 is its parent
+	// branch 2 is forked from branch 1
+	assert_int_equal(retention_open_branch(store, 2, 1, 90), CAU_OK);
 	retention_log(store, 2, 90, 95);
 	assert_int_equal(retention_open_branch(store, 3, 0, 50), CAU_OK);
 	retention_log(store, 3, 50, 60);
 	retention_clock_ms = RETENTION_START_MS + 25 * RETENTION_HOUR_MS;
 	store = retention_retire(fixture, store, &removal);
-	// 2, then 1 have no children left; of 0 the past of 3 is kept.
+	// Branch 2 and then branch 1 lose their children and are removed. Of branch 0, the past of
+	// branch 3 stays.
 	assert_int_equal(retention_count_branches(store), 2);
 	assert_int_equal(retention_count_log(store, 0), 50);
 	assert_int_equal(retention_count_log(store, 3), 60);
@@ -84,7 +87,7 @@ static void old_answers_and_events_go(void **state)
 	store =
 		retention_retire(fixture, store, &removal); // 40 h after the first, 20 h after the second
 	assert_int_equal(cau_store_read_answer(store, "c", 0, ignore_answer, NULL, NULL),
-	                 CAU_ALREADY_EXISTS); // it must not act again
+	                 CAU_ALREADY_EXISTS); // forgotten: a resend must not act again
 	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL), CAU_OK);
 	assert_int_equal(cau_store_read_answer(store, "c", 2, ignore_answer, NULL, NULL),
 	                 CAU_NOT_FOUND);
@@ -104,18 +107,19 @@ static void old_answers_and_events_go(void **state)
 	assert_int_equal(events, 1);
 	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL),
 	                 CAU_ALREADY_EXISTS);
-	retention_clock_ms += 60 * 24 * RETENTION_HOUR_MS; // in the end that is forgotten too
+	// after a longer time even the note is removed
+	retention_clock_ms += 60 * 24 * RETENTION_HOUR_MS;
 	store = retention_retire(fixture, store, &removal);
 	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL),
 	                 CAU_NOT_FOUND);
 	cau_store_close(store);
 }
 
-// The store's own thread does the same beside commits. Each small commit gives it a turn.
+// The store thread takes the same steps between commits. Each small commit gives it a turn.
 static void the_thread_removes_a_deleted_session(void **state)
 {
 	struct fixture *fixture = *state;
-	static const double patience_s = 20.0; // it takes some milliseconds
+	static const double patience_s = 20.0; // the removal takes some milliseconds
 	cau_store_metrics metrics;
 	cau_store_close(retention_open(fixture));
 	fixture->config.retention_interval_ms = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The present line of a big session: checkpoints are thinned and its oldest log goes, in small
-// steps; what is needed to replay what is kept stays, and so do marked states.
+// The present line of a big session: checkpoints are thinned and the oldest log is removed, in
+// small steps. Everything that a replay of the rest needs stays, and so do marked states.
 #include "retention_fixture.h"
 
 #include <sqlite3.h>
@@ -17,8 +17,8 @@ static bool is_reached(cau_store *store, int64_t branch, uint64_t tick)
 	return cau_store_check_reach(store, "knee", branch, tick, NULL) == CAU_OK;
 }
 
-// What can be reached, told by what is there: with a command at every tick, a state is reached if
-// the commands from the newest checkpoint on are all there.
+// True if the stored records reach the tick. There is a command at every tick, so a state can be
+// replayed if all commands from the newest checkpoint on are there.
 static bool can_be_replayed(cau_store *store, int64_t branch, uint64_t tick)
 {
 	static uint64_t ticks[20000];
@@ -27,8 +27,8 @@ static bool can_be_replayed(cau_store *store, int64_t branch, uint64_t tick)
 	                        (int)tick - (int)from;
 }
 
-// Every tick up to `end` that is said to be reached can be replayed, and the other way round; from
-// the oldest tick on all are.
+// Checks that a tick up to `end` is reported as reachable exactly if it can be replayed, and that
+// all ticks from the oldest tick on can.
 static void check_what_is_said(cau_store *store, int64_t branch, uint64_t end, uint64_t stride)
 {
 	uint64_t oldest;
@@ -45,7 +45,7 @@ static void a_big_session_loses_left_branches_first(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
-	fixture->config.retention_bytes = 900000; // eight checkpoints of the test's, and some log
+	fixture->config.retention_bytes = 900000; // eight checkpoints of this test, and some log
 	cau_store *store = retention_open(fixture);
 	retention_log(store, 0, 0, 60);
 	for (uint64_t tick = 0; tick < 6; tick++)
@@ -54,7 +54,7 @@ static void a_big_session_loses_left_branches_first(void **state)
 	for (uint64_t tick = 3; tick < 7; tick++)
 		retention_put_checkpoint(store, 1, 1000 * tick);
 	store = retention_retire(fixture, store, &removal);
-	assert_int_equal(removal.rows, 2); // 5000 and 4000 of the left branch made room enough
+	assert_int_equal(removal.rows, 2); // the removal of 5000 and 4000 of the left branch was enough
 	assert_int_equal(retention_newest_checkpoint(store, 0, 10000), 3000);
 	assert_int_equal(retention_newest_checkpoint(store, 1, 2999), 2000);
 	assert_int_equal(retention_newest_checkpoint(store, 1, 10000), 6000);
@@ -78,7 +78,8 @@ static void the_first_checkpoint_and_the_newest_two_stay_whatever_the_limit(void
 	cau_store_close(store);
 }
 
-// Forty times back and on again, each time from where the last came to. Reset means tick 0.
+// Rewinds and continues forty times, each time from where the last branch ended. A reset goes to
+// tick 0.
 static void whatever_was_rewound_tick_0_can_be_reached(void **state)
 {
 	struct fixture *fixture = *state;
@@ -105,7 +106,7 @@ static void whatever_was_rewound_tick_0_can_be_reached(void **state)
 	retention_clock_ms = RETENTION_START_MS + 25 * RETENTION_HOUR_MS;
 	store = retention_retire(fixture, store, &removal);
 	assert_int_equal(retention_newest_checkpoint(store, 0, 0), 0);
-	assert_int_equal(retention_count_branches(store), 2); // what came of the rest is gone
+	assert_int_equal(retention_count_branches(store), 2); // the other branches are removed
 	check_what_is_said(store, 41, 0, 1);
 	cau_store_close(store);
 }
@@ -120,7 +121,8 @@ static void put_mark(cau_store *store, int64_t branch, uint64_t tick)
 	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
 }
 
-// One with a checkpoint of its own, one that the log leads to, on a branch that was left long ago.
+// One marked state has a checkpoint of its own; another is reached by the log, on a branch that was
+// left long ago.
 static void marked_states_and_their_events_stay(void **state)
 {
 	struct fixture *fixture = *state;
@@ -152,8 +154,8 @@ static void marked_states_and_their_events_stay(void **state)
 	cau_store_close(store);
 }
 
-// The log is more than the limit. What goes is told after every step, each of which is a
-// transaction: a crash between two leaves nothing untrue.
+// The log alone exceeds the limit. The removed range is reported after every step. Each step is a
+// transaction, so a crash between two steps leaves no wrong report.
 static void a_log_beyond_the_limit_goes_as_a_gap_that_is_told(void **state)
 {
 	struct fixture *fixture = *state;
@@ -206,7 +208,7 @@ static void what_could_not_be_stored_is_a_gap(void **state)
 	check_what_is_said(store, 0, 200, 1);
 	assert_int_equal(cau_store_check_reach(store, "knee", 0, 120, &error), CAU_BAD_VALUE);
 	assert_non_null(strstr(error.reason, "can be reached: 0 to 100, 140 on"));
-	// The checkpoint that ends it stays, close as it stands.
+	// The checkpoint at the end of the gap stays, although it is close to others.
 	struct removal removal;
 	retention_put_checkpoint(store, 0, 100000);
 	retention_put_checkpoint(store, 0, 100001);
@@ -216,8 +218,8 @@ static void what_could_not_be_stored_is_a_gap(void **state)
 	cau_store_close(store);
 }
 
-// Sixty hours that nobody touches: the daemon comes to one checkpoint in 256 checkpoint_s, here
-// 153,600 ticks. README.md states the bounds.
+// Sixty hours without commands: the daemon then makes one checkpoint in 256 checkpoint_s, here
+// every 153,600 ticks. README.md states the bounds.
 static void an_untouched_weekend_is_small(void **state)
 {
 	static const uint64_t cadence = 153600, end = 60ull * 3600 * 60;
@@ -243,12 +245,13 @@ static void an_untouched_weekend_is_small(void **state)
 	print_message("%d checkpoints of %d written, %d pages\n", (int)count, (int)(end / cadence) + 1,
 	              (int)pages);
 	assert_in_range(count, 3, 40);
-	assert_in_range(pages * 4096, 1, 41 * 105000); // of 100 kB each: freed pages were used again
+	// checkpoints have 100 kB each: freed pages were used again
+	assert_in_range(pages * 4096, 1, 41 * 105000);
 	sqlite3_close(database);
 	cau_store_close(store);
 }
 
-// The bytes of a session's first branch that are counted, and those of its log.
+// Reads the counted bytes of a session's first branch, and the bytes of its log.
 static void read_count(sqlite3 *database, int session, int64_t *counted, int64_t *logged)
 {
 	char sql[200];
@@ -262,8 +265,8 @@ static void read_count(sqlite3 *database, int session, int64_t *counted, int64_t
 	assert_int_equal(cau_store_integer(database, sql, logged, NULL), CAU_OK);
 }
 
-// Writes `ticks` ticks of each session's log. After every third one comes a batch that fails. Its
-// first record is rolled back, and must not be counted.
+// Writes `ticks` ticks of each session's log. After every third one comes a batch that fails. The
+// first record of that batch is rolled back, and must not be counted.
 static void write_logs(cau_store *store, int sessions, uint64_t ticks)
 {
 	char id[16];
@@ -279,10 +282,10 @@ static void write_logs(cau_store *store, int sessions, uint64_t ticks)
 		}
 }
 
-// More sessions than are counted apart, and few enough.
+// Runs with one session, and with more sessions than there are slots for uncounted bytes.
 static void a_log_is_counted_but_for_its_newest_page(void **state)
 {
-	enum { MANY = 20, TICKS = 60 }; // of 72 bytes each
+	enum { MANY = 20, TICKS = 60 }; // each tick has 72 bytes
 	for (int sessions = 1; sessions <= MANY; sessions += MANY - 1) {
 		struct fixture *fixture = *state;
 		char id[16];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces of a session: those that are taken are written again to the same bytes.
+// Fuzzes the pieces of a session. A piece that is accepted must give the same bytes when it is
+// written again.
 #include "fuzz/fuzz_target.h"
 
 #include <stdlib.h>

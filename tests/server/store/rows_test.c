@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces of a session on its way: what is written is read again, and what is no piece is refused,
-// wherever it ends and whatever it claims.
+// Pieces of a moving session: what is written is read again, and bytes that are no piece are
+// refused, wherever they end and whatever they contain.
 #include "store_fixture.h"
 
 #include <stdlib.h>
@@ -51,7 +51,7 @@ static void what_is_written_is_read_again(void **state)
 	free(piece.bytes);
 }
 
-// A copy of its own, so that a sanitizer sees a byte too far.
+// Checks a copy of the exact size, so that a sanitizer detects a read beyond it.
 static cau_status check_copy(const unsigned char *bytes, size_t count)
 {
 	unsigned char *copy = malloc(count + !count);
@@ -68,7 +68,7 @@ static void one_that_ends_too_soon_is_refused(void **state)
 	int whole = 0;
 	for (size_t count = 0; count <= piece.byte_count; count++)
 		whole += check_copy(piece.bytes, count) == CAU_OK;
-	assert_int_equal(whole, 4); // the head alone, and after each row
+	assert_int_equal(whole, 4); // complete pieces: the head alone, and the piece after each row
 	free(piece.bytes);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What subscribers get of a stream whose frames are put there by hand, at times of the test's own.
+// Checks which frames subscribers get. The test puts the frames into the stream itself, at its own
+// times.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -60,7 +61,7 @@ static void put(cau_ring_frame *slot, uint64_t sequence, cau_buffer *buffer)
 	*slot = (cau_ring_frame){sequence, buffer};
 }
 
-// The next frame, as publish.c makes it, and a key frame if one is wanted.
+// Makes the next frame as publish.c does, and a key frame if one is requested.
 static void publish(scene *s)
 {
 	cau_stream *stream = s->stream;
@@ -87,7 +88,7 @@ static void publish(scene *s)
 	put(&stream->key, sequence, cau_ring_take(stream, bytes));
 }
 
-// Takes what the subscriber gets now; the frame's header, sequence 0 if there is none.
+// Takes the frame that the subscriber gets now. Returns its header; sequence 0 if there is none.
 static cau_frame_header take(scene *s, cau_subscriber *sub)
 {
 	cau_frame_header header = {0};
@@ -109,7 +110,7 @@ static cau_frame_header take(scene *s, cau_subscriber *sub)
 	return header;
 }
 
-// The decoder, which took every frame that came, holds the newest state.
+// Checks that the decoder, which took every frame, has the newest state.
 static void assert_newest(const scene *s)
 {
 	const cau_stream_state *state = cau_frame_decoder_state(s->decoder);
@@ -124,19 +125,20 @@ static cau_subscriber join(scene *s)
 {
 	cau_subscriber sub = {.key_asked_s = -1};
 	publish(s);
-	take(s, &sub); // the topology
+	take(s, &sub); // takes the topology
 	assert_int_equal(take(s, &sub).kind, CAU_FRAME_KEY);
 	return sub;
 }
 
-// Takes nothing until the next delta has left the ring, then goes on with a key frame.
+// The subscriber takes nothing until its next delta has left the ring, then continues with a key
+// frame.
 static void fall(scene *s, cau_subscriber *sub)
 {
 	for (int i = 0; i < 3 * RING_FRAMES; i++)
 		publish(s);
 	assert_int_equal(take(s, sub).sequence, 0);
 	assert_true(sub->wants_key);
-	s->now_s += 2; // key frames come once a second at most
+	s->now_s += 2; // key frames come at most once a second
 	take(s, sub);
 	publish(s);
 	assert_int_equal(take(s, sub).kind, CAU_FRAME_KEY);
@@ -193,8 +195,8 @@ static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **u
 	scene_finish(&s);
 }
 
-// A client whose decoder begins anew acknowledges frame 0. The frames that it has taken are not in
-// flight again.
+// A client with a new decoder acknowledges frame 0. The frames that it has taken are not in flight
+// again.
 static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 {
 	(void)unused;
@@ -215,7 +217,7 @@ static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 	scene_finish(&s);
 }
 
-// More than SENT_FRAMES frames are in flight. All of their bytes stay counted.
+// More than SENT_FRAMES frames are in flight. The bytes of all of them stay counted.
 static void test_an_old_acknowledgement_frees_nothing(void **unused)
 {
 	(void)unused;
@@ -251,7 +253,7 @@ static void test_one_that_keeps_falling_goes_to_half_rate(void **unused)
 		twice += header.sequence && header.sequence == header.base_sequence + 2;
 		once += header.sequence && header.sequence == header.base_sequence + 1;
 	}
-	assert_true(twice >= 18 && once <= 3); // single ones lead to the first thin frame
+	assert_true(twice >= 18 && once <= 3); // single frames come only until the first thinned frame
 	if (s.stream->newest % 2) {
 		publish(&s);
 		take(&s, &sub);
@@ -301,7 +303,7 @@ static void test_a_last_single_frame_is_not_kept_back(void **unused)
 		publish(&s);
 		take(&s, &sub);
 	} while (s.stream->newest % 2 || s.stream->newest != sub.sequence);
-	publish(&s); // the last one, say of a pause
+	publish(&s); // the last frame, for example before a pause
 	assert_int_equal(take(&s, &sub).sequence, 0);
 	s.now_s += 0.3;
 	assert_int_equal(take(&s, &sub).sequence, s.stream->newest);
@@ -324,7 +326,7 @@ static void test_one_that_keeps_up_comes_back_on_trial(void **unused)
 	while (take(&s, &sub).sequence)
 		;
 	assert_newest(&s);
-	fall(&s, &sub); // once is enough now
+	fall(&s, &sub); // now one fall is enough
 	assert_true(sub.half);
 	scene_finish(&s);
 }
@@ -346,7 +348,7 @@ static void test_falls_are_forgotten_in_time(void **unused)
 	scene_finish(&s);
 }
 
-// What could not be made was not made: nobody is told to look.
+// If the key frame cannot be encoded, none is made, and no subscriber is woken.
 static void test_a_key_frame_that_fails_wakes_nobody(void **state)
 {
 	(void)state;
@@ -356,7 +358,7 @@ static void test_a_key_frame_that_fails_wakes_nobody(void **state)
 	scene_init(&s);
 	publish(&s);
 	s.stream->key_wanted = true;
-	s.stream->next_s = s.now_s + 1; // no delta is due
+	s.stream->next_s = s.now_s + 1; // so that no delta is due
 	s.stream->scratch_bytes = 0;
 	cau_stream_moment moment = {.now_s = s.now_s};
 	assert_int_not_equal(cau_streams_publish(&s.streams, &moment, &made, &error), CAU_OK);
@@ -365,7 +367,7 @@ static void test_a_key_frame_that_fails_wakes_nobody(void **state)
 	scene_finish(&s);
 }
 
-// ---- what the builder makes beforehand ----------------------------------------------------------
+// ---- work of the builder before a join ----------------------------------------------------------
 static cau_buffer *joined_topology(cau_streams *streams, const cau_stream_shape *shape)
 {
 	cau_stream_wish wish = {.rate_hz = 60, .step_m = 1e-5, .channels = CAU_CHANNEL_POSITIONS};
@@ -376,8 +378,8 @@ static cau_buffer *joined_topology(cau_streams *streams, const cau_stream_shape 
 	return stream->topology;
 }
 
-// A new session has no epoch yet. The topology that is encoded then equals the one that the first
-// subscriber would have had encoded.
+// A new session has no epoch yet. The topology that the builder encodes is equal to the one that
+// the first join would encode.
 static void test_a_topology_is_encoded_before_anybody_joins(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays a trace of a session's decisions again, and tells as JSON what was in it. Ends with 1 where
-// the machine answers otherwise.
+// Replays a trace of a session's decisions, and writes its counts as JSON. Exits with 1 if the
+// machine answers differently.
 //     test_replay_trace FILE
 #include <stdlib.h>
 

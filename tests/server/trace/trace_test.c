@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A trace reads back as it was written, plays again to the same answers, and says where it does
-// not.
+// A trace reads back as it was written. Its replay gives the same answers, or names the line where
+// they differ.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,8 @@ static cau_asker asker_of(uint32_t client)
 	return asker;
 }
 
-// No member is zero, so that one which a trace left out would read back otherwise.
+// Returns a call in which no member is zero, so that a member that the trace omits would be
+// noticed.
 static cau_trace_call full_call(cau_trace_what what)
 {
 	cau_trace_call call = {.what = what,
@@ -63,7 +64,7 @@ static cau_trace_call full_call(cau_trace_what what)
 	return call;
 }
 
-// The line of a call, without its end; to be freed.
+// Returns the line of a call, without its line feed. The caller frees it.
 static char *line_of(const cau_trace_call *call)
 {
 	char *line = NULL;
@@ -182,7 +183,7 @@ static void order(traced *t, uint64_t ticket, cau_ask ask, uint32_t client)
 	take(t, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &asked});
 }
 
-// The worker, until it has nothing to do.
+// Runs the worker until it has nothing to do.
 static void work(traced *t)
 {
 	cau_effects effects;
@@ -205,7 +206,7 @@ static void work(traced *t)
 	}
 }
 
-// Two clients: one takes over, enables and falls silent; the other is refused and pauses.
+// Two clients: one takes over, turns energy on and falls silent; the other is refused and pauses.
 static void make_trace(traced *t)
 {
 	*t = (traced){.now_s = 1};
@@ -233,7 +234,7 @@ static void make_trace(traced *t)
 	order(t, 4, CAU_ASK_PAUSE, 2);
 	work(t);
 	assert_int_equal(fflush(t->to), 0);
-	assert_in_range(t->lit_steps, 10, 30); // it was lit, and dark again by silence
+	assert_in_range(t->lit_steps, 10, 30); // energy went on, and off again at the deadline
 }
 
 static void discard_trace(traced *t)
@@ -268,7 +269,7 @@ static void test_a_trace_plays_again_to_the_same_answers(void **state)
 	discard_trace(&t);
 }
 
-// A daemon may be killed at any byte.
+// A daemon may be killed at any byte of its trace.
 static void test_a_trace_may_end_anywhere(void **state)
 {
 	(void)state;
@@ -292,7 +293,8 @@ static uint64_t line_at(const char *text, const char *at)
 	return line;
 }
 
-// `found`, at its last place, becomes as long a `made`.
+// Replaces the last `found` in the trace by `made`, which must be as long. The replay must fail
+// `lines_on` lines later.
 static void expect_difference(const char *found, const char *made, cau_status wanted, int lines_on)
 {
 	traced t;
@@ -321,7 +323,7 @@ static void test_other_answers_are_told_with_their_line(void **state)
 	expect_difference("  effect=tell", "  effect=wake", CAU_CORRUPT, 0);
 	expect_difference("drive.energy_off=", "drive.energy_on=0", CAU_CORRUPT, 0);
 	expect_difference("act=step", "act=look", CAU_CORRUPT, 0);
-	// what was told changes what the worker is told, after an effect and the call for it
+	// A changed order changes the worker's next action, which comes after an effect and the call.
 	expect_difference("ask=pause", "ask=speed", CAU_CORRUPT, 3);
 	expect_difference("take", "tale", CAU_BAD_SYNTAX, 0);
 }

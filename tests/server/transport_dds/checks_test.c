@@ -58,8 +58,8 @@ static void times_are_near_and_go_on(void **state)
 	                 CAU_BAD_VALUE);
 }
 
-// Both clocks step back an hour, and the count with them if it is made of the time: refused until
-// the deadline is over, and not for an hour.
+// Both clocks are set back an hour, and so is a count that is made from the time. Samples are
+// refused until the deadline has passed, not for the whole hour.
 static void a_step_back_locks_out_for_a_deadline_only(void **state)
 {
 	(void)state;
@@ -76,7 +76,7 @@ static void a_step_back_locks_out_for_a_deadline_only(void **state)
 		{1, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_OK},
 		{0, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
 		{UINT64_MAX, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
-		{8, NOW_NS - HOUR_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE}, // one clock alone: stale
+		{8, NOW_NS - HOUR_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE}, // one clock: stale
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
 		assert_int_equal(cau_motion_check_order(&past, cases[i].sequence, cases[i].source_time_ns,
@@ -102,7 +102,7 @@ static void poses_are_finite_and_rotations_unit(void **state)
 	assert_true(near.rotation[1] == 1);
 }
 
-// The same range as that of tool.move on WebSocket.
+// The range is the same as for tool.move on WebSocket.
 static void each_coordinate_is_within_its_range(void **state)
 {
 	(void)state;

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-// ROS 2's default, of either side.
+// Returns ROS 2's default QoS, for a writer or a reader.
 static dds_qos_t *usual(void)
 {
 	dds_qos_t *qos = dds_create_qos();
@@ -33,7 +33,7 @@ static void what_is_usual_matches(void **state)
 {
 	(void)state;
 	expect(usual(), usual(), NULL);
-	expect(dds_create_qos(), dds_create_qos(), NULL); // DDS's defaults
+	expect(dds_create_qos(), dds_create_qos(), NULL); // DDS's own defaults
 }
 
 static void less_than_requested_is_named(void **state)
@@ -69,7 +69,7 @@ static void more_than_requested_matches(void **state)
 	expect(usual(), qos, NULL);
 }
 
-// Reliability alone has a remedy, so it is named only where nothing else is wrong.
+// Only reliability has a remedy, so it is named only if nothing else is wrong.
 static void reliability_is_named_last(void **state)
 {
 	(void)state;

@@ -27,7 +27,7 @@ static int tear_down(void **state)
 	return 0;
 }
 
-// So many keys that are nobody's; how many of them were let in.
+// Offers `count` keys that belong to no tool. Returns how many were accepted.
 static int admit_strangers(int count)
 {
 	char name[CAU_NAME_BYTES];
@@ -44,7 +44,7 @@ static void a_few_strangers_are_let_in_and_the_rest_is_counted(void **state)
 	(void)state;
 	assert_int_equal(admit_strangers(CAU_DDS_STRANGERS_MOST), CAU_DDS_STRANGERS_MOST);
 	assert_int_equal(cau_dds_keys_take_dropped(&keys), 0);
-	assert_int_equal(admit_strangers(MANY), CAU_DDS_STRANGERS_MOST); // the same ones
+	assert_int_equal(admit_strangers(MANY), CAU_DDS_STRANGERS_MOST); // the same keys as before
 	assert_int_equal(cau_dds_keys_take_dropped(&keys), MANY - CAU_DDS_STRANGERS_MOST);
 	assert_int_equal(cau_dds_keys_take_dropped(&keys), 0);
 }

@@ -75,7 +75,7 @@ static void what_cannot_be_read_is_refused_with_its_line(void **state)
 	fails("view knee-robot\n", CAU_BAD_SYNTAX, "line 1");
 	fails("view CN=a\nview CN=b\nadmin CN=a\n", CAU_BAD_VALUE, "line 3");
 	memset(text + strlen(text), 'a', CAU_DDS_SUBJECT_BYTES);
-	fails(text, CAU_BAD_SYNTAX, "line 1"); // a name that nobody could prove
+	fails(text, CAU_BAD_SYNTAX, "line 1"); // a name so long that no participant could prove it
 	memset(text + strlen(text), 'a', CAU_CONFIG_TEXT_BYTES);
 	fails(text, CAU_LIMIT, "line 1");
 }

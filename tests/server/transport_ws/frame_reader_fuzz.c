@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever bytes come, cut wherever, the reader makes the same of them and stays within its bounds.
+// Fuzzes the frame reader: however the bytes are cut, the events are the same and stay within their
+// bounds.
 #include "transport_ws/frame_reader.h"
 
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 
 enum { MESSAGE_MOST = 4096 };
 
-// A sum over all events and what they carry.
+// Returns a sum over all events and their data.
 static uint64_t read_in_pieces(const uint8_t *data, size_t size, size_t piece)
 {
 	cau_frame_reader r;

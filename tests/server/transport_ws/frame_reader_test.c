@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames by RFC 6455: what is whole comes out however the bytes are cut, what
-// breaks a rule ends the connection with the code that the rule's section
-// names.
+// Frames by RFC 6455. Complete messages are read, however the bytes are cut. A broken rule ends the
+// connection with the code that the rule's section names.
 #include "transport_ws/frame_reader.h"
 
 #include <setjmp.h>
@@ -49,7 +48,7 @@ static void put_frame(unsigned first, const void *payload, size_t bytes)
 		put(((const unsigned char *)payload)[i] ^ mask[i % 4]);
 }
 
-// ---- what came out, as text: "T:abc B:.. F P:x O: C:1000 X:1002"
+// ---- the events as text: "T:abc B:.. F P:x O: C:1000 X:1002"
 static char heard[BYTES_MOST];
 
 static void note(const char *what, const void *bytes, size_t count)
@@ -97,7 +96,7 @@ static const char *read_in_pieces(size_t piece)
 	heard[0] = 0;
 	cau_frame_reader_init(&r, MESSAGE_MOST);
 	for (size_t i = 0; i < sent.count && !broken; i += piece) {
-		// A copy of its own size, so that a sanitizer sees what reads beyond it.
+		// A copy of the exact size, so that a sanitizer detects a read beyond it.
 		size_t bytes = sent.count - i < piece ? sent.count - i : piece;
 		unsigned char *part = malloc(bytes);
 		memcpy(part, sent.bytes + i, bytes);
@@ -113,7 +112,7 @@ static const char *read_in_pieces(size_t piece)
 	return heard;
 }
 
-// However the network cuts it, the same comes out.
+// Checks that the events are the same, however the network cuts the bytes.
 static void assert_heard(const char *expected)
 {
 	static const size_t pieces[] = {1, 2, 3, 7, 1000, BYTES_MOST};
@@ -137,7 +136,7 @@ static void fragments_make_one_message_and_control_frames_may_stand_between(void
 	put_frame(1, "he", 2);
 	put_frame(FINAL | 9, "pi", 2);
 	put_frame(0, "", 0);
-	put_frame(0, "l\xc3", 2); // a character over two fragments
+	put_frame(0, "l\xc3", 2); // a character that is cut by the end of a fragment
 	put_frame(FINAL | 10, "", 0);
 	put_frame(FINAL | 0, "\xa9", 1);
 	put_frame(FINAL | 1, "next", 4);
@@ -195,7 +194,7 @@ static void close_frames_are_checked(void **state)
 	assert_heard("X:1007 ");
 }
 
-// Only the bytes up to the one that breaks the rule: nothing more need come.
+// Each case ends with the byte that breaks the rule: the error must come without further bytes.
 static void broken_rules_are_told_at_once(void **state)
 {
 	(void)state;
@@ -204,25 +203,25 @@ static void broken_rules_are_told_at_once(void **state)
 		size_t count;
 		const char *heard;
 	} cases[] = {
-		{{0xC1}, 1, "X:1002 "},                                      // reserved bits
-		{{0xA1}, 1, "X:1002 "},                                      //
-		{{0x91}, 1, "X:1002 "},                                      //
-		{{0x83}, 1, "X:1002 "},                                      // opcodes nobody has defined
-		{{0x87}, 1, "X:1002 "},                                      //
-		{{0x8B}, 1, "X:1002 "},                                      //
-		{{0x8F}, 1, "X:1002 "},                                      //
-		{{0x09}, 1, "X:1002 "},                                      // a ping in fragments
-		{{0x08}, 1, "X:1002 "},                                      // a close frame in fragments
-		{{0x80}, 1, "X:1002 "},                                      // a continuation of nothing
-		{{0x00}, 1, "X:1002 "},                                      //
-		{{0x81, 0x05}, 2, "X:1002 "},                                // unmasked
-		{{0x89, 0x00}, 2, "X:1002 "},                                //
-		{{0x89, 0xFE}, 2, "X:1002 "},                                // a ping of 126 bytes or more
-		{{0x8A, 0xFF}, 2, "X:1002 "},                                //
-		{{0x82, 0xFE, 0, 125}, 4, "X:1002 "},                        // lengths that are too long
-		{{0x82, 0xFF, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF}, 10, "X:1002 "}, //
-		{{0x82, 0xFF, 0x80, 0, 0, 0, 0, 0, 0, 0}, 10, "X:1002 "},    // a length of 64 bits
-		{{0x82, 0xFF, 0, 0, 0, 0, 0, 0x10, 0, 0}, 10, "X:1009 "},    // beyond the limit
+		{{0xC1}, 1, "X:1002 "},               // reserved bits
+		{{0xA1}, 1, "X:1002 "},               // reserved bits
+		{{0x91}, 1, "X:1002 "},               // reserved bits
+		{{0x83}, 1, "X:1002 "},               // an undefined opcode
+		{{0x87}, 1, "X:1002 "},               // an undefined opcode
+		{{0x8B}, 1, "X:1002 "},               // an undefined opcode
+		{{0x8F}, 1, "X:1002 "},               // an undefined opcode
+		{{0x09}, 1, "X:1002 "},               // a ping in fragments
+		{{0x08}, 1, "X:1002 "},               // a close frame in fragments
+		{{0x80}, 1, "X:1002 "},               // a continuation without a message
+		{{0x00}, 1, "X:1002 "},               // a continuation without a message
+		{{0x81, 0x05}, 2, "X:1002 "},         // an unmasked text
+		{{0x89, 0x00}, 2, "X:1002 "},         // an unmasked ping
+		{{0x89, 0xFE}, 2, "X:1002 "},         // a ping of 126 bytes or more
+		{{0x8A, 0xFF}, 2, "X:1002 "},         // a pong of 126 bytes or more
+		{{0x82, 0xFE, 0, 125}, 4, "X:1002 "}, // a too long form of length
+		{{0x82, 0xFF, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF}, 10, "X:1002 "}, // a too long form of length
+		{{0x82, 0xFF, 0x80, 0, 0, 0, 0, 0, 0, 0}, 10, "X:1002 "},    // a length above 2^63
+		{{0x82, 0xFF, 0, 0, 0, 0, 0, 0x10, 0, 0}, 10, "X:1009 "},    // a length beyond the limit
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		for (size_t b = 0; b < cases[i].count; b++)
@@ -271,12 +270,12 @@ static void text_that_is_no_utf_8_is_refused(void **state)
 		put_frame(FINAL | 1, wrong[i], strlen(wrong[i]));
 		assert_heard("X:1007 ");
 	}
-	put_frame(1, "\xe2\x82", 2); // a whole character in time
+	put_frame(1, "\xe2\x82", 2); // the second fragment completes the character
 	put_frame(FINAL | 0, "\xac", 1);
-	put_frame(1, "\xe2\x82", 2); // and one that never comes
+	put_frame(1, "\xe2\x82", 2); // the rest of the character never comes
 	put_frame(FINAL | 0, "", 0);
 	assert_heard("F T:\xe2\x82\xac F X:1007 ");
-	put_frame(1, "\xe2(", 2); // told before the message is whole
+	put_frame(1, "\xe2(", 2); // reported before the message is complete
 	assert_heard("X:1007 ");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shares of the network thread's time: what each client may use, and who goes first.
+// Shares of the network thread's time: how much each client may use, and which goes first.
 #include "transport_ws/shares.h"
 
 #include <setjmp.h>
@@ -14,7 +14,7 @@ typedef struct world {
 	double now_s;
 } world;
 
-// Two viewers and a driver behind one address, one viewer elsewhere.
+// Opens two viewers and a driver behind one address, and one viewer behind another.
 static void open_world(world *w)
 {
 	*w = (world){.now_s = 100};
@@ -33,7 +33,8 @@ static void close_world(world *w)
 	cau_shares_finish(&w->shares);
 }
 
-// The share uses all the time that it gets, a millisecond at a time. Returns the part of a core.
+// The clients use all the time that they get, a millisecond at a time. Returns the part of a core
+// that they used.
 static double flood(world *w, cau_share *const *shares, int count, int seconds)
 {
 	double used_s = 0;
@@ -113,10 +114,10 @@ static void a_new_connection_does_not_renew_the_share(void **state)
 	cau_share_close(&w.viewers[1]);
 	assert_true(
 		cau_share_open(&w.shares, &w.viewers[0], "192.0.2.1", CAU_STANDING_UNKNOWN, w.now_s));
-	assert_true(cau_share_wait_s(&w.viewers[0], w.now_s) <= 0); // it may still say hello
+	assert_true(cau_share_wait_s(&w.viewers[0], w.now_s) <= 0); // it still has time to say hello
 	cau_share_promote(&w.viewers[0], CAU_STANDING_VIEWER, w.now_s);
 	assert_true(cau_share_wait_s(&w.viewers[0], w.now_s) > 0.5);
-	w.now_s += 2; // what is given back is forgotten
+	w.now_s += 2; // used time is given back and forgotten
 	assert_true(
 		cau_share_open(&w.shares, &w.viewers[1], "192.0.2.1", CAU_STANDING_VIEWER, w.now_s));
 	assert_true(cau_share_wait_s(&w.viewers[1], w.now_s) <= 0);

@@ -15,14 +15,15 @@
 
 #include "clock/clock.h"
 
-// Later than this it is not, but for what a busy machine is late to wake any thread (lateness).
+// The watchdog may be late by this, and by what a busy machine is late to wake any thread
+// (lateness).
 #define LATE_S 0.05
 
-// Sleeps again and again, and notes by how much it was woken late at the worst.
+// A thread that sleeps again and again, and notes the longest delay of its waking.
 typedef struct lateness {
 	pthread_t thread;
 	pthread_mutex_t mutex;
-	double slept_s, worst_s; // since when it sleeps now
+	double slept_s, worst_s; // slept_s: start of the present sleep; worst_s: the longest delay
 	atomic_bool ending;
 } lateness;
 
@@ -55,7 +56,7 @@ static void begin(lateness *l)
 
 static double end(lateness *l)
 {
-	note(l); // it may be late right now
+	note(l); // the thread may be late at this moment
 	l->ending = true;
 	pthread_join(l->thread, NULL);
 	return l->worst_s;
@@ -65,7 +66,7 @@ typedef struct looks {
 	pthread_mutex_t mutex, hang;
 	pthread_cond_t looked;
 	int count;
-	double expires_s, looked_s; // expires_s: INFINITY for nothing to watch
+	double expires_s, looked_s; // expires_s: next deadline, INFINITY if there is none
 } looks;
 
 static double look(void *user, double now_s)
@@ -129,7 +130,7 @@ static void a_wake_makes_it_look_at_once(void **state)
 	cau_watchdog_destroy(NULL);
 }
 
-// Looks, and then hangs until the lock is let go.
+// Looks, then hangs until the test unlocks the mutex.
 static double look_and_hang(void *user, double now_s)
 {
 	looks *l = user;
@@ -147,11 +148,13 @@ static void it_moves_unless_it_hangs(void **state)
 	assert_int_equal(cau_watchdog_create(&watchdog, look_and_hang, &l, NULL), CAU_OK);
 	await(&l, 1);
 	for (int round = 0; round < 3; round++) {
-		while (!cau_watchdog_moves(watchdog)) // asked, it comes round by itself
+		// cau_watchdog_moves asks the watchdog to look; the watchdog then looks without another
+		// wake
+		while (!cau_watchdog_moves(watchdog))
 			sched_yield();
 	}
 	pthread_mutex_lock(&l.hang);
-	while (cau_watchdog_moves(watchdog)) // the last look may end yet
+	while (cau_watchdog_moves(watchdog)) // the last look may still be ending
 		sched_yield();
 	for (int asked = 0; asked < 1000; asked++)
 		assert_false(cau_watchdog_moves(watchdog));

@@ -13,9 +13,10 @@
 
 #include "clock/clock.h"
 
-// A task that counts its slices, notes when two run at once, and tells when it has run enough.
+// A task that counts its slices, counts overlapping slices, and signals when it has run often
+// enough.
 typedef struct counting {
-	cau_task task; // first
+	cau_task task; // must be the first member
 	atomic_int inside, slices, overlaps;
 	int wanted;
 	double period_s;
@@ -98,12 +99,12 @@ static void a_sleeping_task_runs_when_woken_only(void **state)
 	cau_worker_pool_destroy(pool);
 }
 
-// Sleeps for a moment, and again, until the worker has been held; then notes its turn.
+// A task that sleeps for moments until the worker has been held, then notes its turn.
 #define MOMENT_S 0.001
 static atomic_int turns;
 static atomic_bool was_held;
 typedef struct ordered {
-	cau_task task; // first
+	cau_task task; // must be the first member
 	double due_s, deadline_s;
 	int turn;
 } ordered;
@@ -122,11 +123,11 @@ static cau_due take_turn(cau_task *task)
 
 enum { TASKS = 4 };
 typedef struct holder {
-	cau_task task; // first
+	cau_task task; // must be the first member
 	const ordered *tasks;
 } holder;
 
-// Keeps the one worker until all the others are due.
+// Occupies the only worker until all other tasks are due.
 static cau_due hold(cau_task *task)
 {
 	const holder *h = (const holder *)task;
@@ -164,15 +165,16 @@ static void the_earliest_deadline_goes_first(void **state)
 #define LONG_S (2 * CAU_SLICE_MOST_S)
 enum { LONG_TASKS = 3, MARKS = 64 };
 
-// What the tasks of a test do: who is inside, and the order of the slices.
+// Shared notes of a test's tasks: the number of running long slices, their maximum, and the order
+// of all slices.
 static atomic_int long_inside, long_most, marks;
 static char mark[MARKS];
 
 typedef struct marked {
-	cau_task task; // first
+	cau_task task; // must be the first member
 	char name;
 	bool is_long;
-	int yields; // how much time a slice gives the other workers
+	int yields; // how often a slice yields to the other workers
 } marked;
 
 static cau_due note(cau_task *task)
@@ -206,7 +208,8 @@ static void add_marked(cau_worker_pool *pool, marked *m, char name, bool is_long
 	assert_true(cau_worker_pool_add(pool, &m->task));
 }
 
-// Lets the pool run until `wanted` slices are over, then takes the tasks out, the first one last.
+// Lets the pool run until `wanted` slices have ended. Then removes the tasks, the first one last,
+// and destroys the pool.
 static void run_marked(cau_worker_pool *pool, marked *tasks, int count, int wanted)
 {
 	while (marks < wanted)
@@ -241,12 +244,12 @@ static void without_others_all_workers_are_theirs(void **state)
 	assert_int_equal(cau_worker_pool_create(&pool, 2, 2, 0, NULL), CAU_OK);
 	add_marked(pool, &tasks[0], 'L', true);
 	add_marked(pool, &tasks[1], 'M', true);
-	while (long_most < 2) // else this test runs into its time limit
+	while (long_most < 2) // if it is never reached, the test runs into its time limit
 		sched_yield();
 	run_marked(pool, tasks, 2, 10);
 }
 
-// One worker: after each slice of a long task one of the others that are due.
+// With one worker, a slice of another task that is due follows each slice of a long task.
 static void on_one_worker_they_take_turns(void **state)
 {
 	(void)state;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a scene as JSON to a session, for programs that contain the core. cautery/session.h has all
-// else.
+// Creates sessions from scenes in JSON, for programs that contain the core. All other functions of
+// a session are in cautery/session.h.
 //
 //     #include "cautery/embed.h"
 //
-//     // Runs the scene of a file for a second; the hash of its state then, or 0.
+//     // Runs the scene of a file for a second. Returns the hash of its state, or 0.
 //     static uint64_t run(const char *path, cau_error *error)
 //     {
 //         cau_session *session = NULL;
@@ -20,7 +20,7 @@
 //         return hash;
 //     }
 //
-// Threads: these functions share nothing. A session is used from one thread at a time.
+// Threads: the functions share no state. One thread at a time may use a session.
 #pragma once
 
 #include <stddef.h>
@@ -31,27 +31,29 @@
 extern "C" {
 #endif
 
-// The version of the library, "0.1.0". Before version 1, only an equal one has the same structs.
+// Returns the version of the library, such as "0.1.0". Before version 1, the structs are the same
+// only if the version is equal.
 const char *cau_core_version(void);
 
-// Fills *scene from a scene file, of CAU_SCENE_JSON_MAX_BYTES at most. Mesh files that it names are
-// looked up beside it. Errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY and those of cau_scene_from_json;
-// error->file is `path`.
+// Fills *scene from a scene file of at most CAU_SCENE_JSON_MAX_BYTES. Names of mesh files in it are
+// relative to its folder. Errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY and those of
+// cau_scene_from_json; error->file is `path`.
 cau_status cau_scene_from_file(const char *path, cau_scene_def *scene, cau_error *error);
 
-// Makes a session of a scene file. `def` is NULL for the defaults; its `scene` is not read. The
+// Creates a session from a scene file. `def` is NULL for the defaults; def->scene is ignored. The
 // caller destroys *session. Errors: those of cau_scene_from_file and cau_session_create;
 // error->file is `path`.
 cau_status cau_session_from_file(const char *path, const cau_session_def *def,
                                  cau_session **session, cau_error *error);
 
-// The same of a scene's text, `byte_count` bytes. `name` is what errors call it (NULL: nothing).
-// Mesh files that it names are looked up in `directory` (NULL: where the program runs).
+// Creates a session from the text of a scene, `byte_count` bytes. Errors call it `name` (NULL: no
+// name). Names of mesh files in it are relative to `directory` (NULL: the working directory).
+// Otherwise like cau_session_from_file.
 cau_status cau_session_from_json(const char *name, const char *text, size_t byte_count,
                                  const char *directory, const cau_session_def *def,
                                  cau_session **session, cau_error *error);
 
-// Queues a command as JSON: cautery/command_json.h has the members. Errors: those of
+// Queues a command in JSON; cautery/command_json.h has the members. Errors: those of
 // cau_command_from_json and cau_session_submit.
 cau_status cau_session_submit_json(cau_session *session, const char *text, size_t byte_count,
                                    cau_error *error);
