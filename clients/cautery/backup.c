@@ -26,10 +26,10 @@ static cli_exit run(cli *c)
 const cli_command cli_backup = {
 	.name = "backup",
 	.arguments = "[NAME]",
-	.summary = "makes the running daemon copy its store; prints the file",
+	.summary = "copies the store of the running daemon; prints the path of the copy",
 	.help =
 		"The copy is on the daemon's machine, in the folder of its setting `backups`, as NAME.db\n"
-		"(by default the time). It is checked, and nothing is replaced. Needs role admin. To\n"
-		"restore: stop the daemon, put the copy in the place of its store, start it.\n",
+		"(by default the time). The copy is checked. No file is replaced. Needs role admin. To\n"
+		"restore: stop the daemon, replace its store with the copy, and start the daemon.\n",
 	.most = 1,
 	.run = run};

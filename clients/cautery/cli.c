@@ -102,7 +102,7 @@ bool cli_read_number(const cli *c, const char *what, const char *text, double le
 	*value = strtod(text, &end);
 	if (end != text && !*end && *value >= least && *value <= most)
 		return true;
-	cli_complain(c, "%s wants a number from %g to %g, not \"%s\"", what, least, most, text);
+	cli_complain(c, "%s needs a number from %g to %g, not \"%s\"", what, least, most, text);
 	return false;
 }
 
@@ -150,7 +150,8 @@ static cli_exit only_session(cli *c)
 	                    &c->error)) {
 		code = cli_fail(c);
 	} else if (list.sessions.count != 1) {
-		cli_complain(c, "the daemon has %d sessions: say which (cautery ls)", list.sessions.count);
+		cli_complain(c, "the daemon has %d sessions: name one of them (cautery ls lists them)",
+		             list.sessions.count);
 		code = CLI_USAGE;
 	} else {
 		memcpy(c->session, all[0].session, sizeof c->session);

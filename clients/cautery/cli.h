@@ -101,7 +101,7 @@ cli_exit cli_fail_file(cli *c); // prints c->error; always CLI_FILE
 // result is not CLI_DONE.
 static inline cli_exit cli_fail_memory(cli *c)
 {
-	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory here");
+	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory on this machine");
 	cli_fail(c);
 	return CLI_CONNECTION;
 }

@@ -171,7 +171,7 @@ static cli_exit run_completion(cli *c)
 
 const cli_command cli_complete = {.name = "complete",
                                   .arguments = "-- WORD...",
-                                  .summary = "lists what the last word may become, for shells",
+                                  .summary = "lists the completions of the last word, for shells",
                                   .most = CLI_ARGUMENTS_MAX,
                                   .run = run_complete};
 

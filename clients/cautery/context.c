@@ -121,32 +121,33 @@ static cli_exit run_rm(cli *c)
 	return change_contexts(c, take_out);
 }
 
-const cli_command cli_context_ls = {.name = "context ls",
-                                    .also = "context",
-                                    .arguments = "",
-                                    .summary = "lists daemons that have a name here",
-                                    .help = "The current one, marked by *, is the default of --url "
-                                            "and --token-file.\n",
-                                    .run = run_ls};
+const cli_command cli_context_ls = {
+	.name = "context ls",
+	.also = "context",
+	.arguments = "",
+	.summary = "lists the contexts: daemons to which this command has given a name",
+	.help = "The current context, marked by *, is the default of --url "
+			"and --token-file.\n",
+	.run = run_ls};
 
 const cli_command cli_context_set = {
 	.name = "context set",
 	.arguments = "NAME",
-	.summary = "gives the daemon at --url a name, with --token-file for it",
+	.summary = "names the daemon at --url as a context, with its --token-file",
 	.least = 1,
 	.most = 1,
 	.run = run_set};
 
 const cli_command cli_context_use = {.name = "context use",
                                      .arguments = "NAME",
-                                     .summary = "makes a context the current one",
+                                     .summary = "makes a context the current context",
                                      .least = 1,
                                      .most = 1,
                                      .run = run_use};
 
 const cli_command cli_context_rm = {.name = "context rm",
                                     .arguments = "NAME",
-                                    .summary = "forgets a context",
+                                    .summary = "removes a context",
                                     .least = 1,
                                     .most = 1,
                                     .run = run_rm};

@@ -32,7 +32,8 @@ static cau_status find_folder(char *folder, size_t bytes, cau_error *error)
 	int length =
 		snprintf(folder, bytes, "%s%s/cautery", set ? config : home, set ? "" : "/.config");
 	if (length < 0 || (size_t)length >= bytes)
-		return cau_fail(error, CAU_LIMIT, NULL, "the name of its folder is too long");
+		return cau_fail(error, CAU_LIMIT, NULL,
+		                "the name of the folder of the contexts is too long");
 	return CAU_OK;
 }
 

@@ -88,7 +88,7 @@ static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene)
 {
 	const char *kind = cli_value(c, "as");
 	if (kind && strcmp(kind, "fat") != 0 && strcmp(kind, "fascia") != 0) {
-		cli_complain(c, "--as wants fat or fascia, not \"%s\"", kind);
+		cli_complain(c, "--as needs fat or fascia, not \"%s\"", kind);
 		return CLI_USAGE;
 	}
 	cau_mesh_def mesh = {.name = "mesh", .source = CAU_MESH_FILE};
@@ -150,7 +150,8 @@ static cli_exit run(cli *c)
 	int sources = c->argument_count + !!cli_value(c, "definition") + !!cli_value(c, "mesh");
 	if (sources != 1) {
 		cli_complain(
-			c, "one of SCENE, FILE, --definition and --mesh says what the session is made from");
+			c,
+			"give one of SCENE, FILE, --definition and --mesh: the scene or mesh of the session");
 		return CLI_USAGE;
 	}
 	cau_scene_def *scene = calloc(1, sizeof *scene);
@@ -175,7 +176,7 @@ static cli_exit run(cli *c)
 const cli_command cli_create = {
 	.name = "create",
 	.arguments = "SCENE | FILE | --definition FILE | --mesh FILE",
-	.summary = "makes a session and prints its id",
+	.summary = "creates a session and prints its id",
 	.help =
 		"SCENE is one of `cautery scenes`. FILE is a scene (.json) or a mesh: Gmsh, VTK, VTU,\n"
 		"OBJ, STL, PLY, Medit, TetGen, USD text, NRRD or NIfTI. The meshes of a scene file are "
@@ -185,16 +186,18 @@ const cli_command cli_create = {
 		"A closed or nearly closed surface, and a segmentation (NRRD, NIfTI), is filled with\n"
 		"tetrahedra.\n",
 	.most = 1,
-	.options = {{"name", "N", "wanted name, without the daemon's label"},
-                {"paused", NULL, "starts paused"},
-                {"definition", "FILE", "a local scene file (.json)"},
-                {"mesh", "FILE", "a local mesh file"},
-                {"as", "KIND",
-                 "fat (tetrahedra) or fascia (triangles); default: fat where possible"},
-                {"strict", NULL, "refuses a mesh that needs repair"},
-                {"unit-m", "U", "metres in one unit of the mesh (0.001 for millimetres)"},
-                {"edge-mm", "L", "length of an edge of tetrahedra that fill a mesh"},
-                {"labels", "A,B", "labels of a segmentation to keep (default: all)"},
-                {"pin", "SIDES",
-                 "bottom, top, left, right, front, back, with commas, or none (default: bottom)"}},
+	.options =
+		{{"name", "N", "name of the session, without the daemon's label"},
+         {"paused", NULL, "the session starts paused"},
+         {"definition", "FILE", "use a local scene file (.json)"},
+         {"mesh", "FILE", "use a local mesh file"},
+         {"as", "KIND",
+          "kind of tissue: fat (tetrahedra) or fascia (triangles); default: fat if possible"},
+         {"strict", NULL, "refuse a mesh that needs repair"},
+         {"unit-m", "U", "metres in one unit of the mesh (0.001 for millimetres)"},
+         {"edge-mm", "L", "edge length of the tetrahedra that fill the mesh, mm"},
+         {"labels", "A,B", "labels of a segmentation to keep (default: all)"},
+         {"pin", "SIDES",
+          "pinned sides: bottom, top, left, right, front, back, with commas, or none (default: "
+          "bottom)"}},
 	.run = run};

@@ -225,11 +225,12 @@ const cli_command cli_events = {
 	.name = "events",
 	.also = "timeline",
 	.arguments = "[SESSION]",
-	.summary = "lists cuts and other events",
-	.help = "With --json and --follow first the whole timeline, then one event a line.\n",
+	.summary = "lists cuts and other events of a session",
+	.help = "With --json and --follow, the first line is the whole timeline. Each later line is "
+			"one event.\n",
 	.session_optional = true,
 	.options = {{"from", "TICK", "first tick (default 0)"},
-                {"count", "N", "newest events (default 1024)"},
+                {"count", "N", "largest number of events, newest first (default 1024)"},
                 {"follow", NULL, "print new events until Ctrl-C"},
                 {"seconds", "T", "how long to follow (default: until Ctrl-C)"}},
 	.run = run};

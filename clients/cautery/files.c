@@ -40,7 +40,7 @@ static bool choose_format(cli *c, int32_t *format)
 	          : strcmp(given, "obj") == 0 ? CAU_EXPORT_OBJ
 	                                      : -1;
 	if (*format < 0)
-		cli_complain(c, "which format? FILE ends in .vtu or .obj, or --format says it");
+		cli_complain(c, "the format is not known: name FILE with .vtu or .obj, or give --format");
 	return *format >= 0;
 }
 
@@ -67,19 +67,19 @@ static cli_exit run_log(cli *c)
 	return download(c, CAU_METHOD_SESSION_LOG, &params, c->arguments[0]);
 }
 
-const cli_command cli_export = {.name = "export",
-                                .arguments = "[SESSION] FILE",
-                                .summary =
-                                    "writes the present tissue: .vtu for ParaView, .obj for others",
-                                .least = 1,
-                                .most = 1,
-                                .session_optional = true,
-                                .options = {{"format", "F", "vtu or obj (default: FILE's ending)"}},
-                                .run = run_export};
+const cli_command cli_export = {
+	.name = "export",
+	.arguments = "[SESSION] FILE",
+	.summary = "writes the present tissue to a file: .vtu for ParaView, .obj for other programs",
+	.least = 1,
+	.most = 1,
+	.session_optional = true,
+	.options = {{"format", "F", "vtu or obj (default: FILE's ending)"}},
+	.run = run_export};
 
 const cli_command cli_log = {.name = "log",
                              .arguments = "[SESSION] FILE",
-                             .summary = "writes the command log as a script",
+                             .summary = "writes the commands of a session as a script",
                              .help = "`cautery run` and `cautery-sim --script` run it again.\n",
                              .least = 1,
                              .most = 1,

@@ -24,7 +24,7 @@ static void print_restored(const cli *c, const cau_wire_restored *restored)
 	if (!c->json)
 		fprintf(c->out, "%s is at tick %lld, branch %lld, energy off%s\n", c->session,
 		        (long long)restored->tick, (long long)restored->branch,
-		        restored->exact ? "" : "; not bit-exact: another build wrote it");
+		        restored->exact ? "" : "; not bit-exact, because another build wrote the state");
 }
 
 static cli_exit run_rewind(cli *c)
@@ -118,7 +118,8 @@ static cli_exit run_fork(cli *c)
 
 const cli_command cli_rewind = {.name = "rewind",
                                 .arguments = "[SESSION] TICK",
-                                .summary = "rewinds to a tick, on a new branch; energy goes off",
+                                .summary =
+                                    "rewinds a session to a tick, on a new branch; energy goes off",
                                 .help = "`cautery events` shows the earliest tick.\n",
                                 .least = 1,
                                 .most = 1,
@@ -128,19 +129,20 @@ const cli_command cli_rewind = {.name = "rewind",
 const cli_command cli_fork = {
 	.name = "fork",
 	.arguments = "[SESSION]",
-	.summary = "makes a new session from the state of this one",
+	.summary = "creates a new session from the state of this session",
 	.session_optional = true,
-	.options = {{"name", "N", "of the new one, without the daemon's label"},
-                {"tick", "K", "state to start from (default: now)"},
+	.options = {{"name", "N", "name of the new session, without the daemon's label"},
+                {"tick", "K", "tick of the state (default: the present tick)"},
                 {"paused", NULL, "the new session starts paused"}},
 	.run = run_fork};
 
-const cli_command cli_snapshot = {.name = "snapshot",
-                                  .arguments = "[SESSION]",
-                                  .summary = "stores the state under a name",
-                                  .session_optional = true,
-                                  .options = {{"name", "N", "default: made up by the server"}},
-                                  .run = run_snapshot};
+const cli_command cli_snapshot = {
+	.name = "snapshot",
+	.arguments = "[SESSION]",
+	.summary = "stores the state under a name",
+	.session_optional = true,
+	.options = {{"name", "N", "name of the snapshot (default: chosen by the server)"}},
+	.run = run_snapshot};
 
 const cli_command cli_snapshots = {.name = "snapshot ls",
                                    .also = "snapshots",

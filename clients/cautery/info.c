@@ -72,8 +72,8 @@ static cli_exit run(cli *c)
 
 const cli_command cli_info = {.name = "info",
                               .arguments = "[SESSION]",
-                              .summary = "describes a session: tissue, tools, drivers",
-                              .help = "With --json also the whole scene, with its present "
-                                      "materials and tools.\n",
+                              .summary = "describes the tissue, tools and drivers of a session",
+                              .help = "With --json the output also has the whole scene, with its "
+                                      "present materials and tools.\n",
                               .session_optional = true,
                               .run = run};

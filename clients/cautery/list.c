@@ -49,7 +49,7 @@ static cli_exit gather_named(cli *c, const char *labels, cau_wire_list *all)
 	for (const char *at = labels; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
 		int length = snprintf(label, sizeof label, "%.*s", (int)strcspn(at, ","), at);
 		if (length == 0 || length >= CAU_NAME_BYTES || !cau_name_is_valid(label)) {
-			cli_complain(c, "--label: \"%.*s\" is no label", (int)strcspn(at, ","), at);
+			cli_complain(c, "--label: \"%.*s\" is not a label", (int)strcspn(at, ","), at);
 			return CLI_USAGE;
 		}
 		cli_exit code = cli_connect_to(c, NULL, label);
@@ -177,19 +177,20 @@ const cli_command cli_ls = {
 	.name = "ls",
 	.arguments = "",
 	.summary = "lists the sessions",
-	.help = "RATE is simulated over wall time, over the last second. Behind a proxy:\n"
-			"those of all daemons, or with --label d1,d2 of each that is named.\n",
+	.help =
+		"RATE is simulated time over wall time in the last second. Behind a proxy, the list has\n"
+		"the sessions of all daemons, or with --label d1,d2 of the named daemons.\n",
 	.run = run_ls};
 
 const cli_command cli_scenes = {.name = "scenes",
                                 .arguments = "",
-                                .summary = "lists the scenes that sessions can be made from",
+                                .summary = "lists the scenes from which sessions can be created",
                                 .run = run_scenes};
 
 const cli_command cli_instruments = {
 	.name = "instruments",
 	.arguments = "",
-	.summary = "lists the instruments that tools may name, and the settings of their modes",
+	.summary = "lists the instruments for tools, and the settings of their modes",
 	.help =
 		"`cautery tool` takes them with --instrument and --mode, a scene's tool with its members\n"
 		"instrument and mode. Where the numbers come from is in deploy/instruments.\n",
@@ -197,7 +198,8 @@ const cli_command cli_instruments = {
 
 const cli_command cli_rm = {.name = "rm",
                             .arguments = "SESSION...",
-                            .summary = "ends sessions and removes them from the store",
+                            .summary =
+                                "destroys sessions: ends them and removes them from the store",
                             .least = 1,
                             .most = CLI_ARGUMENTS_MAX,
                             .run = run_rm};

@@ -19,7 +19,7 @@ static cau_status read_all(FILE *file, const char *name, size_t bytes_max, char 
 	for (size_t capacity = FIRST_CAPACITY;; capacity *= 2) {
 		char *grown = realloc(*bytes, capacity);
 		if (!grown)
-			return fail(name, CAU_NO_MEMORY, "no memory to read it", error);
+			return fail(name, CAU_NO_MEMORY, "no memory to read the file", error);
 		*bytes = grown;
 		*byte_count += fread(grown + *byte_count, 1, capacity - 1 - *byte_count, file);
 		if (ferror(file))

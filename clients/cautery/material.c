@@ -92,7 +92,7 @@ static cli_exit change(cli *c, cJSON *json, const char *assignment)
 	char name[64] = "";
 	size_t length = strcspn(assignment, "=");
 	if (!assignment[length] || length >= sizeof name) {
-		cli_complain(c, "NAME=VALUE is wanted, not \"%s\"", assignment);
+		cli_complain(c, "\"%s\" is not of the form NAME=VALUE", assignment);
 		return CLI_USAGE;
 	}
 	memcpy(name, assignment, length);
@@ -184,5 +184,6 @@ const cli_command cli_material = {
 	.help = "Without NAME=VALUE it lists the members; deploy/scenes/README.md explains them.\n",
 	.least = 2,
 	.most = CLI_ARGUMENTS_MAX,
-	.options = {{"region", "R", "of the mesh file (default: the layer's own material)"}},
+	.options = {{"region", "R",
+                 "number of a region in the mesh file (default: the layer's own material)"}},
 	.run = run};

@@ -40,7 +40,7 @@ static cli_exit run(cli *c)
 	words[count] = (char *)c->arguments[0];
 	fflush(c->out);
 	start(words);
-	cli_complain(c, "cautery-mesh, which is in the daemon's package, does not start: %s",
+	cli_complain(c, "cautery-mesh cannot be started (install the daemon's package): %s",
 	             strerror(errno));
 	return CLI_FILE;
 }
@@ -52,8 +52,9 @@ const cli_command cli_mesh = {
 	.help = "The same as cautery-mesh(1). `cautery create FILE` does it on the daemon.\n",
 	.least = 1,
 	.most = 1,
-	.options = {{"out", "FILE", "where the solid goes, a Gmsh file; \"-\": standard output"},
+	.options = {{"out", "FILE",
+                 "file for the solid, in the format of Gmsh; \"-\": standard output"},
                 {"edge", "L", "length of an edge, in units of the file"},
                 {"labels", "A,B", "labels of a segmentation to keep (default: all)"},
-                {"strict", NULL, "refuses a surface that is open or has to be mended"}},
+                {"strict", NULL, "refuse a surface that is open or needs repair"}},
 	.run = run};

@@ -27,7 +27,7 @@ typedef struct courier {
 
 static cli_exit fail_to(courier *m)
 {
-	cli_complain(m->c, "of the daemon that is to have it (%s):", m->label);
+	cli_complain(m->c, "error with the target daemon %s:", m->label);
 	return cli_fail(m->c);
 }
 
@@ -47,7 +47,7 @@ static cli_exit check_label(courier *m, const char *session)
 {
 	size_t bytes = strlen(m->label);
 	if (!cau_name_is_valid(m->label) || strchr(m->label, '-')) {
-		cli_complain(m->c, "`%s` is no label of a daemon", m->label);
+		cli_complain(m->c, "`%s` is not a label of a daemon", m->label);
 		return CLI_USAGE;
 	}
 	if (strncmp(session, m->label, bytes) == 0 && session[bytes] == '-') {
@@ -65,8 +65,9 @@ static cli_exit name_target(courier *m, const char *session)
 	const char *name = cli_value(m->c, "name"), *dash = strchr(session, '-');
 	snprintf(text, sizeof text, "%.48s-%.48s", m->label, name ? name : dash ? dash + 1 : session);
 	if (!cau_name_is_valid(text) || strlen(text) >= CAU_NAME_BYTES) {
-		cli_complain(m->c, "`%s` is no name: %s, at most %d bytes; --name gives another", text,
-		             CAU_NAME_RULE, CAU_NAME_BYTES - 1);
+		cli_complain(m->c,
+		             "`%s` is not a valid name: %s, at most %d bytes; give another with --name",
+		             text, CAU_NAME_RULE, CAU_NAME_BYTES - 1);
 		return CLI_USAGE;
 	}
 	snprintf(m->from_ref.session, sizeof m->from_ref.session, "%s", session);
@@ -79,7 +80,8 @@ static cli_exit check_daemon(courier *m, cau_client *client, const char *option)
 	const char *daemon = cau_client_server(client)->daemon;
 	if (strcmp(daemon, m->label) == 0)
 		return CLI_DONE;
-	cli_complain(m->c, "that is the daemon `%s`: %s says where `%s` is", daemon, option, m->label);
+	cli_complain(m->c, "this is the daemon `%s`: give the address of `%s` with %s", daemon, option,
+	             m->label);
 	return CLI_USAGE;
 }
 
@@ -114,7 +116,7 @@ static cli_exit deliver(courier *m, const char *proof)
 	if (!cau_client_call(m->to, CAU_METHOD_MOVE_ACCEPT, &params, NULL, &m->c->error))
 		return CLI_DONE;
 	cli_complain(m->c,
-	             "the session is %s's, which does not serve it yet: run the same command "
+	             "the session belongs to %s, which does not serve it yet: run the same command "
 	             "again to finish the move",
 	             m->label);
 	return fail_to(m);
@@ -127,7 +129,7 @@ static cli_exit tell_moved(courier *m)
 		fprintf(c->out, "{\"session\":\"%s\",\"exact\":%s}\n", m->to_ref.session,
 		        m->exact ? "true" : "false");
 	else
-		fprintf(c->out, "%s is %s now\n", m->from_ref.session, m->to_ref.session);
+		fprintf(c->out, "%s is now %s\n", m->from_ref.session, m->to_ref.session);
 	return CLI_DONE;
 }
 
@@ -222,8 +224,7 @@ static cli_exit give_up(courier *m)
 	if (find_move(m, m->to, "", m->from_ref.session, &found))
 		return cli_fail(m->c);
 	if (!*found.move) {
-		cli_complain(m->c, "%s has nothing of %s that waits for another daemon", m->label,
-		             m->from_ref.session);
+		cli_complain(m->c, "%s has no unfinished move of %s", m->label, m->from_ref.session);
 		return CLI_REFUSED;
 	}
 	take_move(m, &found);
@@ -296,10 +297,11 @@ static cli_exit prepare(courier *m)
 	m->exact = ready.has_exact && ready.exact;
 	if (m->exact || cli_value(m->c, "inexact"))
 		return CLI_DONE;
-	cli_complain(m->c,
-	             "%s is another build, or its processor has another instruction set: its bits "
-	             "would differ from here on. --inexact moves it all the same",
-	             m->label);
+	cli_complain(
+		m->c,
+		"%s is another build, or its processor has another instruction set. Its results "
+		"would differ in the last digits. To move the session all the same, give --inexact",
+		m->label);
 	return CLI_REFUSED;
 }
 
@@ -384,12 +386,12 @@ const cli_command cli_move = {
 		"move, the session is lost then.\n",
 	.least = 2,
 	.most = 2,
-	.options = {{"to-url", "U", "address of the daemon LABEL for its clients"},
-                {"to-token-file", "F", "token for it (default: the same)"},
-                {"name", "NAME", "its name there (default: as it is)"},
-                {"inexact", NULL, "also to another build or instruction set"},
-                {"cancel", NULL, "ends what an earlier move has begun, and moves nothing"},
+	.options = {{"to-url", "U", "address of the daemon LABEL for clients"},
+                {"to-token-file", "F", "access token for that daemon (default: the same token)"},
+                {"name", "NAME", "name of the session on the target (default: unchanged)"},
+                {"inexact", NULL, "move also to another build or instruction set, not bit-exact"},
+                {"cancel", NULL, "cancel an unfinished move of this session"},
                 {"source-lost", NULL,
-                 "LABEL forgets an unfinished move; the other daemon is not asked"},
+                 "LABEL forgets an unfinished move, without asking the other daemon"},
                 {0}},
 	.run = run};

@@ -7,14 +7,15 @@
 
 static const cli_option common[] = {
 	{"url", "U",
-     "where the daemon is (default: CAUTERYD_URL, the context, " CAU_CLIENT_DEFAULT_URL ")"},
+     "address of the daemon (default: CAUTERYD_URL, the context, " CAU_CLIENT_DEFAULT_URL ")"},
 	{"token-file", "F", "file with the access token (default: the context's, CAUTERYD_TOKEN)"},
-	{"context", "NAME", "a daemon of `cautery context ls` (default: the current one)"},
-	{"label", "L", "the daemon of this label behind a proxy; for ls several, as in d1,d2"},
+	{"context", "NAME",
+     "name of a context, as `cautery context ls` lists (default: the current one)"},
+	{"label", "L", "label of the daemon behind a proxy; ls takes several, as in d1,d2"},
 	{"timeout", "S", "seconds to wait for an answer or a progress report (default 30)"},
-	{"json", NULL, "one JSON object a line on standard output, the last one the result"},
-	{"help", NULL, "this text; -h does the same"},
-	{"version", NULL, "version of this program and of its protocol"},
+	{"json", NULL, "print one JSON object in each line; the last is the result"},
+	{"help", NULL, "print this text; -h does the same"},
+	{"version", NULL, "print the version of this program and of its protocol"},
 	{0},
 };
 
@@ -50,11 +51,11 @@ void cli_help(const cli *c)
 		help_of_command(c);
 		return;
 	}
-	fputs("cautery COMMAND [arguments]\nTalks to a cauteryd.\n\n", c->out);
+	fputs("cautery COMMAND [arguments]\nControls a daemon cauteryd.\n\n", c->out);
 	for (int i = 0; c->commands[i]; i++)
 		fprintf(c->out, "  %-12s %s\n", c->commands[i]->name, c->commands[i]->summary);
-	fputs("\nSESSION may be left out where the daemon has only one.\n"
-	      "`cautery COMMAND --help` says more. All commands take:\n\n",
+	fputs("\nSESSION may be left out if the daemon has only one session.\n"
+	      "`cautery COMMAND --help` describes a command. Options of all commands:\n\n",
 	      c->out);
 	print_options(c->out, common, COMMON_COUNT);
 	fputs("\nExit code: 0 done; 1 the server refused, or the session is faulted or gone;\n"
@@ -136,7 +137,7 @@ static bool read_option(cli *c, char **arguments, int count, int *at)
 	if (option->argument && !value && *at + 1 < count)
 		value = arguments[++*at];
 	if (!option->argument != !value) {
-		cli_complain(c, option->argument ? "--%s wants a value" : "--%s takes no value",
+		cli_complain(c, option->argument ? "--%s needs a value" : "--%s takes no value",
 		             option->name);
 		return false;
 	}
@@ -184,7 +185,7 @@ static bool take_command(cli *c, const char *word)
 		names[count] = c->commands[count]->name;
 	const char *usual = usual_name(word);
 	if (usual)
-		cli_complain(c, "no command \"%s\"; that is \"%s\" here. --help lists them", word, usual);
+		cli_complain(c, "no command \"%s\": use \"%s\". --help lists all commands", word, usual);
 	else
 		cli_complain_unknown(c, "command", word, names, count);
 	return false;

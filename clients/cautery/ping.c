@@ -64,9 +64,10 @@ static cli_exit run(cli *c)
 	return code;
 }
 
-const cli_command cli_ping = {.name = "ping",
-                              .arguments = "",
-                              .summary = "measures the round trip of a request",
-                              .options = {{"count", "N", "requests to send (default 4)"},
-                                          {"every", "S", "seconds between them (default 0.25)"}},
-                              .run = run};
+const cli_command cli_ping = {
+	.name = "ping",
+	.arguments = "",
+	.summary = "measures the round-trip time of requests",
+	.options = {{"count", "N", "number of requests (default 4)"},
+                {"every", "S", "seconds between requests (default 0.25)"}},
+	.run = run};

@@ -141,7 +141,7 @@ static cli_exit record_for(recorder *r, const cau_client_stream *stream, double 
 		return cli_fail(c);
 	}
 	if (stream->ended)
-		cli_complain(c, "the session is gone");
+		cli_complain(c, "the session no longer exists");
 	return stream->ended ? CLI_REFUSED : CLI_DONE;
 }
 
@@ -215,7 +215,7 @@ const cli_command cli_record = {
 	.least = 1,
 	.most = 1,
 	.session_optional = true,
-	.options = {{"seconds", "T", "how long (default 10)"},
-                {"rate", "HZ", "frames a second (default 60)"},
-                {"mcap", NULL, "as MCAP: the scene at 10 Hz"}},
+	.options = {{"seconds", "T", "time to record, s (default 10)"},
+                {"rate", "HZ", "frames in a second (default 60)"},
+                {"mcap", NULL, "write MCAP: the scene ten times a second"}},
 	.run = run};

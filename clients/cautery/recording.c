@@ -88,7 +88,7 @@ cau_status cli_recording_read(cli_recording *recording, FILE *file, cau_error *e
 	char found[MAGIC_BYTES];
 	*recording = (cli_recording){.file = file};
 	if (fread(found, 1, MAGIC_BYTES, file) != MAGIC_BYTES || memcmp(found, magic, MAGIC_BYTES) != 0)
-		return cau_fail(error, CAU_CORRUPT, NULL, "is no recording of `cautery record`");
+		return cau_fail(error, CAU_CORRUPT, NULL, "is not a recording of `cautery record`");
 	return CAU_OK;
 }
 
@@ -135,7 +135,7 @@ cau_status cli_recording_next(cli_recording *recording, uint32_t *kind, uint32_t
 	recording->received_us = get(head + 8, 8);
 	if ((found != CLI_RECORD_DESCRIPTION && found != CLI_RECORD_FRAME) ||
 	    *byte_count > RECORD_BYTES_MAX)
-		return cau_fail(error, CAU_CORRUPT, NULL, "holds a record of no known kind");
+		return cau_fail(error, CAU_CORRUPT, NULL, "holds a record of an unknown kind");
 	cau_status status = read_bytes(recording, *byte_count, error);
 	if (status)
 		return status;

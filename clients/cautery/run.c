@@ -78,7 +78,7 @@ static cau_status read_script(runner *r, const char *file)
 			status = add_line(r, &command, script.line, error);
 	}
 	if (!status && r->count == 0)
-		status = cau_fail(error, CAU_BAD_VALUE, NULL, "holds no command");
+		status = cau_fail(error, CAU_BAD_VALUE, NULL, "the script has no command");
 	if (!status && r->count > 0)
 		r->sent = calloc((size_t)r->count, sizeof *r->sent);
 	if (!status && !r->sent)
@@ -142,7 +142,7 @@ static void take_notification(void *user, cau_client *client, const cau_rpc_mess
 	    !uses_tool(r, notice.event.tool))
 		return;
 	r->watchdog_cuts++;
-	cli_complain(r->c, "tick %lld: the watchdog cut the energy of `%s`: %s",
+	cli_complain(r->c, "tick %lld: the watchdog turned off the energy of `%s`: %s",
 	             (long long)notice.event.tick, notice.event.tool, notice.event.detail);
 }
 
@@ -181,7 +181,7 @@ static const char *trouble(const runner *r)
 {
 	const cau_stream_state *state = r->stream->state;
 	if (r->stream->ended)
-		return "the session is gone";
+		return "the session no longer exists";
 	if (state->synced && state->epoch != r->epoch)
 		return "the session was rewound or restarted, so the script's ticks no longer apply";
 	if (state->flags & CAU_FRAME_FAULTED)
@@ -301,11 +301,12 @@ const cli_command cli_run = {
 	.name = "run",
 	.arguments = "[SESSION] SCRIPT",
 	.summary = "runs a script of commands at their ticks, counted from now",
-	.help = "SCRIPT has one command as JSON on each line, as `cautery log` and\n"
-			"`cautery-sim --print-cut` write them; - reads standard input.\n"
-			"Tools that the script uses are taken over first. late counts commands that reached "
-			"the server after their tick,\n"
-			"watchdog_cuts how often it was silent so long that its energy was cut.\n",
+	.help =
+		"SCRIPT has one command as JSON on each line, as `cautery log` and\n"
+		"`cautery-sim --print-cut` write them; - reads standard input.\n"
+		"First the command takes over the tools that the script uses. In the output, late is the\n"
+		"number of commands that reached the server after their tick. watchdog_cuts is the number\n"
+		"of times that energy went off because this command was silent for too long.\n",
 	.least = 1,
 	.most = 1,
 	.session_optional = true,

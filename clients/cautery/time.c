@@ -80,13 +80,13 @@ static cli_exit run_reset(cli *c)
 
 const cli_command cli_pause = {.name = "pause",
                                .arguments = "[SESSION]",
-                               .summary = "stops time; energy goes off",
+                               .summary = "pauses a session; energy goes off",
                                .session_optional = true,
                                .run = run_pause};
 
 const cli_command cli_resume = {.name = "resume",
                                 .arguments = "[SESSION]",
-                                .summary = "lets time run",
+                                .summary = "resumes a paused session",
                                 .session_optional = true,
                                 .run = run_resume};
 
@@ -94,12 +94,12 @@ const cli_command cli_step = {.name = "step",
                               .arguments = "[SESSION]",
                               .summary = "advances a paused session",
                               .session_optional = true,
-                              .options = {{"ticks", "N", "steps to make (default 1)"}},
+                              .options = {{"ticks", "N", "number of steps (default 1)"}},
                               .run = run_step};
 
 const cli_command cli_speed = {.name = "speed",
                                .arguments = "[SESSION] SPEED",
-                               .summary = "sets simulated over wall time, 0.01 to 10",
+                               .summary = "sets the speed: simulated over wall time, 0.01 to 10",
                                .least = 1,
                                .most = 1,
                                .session_optional = true,
@@ -107,6 +107,7 @@ const cli_command cli_speed = {.name = "speed",
 
 const cli_command cli_reset = {.name = "reset",
                                .arguments = "[SESSION]",
-                               .summary = "resets to tick 0, on a new branch; energy goes off",
+                               .summary =
+                                   "resets a session to tick 0, on a new branch; energy goes off",
                                .session_optional = true,
                                .run = run_reset};

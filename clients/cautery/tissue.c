@@ -38,7 +38,7 @@ static bool read_list(const cli *c, const char *option, int count, double *value
 		char *end;
 		values[i] = strtod(text, &end);
 		if (end == text || *end != (i + 1 < count ? ',' : 0)) {
-			cli_complain(c, "--%s wants %d numbers with commas between, not \"%s\"", option, count,
+			cli_complain(c, "--%s needs %d numbers with commas between, not \"%s\"", option, count,
 			             cli_value(c, option));
 			return false;
 		}
@@ -48,12 +48,12 @@ static bool read_list(const cli *c, const char *option, int count, double *value
 }
 
 #define SELECTION_OPTIONS                                                                          \
-	{"box", "X,Y,Z,X,Y,Z", "vertices in a box, by its least and most corner, m"},                  \
+	{"box", "X,Y,Z,X,Y,Z", "vertices in a box, given by its least and its largest corner, m"},     \
 		{"sphere", "X,Y,Z,R", "vertices within R of a point, m"},                                  \
 		{"nearest", "X,Y,Z", "the one vertex nearest to a point, m"},                              \
-		{"rim", NULL, "the rim of the sheet --layer"},                                             \
+		{"rim", NULL, "vertices on the rim of the sheet --layer"},                                 \
 	{                                                                                              \
-		"layer", "L", "of this layer only"                                                         \
+		"layer", "L", "only vertices of layer L"                                                   \
 	}
 
 static bool read_selection(const cli *c, cau_selection *selection)
@@ -63,7 +63,7 @@ static bool read_selection(const cli *c, cau_selection *selection)
 	bool box = cli_value(c, "box"), sphere = cli_value(c, "sphere");
 	bool nearest = cli_value(c, "nearest"), rim = cli_value(c, "rim");
 	if (box + sphere + nearest + rim != 1) {
-		cli_complain(c, "one of --box, --sphere, --nearest and --rim says which vertices");
+		cli_complain(c, "choose the vertices with one of --box, --sphere, --nearest and --rim");
 		return false;
 	}
 	*selection = (cau_selection){.kind = box      ? CAU_SELECT_BOX
@@ -121,7 +121,7 @@ static cli_exit run_gravity(cli *c)
 
 const cli_command cli_pin = {.name = "pin",
                              .arguments = "[SESSION]",
-                             .summary = "holds vertices where they are",
+                             .summary = "pins vertices at their present positions",
                              .session_optional = true,
                              .options = {SELECTION_OPTIONS},
                              .run = run_pin};
@@ -135,7 +135,8 @@ const cli_command cli_unpin = {.name = "unpin",
 
 const cli_command cli_force = {.name = "force",
                                .arguments = "[SESSION] FX FY FZ",
-                               .summary = "pulls at vertices, in N on each; 0 0 0 ends it",
+                               .summary =
+                                   "applies a force to vertices, N on each; 0 0 0 ends the force",
                                .least = 3,
                                .most = 3,
                                .session_optional = true,
@@ -144,7 +145,7 @@ const cli_command cli_force = {.name = "force",
 
 const cli_command cli_gravity = {.name = "gravity",
                                  .arguments = "[SESSION] GX GY GZ",
-                                 .summary = "sets gravity, m/s^2",
+                                 .summary = "sets the gravity of a session, m/s^2",
                                  .least = 3,
                                  .most = 3,
                                  .session_optional = true,

@@ -82,7 +82,9 @@ static bool are_sessions(const cli *c, const char *list)
 		at += bytes + (at[bytes] == ',');
 	}
 	if (!right)
-		cli_complain(c, "sessions are written d1-anna-*,d1-demo, in at most %d characters",
+		cli_complain(c,
+		             "--sessions needs ids with commas between, as in d1-anna-*,d1-demo; at most "
+		             "%d characters",
 		             SESSIONS_BYTES_MOST);
 	return right;
 }
@@ -105,7 +107,7 @@ static cli_exit run(cli *c)
 		return CLI_USAGE;
 	}
 	if (!make_token(text) || !cau_sha256(text, strlen(text), hash)) {
-		cau_fail(&c->error, CAU_IO, NULL, "no random numbers");
+		cau_fail(&c->error, CAU_IO, NULL, "the system gives no random numbers");
 		return cli_fail_file(c);
 	}
 	if (!are_sessions(c, cli_value(c, "sessions")))
@@ -123,13 +125,16 @@ const cli_command cli_token = {
 	.arguments = "view|operate|admin",
 	.summary = "makes an access token, and prints the line for the daemon's file of tokens",
 	.help =
-		"The token is written into a new file, for the --token-file of its user. The line holds\n"
-		"its hash alone. The daemon reads its file of tokens again when it reloads (SIGHUP).\n",
+		"The token is written into a new file, for the option --token-file of its user. The line\n"
+		"holds only its hash. The daemon reads its file of tokens again when it reloads "
+		"(SIGHUP).\n",
 	.least = 1,
 	.most = 1,
-	.options = {{"out", "FILE", "a new file for the token"},
-                {"name", "N", "its owner, for the daemon's log"},
-                {"sessions", "LIST", "ids that it is for, with commas; d1-anna-* for a prefix"},
-                {"quota", "N", "expensive requests a minute (default: those of its role)"},
-                {"days", "D", "until it expires (default: never)"}},
+	.options =
+		{{"out", "FILE", "new file into which the token is written"},
+         {"name", "N", "owner of the token, for the daemon's log"},
+         {"sessions", "LIST",
+          "sessions that the token allows, with commas; d1-anna-* for all with this beginning"},
+         {"quota", "N", "expensive requests a minute (default: the quota of the role)"},
+         {"days", "D", "days until the token expires (default: never)"}},
 	.run = run};

@@ -48,7 +48,7 @@ static bool take_numbers(hand *h, const char *what, int count, double *values)
 {
 	for (int i = 0; i < count; i++, h->at++) {
 		if (h->at >= h->c->argument_count) {
-			cli_complain(h->c, "%s wants %d numbers", what, count);
+			cli_complain(h->c, "%s needs %d numbers", what, count);
 			return false;
 		}
 		if (!cli_read_number(h->c, what, h->c->arguments[h->at], -1e6, 1e6, &values[i]))
@@ -85,7 +85,8 @@ static cli_exit act_configure(hand *h)
 {
 	cau_command command = command_of(h, CAU_COMMAND_TOOL_CONFIGURE);
 	if (!cli_value(h->c, "instrument")) {
-		cli_complain(h->c, "configure wants --instrument: `cautery instruments` lists them");
+		cli_complain(h->c,
+		             "configure needs --instrument: `cautery instruments` lists the instruments");
 		return CLI_USAGE;
 	}
 	if (!take_instrument(h, &command.as.definition))
@@ -111,7 +112,7 @@ static cli_exit act_add(hand *h)
 	int32_t shape = cli_shape_of_word(word);
 	if (shape < 0) {
 #define X(code, word, ...) " " #word
-		cli_complain(h->c, "add wants a shape:" CAU_TOOL_SHAPE_TABLE(X));
+		cli_complain(h->c, "add needs a shape:" CAU_TOOL_SHAPE_TABLE(X));
 #undef X
 		return CLI_USAGE;
 	}
@@ -245,7 +246,7 @@ static cli_exit act_give(hand *h)
 	if (cau_client_call(c->client, CAU_METHOD_TOOL_HAND_OVER, &params, NULL, &c->error))
 		return cli_fail(c);
 	if (!c->json)
-		fprintf(c->out, "%s has no driver now\n", h->tool);
+		fprintf(c->out, "%s now has no driver\n", h->tool);
 	return CLI_DONE;
 }
 
@@ -312,18 +313,21 @@ static cli_exit run(cli *c)
 const cli_command cli_tool = {
 	.name = "tool",
 	.arguments = "SESSION TOOL ACTION...",
-	.summary = "adds, moves, energizes a tool: actions one after the other",
+	.summary = "adds, moves or energizes a tool, by actions one after the other",
 	.help =
 		"Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
-		"jaw J, on [TICKS], off, grasp, release, wait S, configure. Metres, m/s, a unit\n"
-		"quaternion, 0 to 1, seconds; TICKS limits the energy. Actions that need the driver take\n"
-		"the tool first. Energy goes off when the command ends:\n"
+		"jaw J, on [TICKS], off, grasp, release, wait S, configure. X, Y and Z are in m, SPEED\n"
+		"in m/s, S in s. W X Y Z is a unit quaternion. J is 0 (closed) to 1 (open). After TICKS\n"
+		"ticks energy goes off. Actions that need the driver take the tool first. Energy goes\n"
+		"off when the command ends:\n"
 		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n"
 		"With --instrument, `configure` makes the tool that instrument, and `add` adds it:\n"
 		"  cautery tool d1-demo hook configure --instrument monopolar-hook --mode blend\n",
 	.least = 3,
 	.most = CLI_ARGUMENTS_MAX,
-	.options = {{"instrument", "NAME", "of add and configure: one of `cautery instruments`"},
-                {"mode", "MODE", "its mode; the first by default"},
-                {"power-w", "W", "power, in the mode's range"}},
+	.options =
+		{{"instrument", "NAME",
+          "for add and configure: the name of an instrument (`cautery instruments` lists them)"},
+         {"mode", "MODE", "mode of the instrument (default: its first)"},
+         {"power-w", "W", "power, W, in the range of the mode"}},
 	.run = run};

@@ -266,7 +266,7 @@ static cli_exit watch_recording(cli *c, const char *file, double rate_hz)
 	if (!status && r.decoder && r.frames)
 		print(c, cau_frame_decoder_state(r.decoder), &r.faces, r.face_count, false);
 	if (!status && r.refused)
-		status = cau_fail(&c->error, CAU_CORRUPT, NULL, "%llu frames do not decode",
+		status = cau_fail(&c->error, CAU_CORRUPT, NULL, "%llu frames could not be decoded",
 		                  (unsigned long long)r.refused);
 	cli_recording_close(&recording, NULL);
 	cli_faces_finish(&r.faces);
@@ -289,13 +289,14 @@ static cli_exit run(cli *c)
 const cli_command cli_watch = {
 	.name = "watch",
 	.arguments = "[SESSION]",
-	.summary = "shows a session live: tick, rate, vertices moved, faces removed, edges parted",
-	.help =
-		"On a terminal it updates one line; elsewhere it prints lines. Ctrl-C ends it.\n"
-		"moved: vertices in the newest frame; gone: faces drawn when watching began and not now;\n"
-		"parted, removed: since creation.\n",
+	.summary =
+		"shows the tick, rate, moved vertices, removed faces and parted edges of a live session",
+	.help = "On a terminal it updates one line; elsewhere it prints lines. Ctrl-C ends it.\n"
+			"moved: vertices in the newest frame; gone: faces that were drawn at the start and are "
+			"not now;\n"
+			"parted, removed: since creation.\n",
 	.session_optional = true,
-	.options = {{"seconds", "T", "how long (default: until Ctrl-C)"},
-                {"rate", "HZ", "lines a second (default 10 on a terminal, else 1)"},
-                {"recording", "FILE", "what `cautery record` wrote, instead of a live session"}},
+	.options = {{"seconds", "T", "time to watch, s (default: until Ctrl-C)"},
+                {"rate", "HZ", "lines in a second (default: 10 on a terminal, else 1)"},
+                {"recording", "FILE", "show a file of `cautery record` instead of a live session"}},
 	.run = run};

@@ -77,9 +77,10 @@ static cau_status check(const cau_haptics_def *def, cau_error *error)
 			return cau_fail(error, CAU_BAD_VALUE, members[i].name, "%g is not within %g to %g",
 			                members[i].value, members[i].least, members[i].most);
 	if (def->fade_s >= zero_age(def))
-		return cau_fail(error, CAU_BAD_VALUE, "fade_s",
-		                "%g s is too late: %g N take from %g s on to become 0 in time", def->fade_s,
-		                def->force_max_n, zero_age(def));
+		return cau_fail(
+			error, CAU_BAD_VALUE, "fade_s",
+			"%g s is too late: the force of %g N must begin to fall at %g s to reach 0 in time",
+			def->fade_s, def->force_max_n, zero_age(def));
 	return CAU_OK;
 }
 
@@ -90,7 +91,7 @@ cau_status cau_haptics_create(const cau_haptics_def *def, cau_haptics **haptics,
 		return status;
 	cau_haptics *made = calloc(1, sizeof *made);
 	if (!made)
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a renderer of force");
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the haptic renderer");
 	made->def = *def;
 	made->zero_s = zero_age(def);
 	made->guard.def = (energy_guard_def){

@@ -62,11 +62,11 @@ const char *local_contact_check(const cau_tool_contact *record)
 {
 	const double tolerance = CAU_UNIT_TOLERANCE;
 	if (record->plane_count < 0 || record->plane_count > CAU_CONTACT_PLANES)
-		return "it has too many planes";
+		return "the contact has too many planes";
 	for (int i = 0; i < record->plane_count; i++) {
 		const cau_contact_plane *plane = &record->plane[i];
 		if (!(fabs(length3(plane->normal) - 1) <= tolerance))
-			return "a normal is not of length 1";
+			return "the normal of a plane does not have length 1";
 		if (!is_within(&plane->offset_m, 1, 2 * most_m) ||
 		    !is_within(&plane->velocity_m_s, 1, most_m))
 			return "a plane is out of range";
@@ -74,10 +74,10 @@ const char *local_contact_check(const cau_tool_contact *record)
 	if (!is_within(record->asked_pose.position_m, 3, most_m) ||
 	    !is_within(record->grasp_anchor_m, 3, 10 * most_m) ||
 	    !is_within(record->force_n, 3, most_n))
-		return "a place or a force is out of range";
+		return "a position or a force of the contact is out of range";
 	if (!is_within(record->compliance_m_n, 6, most_m_n) ||
 	    !(least_eigenvalue(record->compliance_m_n) > 0))
-		return "its compliance is not positive";
+		return "the compliance of the contact is not positive";
 	const double scalars[] = {record->friction, record->damping_ns_m, record->grasp_n_m};
 	for (int i = 0; i < 3; i++)
 		if (!(scalars[i] >= 0) || !is_within(&scalars[i], 1, most_n))

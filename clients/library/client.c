@@ -19,9 +19,9 @@ cau_client_def cau_default_client_def(void)
 static cau_status check_names(const cau_client *client, cau_error *error)
 {
 	if (*client->session && !cau_name_is_valid(client->session))
-		return cau_fail(error, CAU_BAD_VALUE, "session", "is no name: " CAU_NAME_RULE);
+		return cau_fail(error, CAU_BAD_VALUE, "session", "is not a valid name: " CAU_NAME_RULE);
 	if (*client->label && !cau_name_is_valid(client->label))
-		return cau_fail(error, CAU_BAD_VALUE, "label", "is no name: " CAU_NAME_RULE);
+		return cau_fail(error, CAU_BAD_VALUE, "label", "is not a valid name: " CAU_NAME_RULE);
 	return CAU_OK;
 }
 

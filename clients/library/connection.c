@@ -143,7 +143,7 @@ static bool read_refusal(struct lws *wsi, char *text, size_t bytes)
 		return false;
 	if (lws_hdr_custom_copy(wsi, reason, sizeof reason, header, sizeof header - 1) <= 0)
 		snprintf(reason, sizeof reason, "no reason given; is this a cauteryd?");
-	snprintf(text, bytes, "it answered HTTP %u: %s", status, reason);
+	snprintf(text, bytes, "the server answered HTTP %u: %s", status, reason);
 	return true;
 }
 

@@ -19,7 +19,7 @@ typedef struct question {
 static int take(question *q, const char *in, size_t bytes)
 {
 	if (bytes > sizeof q->text - q->bytes) {
-		q->trouble = "the answer is too long for a list of a fleet";
+		q->trouble = "the answer is too long for a list of daemons";
 		return -1;
 	}
 	memcpy(q->text + q->bytes, in, bytes);

@@ -19,7 +19,7 @@ cau_status cau_client_read_token(const char *file, char token[CAU_CLIENT_TOKEN_B
 	fclose(stream);
 	token[strcspn(token, "\r\n")] = 0;
 	if (!*token)
-		return cau_fail(error, CAU_BAD_VALUE, NULL, "its first line holds no token");
+		return cau_fail(error, CAU_BAD_VALUE, NULL, "the first line of the file has no token");
 	*error->file = 0;
 	return CAU_OK;
 }

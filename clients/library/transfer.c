@@ -159,7 +159,7 @@ static cau_status check(const downloading *d, cau_error *error)
 	if (!cau_sha256(d->incoming.bytes, d->incoming.byte_count, hash))
 		return cau_fail(error, CAU_UNSUPPORTED, NULL, "SHA-256 is not available");
 	if (strcmp(hash, d->transfer->sha256) != 0)
-		return cau_fail(error, CAU_CORRUPT, NULL, "the file has another hash than announced");
+		return cau_fail(error, CAU_CORRUPT, NULL, "the file does not have the announced hash");
 	return CAU_OK;
 }
 

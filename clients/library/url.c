@@ -56,7 +56,7 @@ cau_status cau_url_read(const char *text, cau_url *url, cau_error *error)
 		return refuse(text, "does not start with ws://, wss://, http:// or https://", error);
 	const char *host = find_host(at, &bytes, &end);
 	if (!host || bytes == 0 || bytes >= sizeof url->host)
-		return refuse(text, "names no host", error);
+		return refuse(text, "the address has no host", error);
 	if (!is_host(host, bytes, host[-1] == '['))
 		return refuse(text, "the host has invalid characters", error);
 	memcpy(url->host, host, bytes);

@@ -39,7 +39,7 @@ static cau_status join(load_fleet *fleet, load_viewer *viewer)
 static cau_status take_motion(load_session *session, const cau_scene_def *scene, cau_error *error)
 {
 	if (!scene->cut.present)
-		return cau_fail(error, CAU_BAD_VALUE, "scene", "scene `%s` describes no cut", scene->name);
+		return cau_fail(error, CAU_BAD_VALUE, "scene", "scene `%s` has no member cut", scene->name);
 	session->cut = scene->cut;
 	memcpy(session->tool, scene->cut.tool, sizeof session->tool);
 	return CAU_OK;

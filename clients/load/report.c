@@ -39,11 +39,11 @@ void load_report_text(FILE *out, load_fleet *fleet, const load_result *r)
 		out,
 		"realtime factor, worst session  %.4f (steal %.2f %%, this program %.0f %% of a core)\n",
 		r->realtime_factor_min, r->steal_pct, r->load_cpu_pct);
-	fprintf(out, "frame to client, ms             p50 %.2f  p99 %.2f  max %.2f (clock +-%.3f)\n",
+	fprintf(out, "time from frame to client, ms   p50 %.2f  p99 %.2f  max %.2f (clock +-%.3f)\n",
 	        load_samples_percentile(&fleet->frame_ms, 0.5),
 	        load_samples_percentile(&fleet->frame_ms, 0.99),
 	        load_samples_percentile(&fleet->frame_ms, 1), 1e3 * fleet->clock.error_s);
-	fprintf(out, "command to frame, ms            p50 %.2f  p99 %.2f  max %.2f\n",
+	fprintf(out, "time from command to frame, ms  p50 %.2f  p99 %.2f  max %.2f\n",
 	        load_samples_percentile(&fleet->command_ms, 0.5),
 	        load_samples_percentile(&fleet->command_ms, 0.99),
 	        load_samples_percentile(&fleet->command_ms, 1));
@@ -56,7 +56,7 @@ void load_report_text(FILE *out, load_fleet *fleet, const load_result *r)
 	        (unsigned long long)fleet->gaps_unrecovered, (unsigned long long)fleet->refused);
 	fprintf(out, "acknowledged requests lost      %lld of %lld\n", (long long)r->lost_acknowledged,
 	        (long long)r->acknowledged);
-	fprintf(out, "daemon memory a viewer added    %.0f KiB\n", r->rss_per_viewer / 1024);
+	fprintf(out, "daemon memory for each viewer   %.0f KiB\n", r->rss_per_viewer / 1024);
 }
 
 // Writes null for an unknown value, because JSON has no NAN.

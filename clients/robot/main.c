@@ -48,16 +48,16 @@ static int drive(const robot_options *options, const robot_trajectory *trajector
 		robot_link_close(&link);
 		return EXIT_NO_TOOL;
 	}
-	printf("writes as \"%s\"\n", link.name); // the server's name for this writer
+	printf("the name of this client is \"%s\"\n", link.name); // the server's name for this writer
 	fflush(stdout);
 	robot_control(&link, options, trajectory, &stop, &report);
 	printf("%.1f s, %llu commands, %llu periods missed; force at most %.2f N\n", report.seconds,
 	       (unsigned long long)report.commands, (unsigned long long)report.missed,
 	       report.force_most_n);
-	robot_histogram_print(&report.jitter, "woke late", stdout);
-	robot_histogram_print(&link.latency, "command to state", stdout);
+	robot_histogram_print(&report.jitter, "delay of waking", stdout);
+	robot_histogram_print(&link.latency, "time from command to state", stdout);
 	if (report.lost)
-		fprintf(stderr, "cautery-robot: gave up: %s\n", report.lost);
+		fprintf(stderr, "cautery-robot: stopped: %s\n", report.lost);
 	if (options->json)
 		print_json(&report, &link);
 	robot_link_close(&link);

@@ -9,31 +9,31 @@
 
 static const cau_option rows[] = {
 	{"trajectory", "FILE", CAU_OPTION_TEXT, AT(trajectory),
-     .meaning = "lines `T X Y Z [W QX QY QZ]`: s, m, tool to world; else"},
+     .meaning = "file with lines `T X Y Z [W QX QY QZ]` (s, m, quaternion); without it a line:"},
 	{"from", "X,Y,Z", CAU_OPTION_POINT, AT(from_m),
-     .meaning = "m: start of the line (default 0,0,0.02)"},
-	{"to", "X,Y,Z", CAU_OPTION_POINT, AT(to_m), .meaning = "m: its end (default: its start)"},
+     .meaning = "start of the line, m (default 0,0,0.02)"},
+	{"to", "X,Y,Z", CAU_OPTION_POINT, AT(to_m),
+     .meaning = "end of the line, m (default: the start of the line)"},
 	{"dwell", "S", CAU_OPTION_NUMBER, AT(dwell_s), 0, 3600,
      .meaning = "seconds to stay at the start of the line (default 0)"},
 	{"speed", "V", CAU_OPTION_NUMBER, AT(speed_m_s), 1e-4, 1,
-     .meaning = "m/s, on the line and to the start (default 0.02)"},
-	{"energy", NULL, CAU_OPTION_FLAG, AT(energy), .meaning = "energy on while on the trajectory"},
+     .meaning = "speed on the line and on the way to its start, m/s (default 0.02)"},
+	{"energy", NULL, CAU_OPTION_FLAG, AT(energy), .meaning = "turn energy on along the trajectory"},
 	{"force-limit", "N", CAU_OPTION_NUMBER, AT(force_limit_n), 0, 1000,
-     .meaning = "backs off along the shaft above this force (default 0: never)"},
+     .meaning = "force above which the tool retreats along its shaft (default 0: never)"},
 	{"rate", "HZ", CAU_OPTION_NUMBER, AT(rate_hz), 1, 5000,
-     .meaning = "commands a second (default 1000)"},
+     .meaning = "commands in a second (default 1000)"},
 	{"deadline", "S", CAU_OPTION_NUMBER, AT(deadline_s), 0.02, 1,
-     .meaning = "deadline declared to the server, s (default 0.05)"},
+     .meaning = "silence after which the server turns energy off, s (default 0.05)"},
 	{"seconds", "S", CAU_OPTION_NUMBER, AT(seconds), 0, 1e6,
-     .meaning = "end after so long (default: with the trajectory)"},
+     .meaning = "time after which the program ends, s (default: at the end of the trajectory)"},
 	{"standby", NULL, CAU_OPTION_FLAG, AT(standby),
-     .meaning = "holds the tool once its driver is gone or silent; never energizes"},
+     .meaning = "wait, and hold the tool when its driver is gone or silent; never energize"},
 	{"domain", "N", CAU_OPTION_WHOLE, AT(domain), 0, 230,
      .meaning = "DDS domain (default 0); CYCLONEDDS_URI configures Cyclone DDS"},
-	{"json", NULL, CAU_OPTION_FLAG, AT(json),
-     .meaning = "one JSON object as the last line of output"},
-	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
-	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "version of this program"},
+	{"json", NULL, CAU_OPTION_FLAG, AT(json), .meaning = "print one JSON object as the last line"},
+	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "print this text"},
+	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "print the version of this program"},
 };
 
 static const cau_command_line line = {
@@ -41,9 +41,10 @@ static const cau_command_line line = {
 	.words = "SESSION TOOL",
 	.word_count = 2,
 	.summary =
-		"Drives a tool over DDS: along a trajectory, or along a line; prints how late it woke "
-		"and\nhow long each command took to show in the tool's state.\n",
-	.closing = "Exit code: 0 done; 1 refused or lost the tool; 2 options; 3 no such tool found.\n",
+		"Drives a tool over DDS along a trajectory or a line. Prints how late its loop woke, and\n"
+		"how long each command took to appear in the state of the tool.\n",
+	.closing =
+		"Exit code: 0 done; 1 the tool was refused or lost; 2 wrong options; 3 no such tool.\n",
 	.rows = rows,
 	.row_count = sizeof rows / sizeof *rows,
 };

@@ -138,7 +138,7 @@ cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, do
 	if (status)
 		return status;
 	if (!make_arrays(collide, arena) || !make_lanes(collide, arena))
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tissue against tissue");
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tissue contact");
 	find_stiffness(collide, step_s);
 	cau_collide_forget_crossed(collide);
 	find_longest(collide);

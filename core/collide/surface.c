@@ -117,7 +117,8 @@ cau_status cau_surface_create(cau_surface *surface, const cau_tissue *tissue, ca
 	}
 	free(key);
 	return made ? CAU_OK
-	            : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the surface that touches");
+	            : cau_fail(error, CAU_NO_MEMORY, NULL,
+	                       "no memory for the surface of tissue contact");
 }
 
 static void take(cau_surface_parts *parts, int32_t *block_of, int32_t item, int32_t block)

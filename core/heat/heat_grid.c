@@ -76,8 +76,8 @@ cau_status cau_heat_grid_check(const cau_tool_def *tool, double tick_s, cau_erro
 		                tool->grid_cells);
 	if (!(step > 0 && step <= thinnest * (1 + 1e-12)))
 		return cau_fail(error, CAU_BAD_VALUE, "grid_step_m",
-		                "%g m is not above 0 and at most the thinnest hot radius, %g m", step,
-		                thinnest);
+		                "%g m is not above 0 and at most the smallest radius of the hot part, %g m",
+		                step, thinnest);
 	if (!(tool->diffusivity_m2_s >= 0 && tool->diffusivity_m2_s < INFINITY))
 		return cau_fail(error, CAU_BAD_VALUE, "diffusivity_m2_s", "%g m^2/s is not a diffusivity",
 		                tool->diffusivity_m2_s);

@@ -139,7 +139,7 @@ static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 	if (!(diagonal <= diagonal_max_m) || !(far <= diagonal_max_m))
 		return cau_fail(error, CAU_BAD_MESH, NULL,
 		                "the mesh is %.3g m from corner to corner and reaches %.3g m from the "
-		                "origin, more than %.0e m (is its unit right?)",
+		                "origin, more than %.0e m (check unit_m)",
 		                diagonal, far, diagonal_max_m);
 	return CAU_OK;
 }
@@ -236,7 +236,7 @@ static cau_status drop_degenerate(cau_mesh *mesh, cau_mesh_report *done, cau_err
 	int32_t triangles = mesh->triangle_count, tetrahedra = mesh->tetrahedron_count;
 	bool *dropped = cau_mesh_array((size_t)(triangles > tetrahedra ? triangles : tetrahedra), 1);
 	if (!dropped)
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for cleaning a mesh");
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to clean a mesh");
 	done->degenerate_triangles += drop_flat_triangles(mesh, dropped);
 	done->degenerate_tetrahedra += drop_flat_tetrahedra(mesh, dropped, &done->inverted_tetrahedra);
 	free(dropped);
@@ -375,7 +375,7 @@ cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *er
 	int32_t unused = 0, repeated = 0;
 	int32_t *map = cau_mesh_array((size_t)mesh->vertex_count, sizeof *map);
 	if (!map)
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for cleaning a mesh");
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to clean a mesh");
 
 	cau_status status = check_numbers(mesh, error);
 	if (!status) {

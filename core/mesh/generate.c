@@ -33,9 +33,10 @@ static cau_status check_product(const int32_t cells[3], int axes, int elements_p
 			return cau_fail(error, CAU_BAD_VALUE, "cells", "cells[%d] must be at least 1", a);
 		elements *= cells[a];
 		if (elements > CAU_MESH_MAX_ELEMENTS)
-			return cau_fail(error, CAU_LIMIT, "cells",
-			                "these cells make more than %d elements, the most of one mesh",
-			                CAU_MESH_MAX_ELEMENTS);
+			return cau_fail(
+				error, CAU_LIMIT, "cells",
+				"these cells give more than %d elements, which is the limit of one mesh",
+				CAU_MESH_MAX_ELEMENTS);
 	}
 	return CAU_OK;
 }

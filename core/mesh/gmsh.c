@@ -118,7 +118,8 @@ static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t 
 		int64_t node = cau_scan_integer(scan, "a node number", number_bytes, 0, INT64_MAX);
 		vertex[i] = i < corners ? cau_node_map_find(&gmsh->nodes, node) : 0;
 		if (vertex[i] < 0)
-			cau_scan_fail(scan, CAU_BAD_MESH, "element %lld names node %lld, which is not there",
+			cau_scan_fail(scan, CAU_BAD_MESH,
+			              "element %lld names node %lld, which the file does not have",
 			              (long long)number, (long long)node);
 	}
 	cau_mesh_builder_cell(gmsh->builder, types[type].shape, vertex, region, types[type].name,
@@ -154,7 +155,7 @@ static void read_nodes_2(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
 	if (gmsh->has_nodes)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the nodes stand twice");
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the file has two sections of nodes");
 	gmsh->has_nodes = true;
 	int64_t count = cau_scan_count(scan, "number of nodes", scan->binary ? 28 : 8);
 	cau_scan_skip_line(scan);
@@ -397,7 +398,7 @@ static void read_nodes_4(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
 	if (gmsh->has_nodes)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the nodes stand twice");
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the file has two sections of nodes");
 	gmsh->has_nodes = true;
 	int64_t block_count = read_count(gmsh, "number of blocks", 8, 12 + gmsh->size_bytes);
 	int64_t node_count = read_count(gmsh, "number of nodes", 8, 24 + number_bytes(gmsh));
@@ -408,7 +409,7 @@ static void read_nodes_4(gmsh_file *gmsh)
 	for (int64_t i = 0; i < block_count && !scan->status; i++)
 		read_node_block(gmsh);
 	if (gmsh->nodes.count != node_count)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld nodes were announced, but %d stand here",
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the section announces %lld nodes, but has %d",
 		              (long long)node_count, gmsh->nodes.count);
 	cau_node_map_seal(&gmsh->nodes, scan);
 }

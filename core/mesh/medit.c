@@ -56,8 +56,8 @@ void cau_medit_add(cau_mesh_builder *builder, const cau_medit_kind *kind, const 
 	for (int c = 0; c < corners; c++) {
 		if (node[c] < 1 || node[c] > builder->mesh.vertex_count) {
 			cau_scan_fail(builder->scan, CAU_BAD_MESH,
-			              "an element of %s names vertex %lld, but there are %d", kind->keyword,
-			              (long long)node[c], builder->mesh.vertex_count);
+			              "an element of %s names vertex %lld, but there are %d vertices",
+			              kind->keyword, (long long)node[c], builder->mesh.vertex_count);
 			return;
 		}
 		vertex[c] = (int32_t)(node[c] - 1);

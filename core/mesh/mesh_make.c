@@ -50,7 +50,7 @@ static cau_status make_raw(const cau_mesh_def *def, const char *directory, cau_m
 	case CAU_MESH_BYTES:
 		return cau_mesh_read(def->file, def->bytes, def->byte_count, mesh, report, error);
 	default:
-		return cau_fail(error, CAU_BAD_VALUE, "source", "no source of meshes has this number");
+		return cau_fail(error, CAU_BAD_VALUE, "source", "no kind of mesh source has this number");
 	}
 }
 
@@ -87,10 +87,10 @@ static cau_status judge(const cau_mesh_def *def, const cau_mesh_report *report, 
 	for (int c = 0; c < 3; c++)
 		longest_m = fmax(longest_m, report->most_m[c] - report->least_m[c]);
 	if (report->proposed_unit_m > 0)
-		return cau_fail(
-			error, CAU_BAD_MESH, "unit_m",
-			"this mesh is %.3g m long, which no tissue is: did you mean %s (unit_m %g)?", longest_m,
-			cau_unit_name(report->proposed_unit_m), report->proposed_unit_m);
+		return cau_fail(error, CAU_BAD_MESH, "unit_m",
+		                "this mesh is %.3g m long, which is not a plausible size of tissue: did "
+		                "you mean %s (unit_m %g)?",
+		                longest_m, cau_unit_name(report->proposed_unit_m), report->proposed_unit_m);
 	return def->strict ? cau_mesh_report_refuse(report, error) : CAU_OK;
 }
 

@@ -37,11 +37,10 @@ static cau_status refuse_format(const char *name, const cau_mesh_format *format,
 {
 	if (format)
 		return cau_fail(error, CAU_UNSUPPORTED, NULL, "'%.80s' is %s", name, format->refusal);
-	return cau_fail(
-		error, CAU_UNSUPPORTED, NULL,
-		"'%.80s' is in none of the formats that are read: Gmsh, VTK, VTU, OBJ, STL, PLY, "
-		"Medit, TetGen, USD (.usda), and segmentations in NRRD or NIfTI",
-		name);
+	return cau_fail(error, CAU_UNSUPPORTED, NULL,
+	                "'%.80s' has none of the supported formats: Gmsh, VTK, VTU, OBJ, STL, PLY, "
+	                "Medit, TetGen, USD (.usda), and segmentations in NRRD or NIfTI",
+	                name);
 }
 
 // Replaces carriage returns by line feeds in a text that has no line feeds. Returns a copy that the

@@ -116,13 +116,12 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 	bool solid = report->tetrahedron_count > 0;
 	bool fat = wish->layer_kind < 0 ? solid : wish->layer_kind == CAU_LAYER_FAT;
 	if (fat && !solid)
-		return cau_fail(
-			error, CAU_BAD_MESH, "as",
-			"this file has a surface and no tetrahedra: make a sheet of it (as fascia), "
-			"or fill it with tetrahedra first (cautery-mesh)");
+		return cau_fail(error, CAU_BAD_MESH, "as",
+		                "this file has a surface and no tetrahedra: use it as a sheet (as fascia), "
+		                "or fill it with tetrahedra first (cautery-mesh)");
 	if (!fat && !report->triangle_count)
 		return cau_fail(error, CAU_BAD_MESH, "as",
-		                "this file has tetrahedra and no triangles: make a solid of it (as fat)");
+		                "this file has tetrahedra and no triangles: use it as a solid (as fat)");
 	cau_layer_def *layer = &scene->layers[scene->layer_count++];
 	cau_default_layer_def(layer, fat ? CAU_LAYER_FAT : CAU_LAYER_FASCIA);
 	snprintf(layer->name, sizeof layer->name, "%s", fat ? "fat" : "fascia");
@@ -163,9 +162,10 @@ static cau_status pin_sides(const char *sides, const cau_mesh_report *report, ca
 			side++;
 		bool none = length == 4 && memcmp(at, "none", 4) == 0;
 		if (side == 6 && !none)
-			return cau_fail(error, CAU_BAD_VALUE, "pin",
-			                "'%.*s' is no side: bottom, top, left, right, front, back or none",
-			                (int)(length < 40 ? length : 40), at);
+			return cau_fail(
+				error, CAU_BAD_VALUE, "pin",
+				"'%.*s' is not a side: use bottom, top, left, right, front, back or none",
+				(int)(length < 40 ? length : 40), at);
 		if (!none && scene->pin_count == CAU_MAX_PINS)
 			return cau_fail(error, CAU_LIMIT, "pin", "more than %d sides", CAU_MAX_PINS);
 		if (!none)

@@ -65,8 +65,8 @@ static bool read_block(meshb *m)
 	if (scan->status || next == 0)
 		return false;
 	if (next < (int64_t)scan->at || next > (int64_t)scan->count)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the next block cannot begin at byte %lld",
-		              (long long)next);
+		cau_scan_fail(scan, CAU_BAD_SYNTAX,
+		              "the position of the next block, byte %lld, is not valid", (long long)next);
 	else
 		scan->at = (size_t)next;
 	return !scan->status;

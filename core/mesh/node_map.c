@@ -48,7 +48,7 @@ void cau_node_map_seal(cau_node_map *map, cau_scan *scan)
 	qsort(map->node, (size_t)map->count, sizeof *map->node, compare_numbers);
 	for (int32_t i = 1; i < map->count; i++)
 		if (map->node[i - 1].number == map->node[i].number) {
-			cau_scan_fail(scan, CAU_BAD_MESH, "node number %lld stands twice",
+			cau_scan_fail(scan, CAU_BAD_MESH, "the file has node number %lld twice",
 			              (long long)map->node[i].number);
 			return;
 		}

@@ -77,8 +77,8 @@ static int32_t read_index(obj *o, cau_word word, const char *what, int32_t count
 	int64_t number = cau_scan_word_integer(o->scan, word, what, INT32_MIN, INT32_MAX);
 	int64_t index = number < 0 ? count + number : number - 1;
 	if (!o->scan->status && (index < 0 || index >= count))
-		cau_scan_fail(o->scan, CAU_BAD_MESH, "%lld as %s: there are %d so far", (long long)number,
-		              what, count);
+		cau_scan_fail(o->scan, CAU_BAD_MESH, "%lld as %s: the file has only %d so far",
+		              (long long)number, what, count);
 	return o->scan->status ? -1 : (int32_t)index;
 }
 

@@ -80,7 +80,8 @@ static void read_property(ply *p)
 	cau_scan *scan = p->scan;
 	element *of = p->element_count ? &p->element[p->element_count - 1] : NULL;
 	if (!of || of->property_count == PROPERTIES_MAX) {
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "a property of no element, or one too many");
+		cau_scan_fail(scan, CAU_BAD_SYNTAX,
+		              "a property before the first element, or too many properties");
 		return;
 	}
 	property made = {0};
@@ -177,8 +178,8 @@ static void read_corners(ply *p, const property *of, int32_t *corner, int32_t *c
 		if (!kept)
 			continue;
 		if (!(number >= 0 && number < vertices))
-			cau_scan_fail(scan, CAU_BAD_MESH, "a face names vertex %g, but there are %d", number,
-			              vertices);
+			cau_scan_fail(scan, CAU_BAD_MESH, "a face names vertex %g, but there are %d vertices",
+			              number, vertices);
 		else
 			corner[i] = (int32_t)number;
 	}

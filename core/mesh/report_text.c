@@ -135,6 +135,6 @@ cau_status cau_mesh_report_refuse(const cau_mesh_report *report, cau_error *erro
 			before = ", ";
 		}
 	return found[0] ? cau_fail(error, CAU_BAD_MESH, "strict",
-	                           "strict refuses to mend this mesh: %s", found)
+	                           "strict refuses to repair this mesh: %s", found)
 	                : CAU_OK;
 }

@@ -174,7 +174,8 @@ int64_t cau_scan_word_integer(cau_scan *scan, cau_word word, const char *what, i
 	if (!is_number)
 		fail_word(scan, what, word);
 	else if (value < least || value > most)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected %s, which cannot be %s", what, text);
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected %s, but found %s, which is not valid", what,
+		              text);
 	return scan->status ? 0 : value;
 }
 
@@ -234,7 +235,7 @@ int64_t cau_scan_integer(cau_scan *scan, const char *what, int bytes, int64_t le
 	                : bytes == 4 ? number.i4
 	                             : number.i8;
 	if (value < least || value > most) {
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected %s, which cannot be %lld", what,
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected %s, but found %lld, which is not valid", what,
 		              (long long)value);
 		return 0;
 	}
@@ -261,7 +262,7 @@ void cau_scan_check_count(cau_scan *scan, const char *what, int64_t count, int64
 	if (scan->status)
 		return;
 	if ((uint64_t)count > cau_scan_left(scan) / (size_t)item_bytes)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld as %s cannot be: only %zu bytes follow",
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld as %s is not possible: only %zu bytes follow",
 		              (long long)count, what, cau_scan_left(scan));
 }
 

@@ -49,7 +49,7 @@ static int64_t read_nodes(cau_mesh_builder *builder)
 		cau_scan_fail(scan, CAU_BAD_MESH,
 		              dimension == 4 ? "elements without their points: keep the .node file beside "
 		                               "this one, or put its lines before these"
-		                             : "points in two dimensions");
+		                             : "points in two dimensions are not supported");
 	rest_of_header(scan, rest);
 	cau_scan_check_count(scan, "number of points", count, 8);
 	for (int64_t i = 0; i < count && !scan->status; i++) {
@@ -57,7 +57,7 @@ static int64_t read_nodes(cau_mesh_builder *builder)
 		int64_t number = next_integer(scan, "a point's number", 0, INT32_MAX);
 		first = i == 0 ? number : first;
 		if (first > 1 || number != first + i)
-			cau_scan_fail(scan, CAU_BAD_SYNTAX, "points are numbered from 0 or 1 in order");
+			cau_scan_fail(scan, CAU_BAD_SYNTAX, "points must be numbered in order, from 0 or 1");
 		for (int c = 0; c < 3; c++)
 			position[c] = next_real(scan, "a coordinate");
 		for (int64_t a = 0; a < rest[0] + rest[1] && !scan->status; a++)
@@ -78,8 +78,9 @@ static void read_element(cau_mesh_builder *builder, cau_shape shape, int64_t nod
 	for (int64_t n = 0; n < nodes; n++) {
 		int64_t number = next_integer(scan, "a point's number", first, INT32_MAX);
 		if (!scan->status && number - first >= builder->mesh.vertex_count)
-			cau_scan_fail(scan, CAU_BAD_MESH, "an element names point %lld, but there are %d",
-			              (long long)number, builder->mesh.vertex_count);
+			cau_scan_fail(scan, CAU_BAD_MESH,
+			              "an element names point %lld, but there are %d points", (long long)number,
+			              builder->mesh.vertex_count);
 		if (n < corners)
 			vertex[n] = (int32_t)(number - first);
 	}

@@ -130,7 +130,7 @@ static int32_t vertex_at(usda *u, const numbers *from, int64_t i, int32_t first)
 	int32_t points = u->value[POINTS].count / 3;
 	if (index >= 0 && index < points && index == floor(index))
 		return first + (int32_t)index;
-	cau_scan_fail(u->scan, CAU_BAD_MESH, "%.*s names point %g, but there are %d",
+	cau_scan_fail(u->scan, CAU_BAD_MESH, "%.*s names point %g, but there are %d points",
 	              u->name.length < 40 ? (int)u->name.length : 40, u->name.text, index, points);
 	return -1;
 }

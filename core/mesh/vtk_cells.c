@@ -25,7 +25,7 @@ void cau_vtk_read_points(cau_vtk *vtk)
 {
 	cau_scan *scan = vtk->scan;
 	if (vtk->has_points)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "POINTS stands twice");
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the file has two sections POINTS");
 	vtk->has_points = true;
 	int64_t count = cau_scan_count(scan, "number of points", 3);
 	const cau_vtk_type *type = cau_vtk_read_type(scan);
@@ -89,7 +89,7 @@ static int64_t *read_named_indices(cau_scan *scan, const char *name, int64_t cou
 	cau_scan_expect(scan, name);
 	const cau_vtk_type *type = cau_vtk_read_type(scan);
 	if (type && (type->kind == CAU_VTK_REAL || type->bytes < 4))
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%s cannot be of type %s", name, type->name);
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%s must not have the type %s", name, type->name);
 	cau_vtk_start_numbers(scan);
 	return read_indices(scan, name, count, type ? type->bytes : 4);
 }
@@ -107,7 +107,7 @@ static void read_new_list(cau_scan *scan, cell_list *list)
 	for (int64_t i = 1; i < offset_count; i++)
 		ordered = ordered && list->first[i - 1] <= list->first[i];
 	if (!ordered)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "OFFSETS do not ascend from 0 to the corners' number");
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "OFFSETS must ascend from 0 to the number of corners");
 	list->count = ordered ? offset_count - 1 : 0;
 }
 
@@ -147,7 +147,7 @@ void cau_vtk_read_other_cells(cau_vtk *vtk, const char *kind)
 void cau_vtk_read_cells(cau_vtk *vtk)
 {
 	if (vtk->first)
-		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX, "CELLS stands twice");
+		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX, "the file has two sections CELLS");
 	cell_list list = read_list(vtk);
 	if (vtk->scan->status)
 		return;
@@ -162,8 +162,8 @@ void cau_vtk_read_cell_types(cau_vtk *vtk)
 	int64_t count = cau_scan_count(scan, "number of cell types", 1);
 	bool fits = vtk->first && count == vtk->waiting_count;
 	if (!fits)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld CELL_TYPES for %lld CELLS", (long long)count,
-		              (long long)vtk->waiting_count);
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the file has %lld CELL_TYPES for %lld CELLS",
+		              (long long)count, (long long)vtk->waiting_count);
 	cau_vtk_start_numbers(scan);
 	for (int64_t i = 0; fits && i < count && !scan->status; i++) {
 		int64_t type = cau_scan_integer(scan, "a type of cell", 4, 0, 255);

@@ -98,7 +98,7 @@ static void read_regions(cau_vtk *vtk, const cau_vtk_type *type, int64_t count)
 		return;
 	cau_scan_check_count(scan, "number of values", count, scan->binary ? type->bytes : 1);
 	if (vtk->cell_region)
-		cau_scan_fail(scan, CAU_BAD_MESH, "a second region of the cells");
+		cau_scan_fail(scan, CAU_BAD_MESH, "the cells have two arrays of regions");
 	if (scan->status)
 		return;
 	vtk->cell_region = cau_mesh_array((size_t)count, sizeof *vtk->cell_region);
@@ -110,7 +110,7 @@ static void read_regions(cau_vtk *vtk, const cau_vtk_type *type, int64_t count)
 	for (int64_t i = 0; i < count && !scan->status; i++) {
 		double region = cau_vtk_read_number(scan, type, "a region");
 		if (!(fabs(region) <= INT32_MAX) || region != floor(region)) {
-			cau_scan_fail(scan, CAU_BAD_MESH, "cell %lld: a region is a whole number",
+			cau_scan_fail(scan, CAU_BAD_MESH, "cell %lld: a region must be a whole number",
 			              (long long)i);
 			return;
 		}
@@ -125,8 +125,9 @@ static void read_array(cau_vtk *vtk, cau_word name, const cau_vtk_type *type, in
 	if (vtk->scan->status)
 		return;
 	if (components > INT32_MAX || count > INT32_MAX)
-		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX, "an array of %lld items with %lld numbers each",
-		              (long long)count, (long long)components);
+		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX,
+		              "an array is too large: %lld items with %lld numbers each", (long long)count,
+		              (long long)components);
 	else if (cells && components == 1 && cau_vtk_is_region_name(name))
 		read_regions(vtk, type, count);
 	else

@@ -67,7 +67,7 @@ static bool take_corners(cau_mesh_builder *builder, const int64_t *corner, int64
 	for (int64_t c = 0; c < corners; c++) {
 		if (corner[c] < 0 || corner[c] >= count) {
 			cau_scan_fail(builder->scan, CAU_BAD_MESH,
-			              "cell %d names point %lld, but there are %d so far", cell,
+			              "cell %d names point %lld, but there are only %d points so far", cell,
 			              (long long)corner[c], count);
 			return false;
 		}

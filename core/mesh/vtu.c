@@ -202,7 +202,7 @@ static void add_cells(vtu *v, const cau_vtu_array *array, int64_t type, int64_t 
 	double from = 0;
 	for (int64_t i = 0; i < offset_count && !v->scan->status; i++) {
 		if (!(offset[i] >= from && offset[i] <= (double)corner_count)) {
-			cau_scan_fail(v->scan, CAU_BAD_SYNTAX, "offsets that do not ascend, at cell %lld",
+			cau_scan_fail(v->scan, CAU_BAD_SYNTAX, "the offsets do not ascend, at cell %lld",
 			              (long long)i);
 			break;
 		}
@@ -282,7 +282,7 @@ cau_status cau_mesh_read_vtu(cau_mesh_builder *builder)
 		read_tag(&v, &at, &surface);
 	}
 	if (!headed)
-		cau_scan_fail(scan, CAU_UNSUPPORTED, "XML, but not of VTK: there is no <VTKFile>");
+		cau_scan_fail(scan, CAU_UNSUPPORTED, "the file is XML but not VTK: there is no <VTKFile>");
 	if (headed && !cau_word_is(at.name, "/VTKFile") && !cau_word_is(at.name, "AppendedData"))
 		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the file ends before </VTKFile>");
 	cau_mesh_builder_map_regions(builder, v.cell_region, v.cell_count);

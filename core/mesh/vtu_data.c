@@ -86,7 +86,8 @@ static bytes copy_plain(const cau_vtu_coding *coding, const bytes *from)
 	if (coding->scan->status)
 		return out;
 	if (count > from->count - width) {
-		cau_scan_fail(coding->scan, CAU_BAD_SYNTAX, "an array of %llu bytes, but %zu follow",
+		cau_scan_fail(coding->scan, CAU_BAD_SYNTAX,
+		              "an array has %llu bytes, but only %zu bytes follow",
 		              (unsigned long long)count, from->count - width);
 		return out;
 	}

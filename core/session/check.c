@@ -37,7 +37,8 @@ static cau_status is_choice(int value, int count, const char *path, const char *
 		return CAU_OK;
 	char full[PATH_BYTES];
 	join(full, path, field);
-	return cau_fail(error, CAU_BAD_VALUE, full, "%d is no choice (0 to %d)", value, count - 1);
+	return cau_fail(error, CAU_BAD_VALUE, full, "%d is not one of the choices 0 to %d", value,
+	                count - 1);
 }
 
 static cau_status finite_vector(const double *v, int count, double most, const char *path,
@@ -74,7 +75,7 @@ static cau_status check_name(const char *name, const char *path, const char *fie
 		return CAU_OK;
 	char full[PATH_BYTES];
 	join(full, path, field);
-	return cau_fail(error, CAU_BAD_VALUE, full, "\"%.60s\" is no name: " CAU_NAME_RULE, name);
+	return cau_fail(error, CAU_BAD_VALUE, full, "\"%.60s\" is not a name: " CAU_NAME_RULE, name);
 }
 
 // ---- materials
@@ -94,7 +95,7 @@ static cau_status check_interval(const double *least, const double *most, int co
 			char full[PATH_BYTES];
 			join(full, path, "strain_min");
 			return cau_fail(error, CAU_BAD_VALUE, full,
-			                "axis %d: [%g, %g] is no interval of strains from %g to %g", i,
+			                "axis %d: [%g, %g] is not an interval of strains within %g to %g", i,
 			                least[i], most[i], CAU_STRAIN_LEAST, CAU_STRAIN_MOST);
 		}
 	return CAU_OK;
@@ -122,11 +123,11 @@ static cau_status check_target(const double eigen[3], int count, const char *pat
 		if (!(eigen[i] >= 1e-4 && eigen[i] <= 100)) {
 			char full[PATH_BYTES];
 			join(full, path, "target");
-			return cau_fail(
-				error, CAU_BAD_VALUE, full,
-				"T must be positive definite, its squared stretches between 1e-4 and 100; "
-				"one is %g",
-				eigen[i]);
+			return cau_fail(error, CAU_BAD_VALUE, full,
+			                "the target must be positive definite, with squared stretches from "
+			                "1e-4 to 100; one "
+			                "squared stretch is %g",
+			                eigen[i]);
 		}
 	return CAU_OK;
 }
@@ -360,8 +361,9 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 	if (!status)
 		status = finite_vector(layer->fibre, 3, CAU_FIBRE_MOST, path, "fibre", error);
 	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
-		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",
-		                  layer->material_count, CAU_MAX_MATERIALS);
+		status =
+			cau_fail(error, CAU_BAD_VALUE, path, "the layer has %d materials; 1 to %d are allowed",
+		             layer->material_count, CAU_MAX_MATERIALS);
 	for (int32_t m = 0; m < layer->material_count && !status; m++) {
 		char inner[PATH_BYTES];
 		if (m)
@@ -411,8 +413,9 @@ static cau_status check_vessel(const cau_scene_def *scene, int32_t index, cau_er
 		                  "a wall of %g m leaves no lumen in a tube of radius %g m", object->wall_m,
 		                  object->radius_m);
 	if (!status && !(object->point_count >= 2 && object->point_count <= CAU_MAX_VESSEL_POINTS))
-		status = cau_fail(error, CAU_BAD_VALUE, path, "%d points; 2 to %d are allowed",
-		                  object->point_count, CAU_MAX_VESSEL_POINTS);
+		status =
+			cau_fail(error, CAU_BAD_VALUE, path, "the vessel has %d points; 2 to %d are allowed",
+		             object->point_count, CAU_MAX_VESSEL_POINTS);
 	bool has_length = false;
 	for (int32_t i = 0; i < object->point_count && !status; i++) {
 		status = finite_vector(object->points_m[i], 3, CAU_PLACE_MOST_M, path, "points", error);
@@ -420,13 +423,13 @@ static cau_status check_vessel(const cau_scene_def *scene, int32_t index, cau_er
 			has_length |= object->points_m[i][c] != object->points_m[0][c];
 	}
 	if (!status && !has_length)
-		status = cau_fail(error, CAU_BAD_VALUE, path, "all its points lie in one place");
+		status = cau_fail(error, CAU_BAD_VALUE, path,
+		                  "all points of the vessel are at the same position");
 	int32_t layer = find_layer(scene, object->layer);
 	if (!status && (layer < 0 || scene->layers[layer].kind != CAU_LAYER_FAT))
 		status = missing(path, "layer", "layer of fat", object->layer, error);
 	if (!status && scene->energy != CAU_ENERGY_TISSUE)
-		status =
-			cau_fail(error, CAU_BAD_VALUE, path, "vessels need energy \"tissue\": heat seals them");
+		status = cau_fail(error, CAU_BAD_VALUE, path, "vessels need energy \"tissue\"");
 	return status;
 }
 
@@ -445,7 +448,7 @@ static cau_status check_counts(const cau_scene_def *scene, cau_error *error)
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
 		if (counts[i].count < counts[i].least || counts[i].count > counts[i].most)
 			return cau_fail(error, CAU_BAD_VALUE, counts[i].what,
-			                "%d of them; %d to %d are allowed", counts[i].count, counts[i].least,
+			                "there are %d; %d to %d are allowed", counts[i].count, counts[i].least,
 			                counts[i].most);
 	return CAU_OK;
 }

@@ -97,7 +97,8 @@ static bool acts_at_once(cau_session *session, const cau_command *command)
 static cau_status check(const cau_session *session, const cau_command *command, cau_error *error)
 {
 	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT)
-		return cau_fail(error, CAU_BAD_VALUE, "command", "%d is no command", command->kind);
+		return cau_fail(error, CAU_BAD_VALUE, "command", "no command has the number %d",
+		                command->kind);
 	return cau_command_check(session, command, error);
 }
 
@@ -110,7 +111,8 @@ cau_status cau_session_may_submit(const cau_session *session, const cau_command 
 		if (status)
 			return status;
 		if (session->command_count + *index >= session->command_capacity)
-			return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
+			return cau_fail(error, CAU_LIMIT, NULL,
+			                "%d commands are waiting already, which is the limit",
 			                session->command_count);
 	}
 	return CAU_OK;
@@ -124,7 +126,8 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 	if (acts_at_once(session, command))
 		return CAU_OK;
 	if (session->command_count == session->command_capacity)
-		return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
+		return cau_fail(error, CAU_LIMIT, NULL,
+		                "%d commands are waiting already, which is the limit",
 		                session->command_count);
 	cau_command *queued = &session->command[session->command_count++];
 	*queued = *command;

@@ -125,10 +125,10 @@ static cau_status refuse_vertex(const cau_session *session, int32_t vertex, cau_
 	const double *start = session->position_start + 3 * (size_t)vertex;
 	double move = cau_length(cau_sub(cau_vec3_of(x), cau_vec3_of(start)));
 	if (isfinite(move))
-		snprintf(what, sizeof what, "vertex %d flies at %.4g m/s, faster than sound in tissue",
+		snprintf(what, sizeof what, "vertex %d moves at %.4g m/s, faster than sound in tissue",
 		         vertex, move / session->solver.step_s);
 	else
-		snprintf(what, sizeof what, "vertex %d is at no place that is a number", vertex);
+		snprintf(what, sizeof what, "the position of vertex %d is not a number", vertex);
 	return refuse(session, error, layer_of_vertex(session, vertex), what);
 }
 
@@ -183,8 +183,9 @@ static cau_status refuse_edge(const cau_session *session, int32_t edge, cau_erro
 {
 	char what[128];
 	const int32_t *vertex = session->tissue.edges.vertex + 2 * (size_t)edge;
-	snprintf(what, sizeof what, "the edge of vertices %d and %d is %.4g times its length",
-	         vertex[0], vertex[1],
+	snprintf(what, sizeof what,
+	         "the edge between vertices %d and %d is %.4g times as long as at rest", vertex[0],
+	         vertex[1],
 	         length_m(session->position, vertex) / length_m(session->tissue.rest, vertex));
 	return refuse(session, error, living_layer(session, edge), what);
 }
@@ -239,7 +240,7 @@ cau_status cau_session_check_inverted(const cau_session *session, cau_error *err
 	const cau_tissue *tissue = &session->tissue;
 	if (session->inversion.count <= most_inverted * tissue->tetrahedron_count)
 		return CAU_OK;
-	snprintf(what, sizeof what, "%d of %d tetrahedra are inside out", session->inversion.count,
+	snprintf(what, sizeof what, "%d of %d tetrahedra are inverted", session->inversion.count,
 	         tissue->tetrahedron_count);
 	return refuse(session, error, layer_of_most_fat(tissue), what);
 }

@@ -10,20 +10,21 @@
 
 static cau_status corrupt(cau_error *error, const char *why)
 {
-	return cau_fail(error, CAU_CORRUPT, NULL, "this is no snapshot of this session: %s", why);
+	return cau_fail(error, CAU_CORRUPT, NULL, "this is not a snapshot of this session: %s", why);
 }
 
 static cau_status refuse(const snapshot_archive *archive, cau_error *error)
 {
 	if (!strcmp(archive->wrong, "version"))
 		return cau_fail(error, CAU_CORRUPT, NULL,
-		                "the snapshot is of another version than %d, which this build reads: "
+		                "the snapshot does not have version %d, which this build reads: "
 		                "restore it with the build that wrote it",
 		                CAU_SNAPSHOT_VERSION);
-	return cau_fail(error, CAU_CORRUPT, NULL,
-	                "this is no snapshot of this session: %s, at byte %zu, is missing or outside "
-	                "its range",
-	                archive->wrong, archive->at);
+	return cau_fail(
+		error, CAU_CORRUPT, NULL,
+		"this is not a snapshot of this session: %s, at byte %zu, is missing or outside "
+		"its range",
+		archive->wrong, archive->at);
 }
 
 // ---- copies
@@ -139,11 +140,11 @@ static cau_status check_head(const cau_session *session, const snapshot_head *he
 {
 	const cau_matrix_update *update = &session->update;
 	if (head->single != session->solver.elements.single)
-		return corrupt(error, "it is of another precision");
+		return corrupt(error, "the snapshot has another precision than the session");
 	if (head->definition_hash != session->definition_hash ||
 	    head->vertex_count != session->tissue.vertex_count ||
 	    head->edge_count != session->tissue.edges.edge_count)
-		return corrupt(error, "it is of another tissue");
+		return corrupt(error, "the snapshot is of another scene or mesh");
 	if (head->command_count > session->command_capacity ||
 	    head->active_count > session->shrink.active_capacity ||
 	    head->over_count > cau_tears_capacity(&session->tissue) ||
@@ -153,7 +154,7 @@ static cau_status check_head(const cau_session *session, const snapshot_head *he
 		return corrupt(error, "a count is outside its range");
 	if (head->making &&
 	    (session->scene->solver == CAU_SOLVER_DIAGONAL || head->swap_tick < head->tick))
-		return corrupt(error, "no factor can be in the making");
+		return corrupt(error, "it has a factor under way, which this session cannot have");
 	return CAU_OK;
 }
 
@@ -302,18 +303,18 @@ static cau_status check_arrays(const cau_session *session, const snapshot_state 
                                cau_error *error)
 {
 	if (!are_vertices_right(session, state))
-		return corrupt(error, "a vertex is held, or is where it cannot be");
+		return corrupt(error, "a vertex has impossible pins or an impossible position");
 	uint8_t *alive[CAU_ELEMENT_KINDS], *marks = find_alive(session, state, alive);
 	if (!marks)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
 	bool right = are_lists_right(state, alive);
 	free(marks);
 	if (!right)
-		return corrupt(error, "an element is in the factor and is not");
+		return corrupt(error, "an element is both in the factor and removed from it");
 	if (!is_shrinkage_right(state))
-		return corrupt(error, "an element shrinks twice, or to nothing");
+		return corrupt(error, "an element shrinks twice, or to size 0");
 	if (!are_columns_right(session, state) || !are_sides_right(state))
-		return corrupt(error, "what tools touched is not in order");
+		return corrupt(error, "the list of faces at tools is damaged");
 	return CAU_OK;
 }
 
@@ -364,16 +365,16 @@ static cau_status check_tool(const cau_session *session, const snapshot_state *s
 	if (cau_tool_check(&tool->state.definition, "tool", session->solver.step_s, &why))
 		return corrupt(error, why.reason);
 	if (strcmp(tool->state.name, tool->state.definition.name) != 0 || !are_poses_right(tool))
-		return corrupt(error, "a tool is not where or what it says");
+		return corrupt(error, "the name or the pose of a tool is damaged");
 	for (int32_t i = 0; i < index; i++)
 		if (!strcmp(state->tool[i].state.name, tool->state.name))
-			return corrupt(error, "two tools have one name");
+			return corrupt(error, "two tools have the same name");
 	if ((tool->state.grasping && !has_jaws(&tool->state.definition)) ||
 	    (tool->grasp_count && !tool->state.grasping))
-		return corrupt(error, "a tool holds what it cannot");
+		return corrupt(error, "the grasp of a tool is damaged");
 	for (int32_t k = 0; k < tool->grasp_count; k++)
 		if (!is_grasp_right(session, &tool->grasp[k]))
-			return corrupt(error, "a tool holds what it cannot");
+			return corrupt(error, "the grasp of a tool is damaged");
 	return CAU_OK;
 }
 
@@ -434,7 +435,9 @@ static cau_status read_arrays(const cau_session *session, snapshot_archive *arch
 	cau_snapshot_pass_grids(archive, state);
 	if (archive->wrong)
 		return refuse(archive, error);
-	return archive->at == archive->capacity ? CAU_OK : corrupt(error, "bytes are left over");
+	return archive->at == archive->capacity
+	           ? CAU_OK
+	           : corrupt(error, "the snapshot is longer than its content");
 }
 
 cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size_t byte_count,
@@ -442,7 +445,7 @@ cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size
 {
 	*state = (snapshot_state){0};
 	if (byte_count < CAU_SNAPSHOT_HASH_BYTES)
-		return corrupt(error, "it is too short");
+		return corrupt(error, "the snapshot is too short");
 	snapshot_archive archive = {.mode = SNAPSHOT_READ,
 	                            .bytes = (unsigned char *)(uintptr_t)bytes,
 	                            .capacity = byte_count - CAU_SNAPSHOT_HASH_BYTES};
@@ -456,7 +459,7 @@ cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size
 	end.capacity = byte_count;
 	cau_snapshot_words(&end, "hash", &hash, 1, UINT64_MAX);
 	if (hash != cau_snapshot_hash(bytes, archive.capacity))
-		return corrupt(error, "its bytes have changed");
+		return corrupt(error, "the checksum does not match the bytes");
 	cau_status status = check_head(session, &head, error);
 	if (status)
 		return status;

@@ -31,11 +31,11 @@ static cau_status check_tool(const cau_tool *tool, cau_error *error)
 	if (state->definition.shape < 0 || state->definition.shape >= CAU_TOOL_SHAPE_COUNT)
 		return unsound(error, name, "has a shape that does not exist");
 	if (!is_pose(&state->pose) || !is_pose(&tool->target) || !is_pose(&tool->anchor))
-		return unsound(error, name, "is nowhere");
+		return unsound(error, name, "has a pose that is not finite");
 	if (!(state->jaw >= 0) || !isfinite(state->jaw) || !isfinite(tool->jaw_target))
-		return unsound(error, name, "has its jaws nowhere");
+		return unsound(error, name, "has an opening of its jaws that is not finite");
 	if (tool->grasp_count < 0 || tool->grasp_count > CAU_MAX_GRASPED)
-		return unsound(error, name, "holds more than its jaws can");
+		return unsound(error, name, "holds more points than jaws can");
 	if (tool->grasp_count > 0 && !state->grasping)
 		return unsound(error, name, "holds tissue with open jaws");
 	if (!tool->grid.field[0].temperature)
@@ -48,7 +48,7 @@ static cau_status check_names(const cau_session *session, cau_error *error)
 	for (int32_t i = 0; i < session->tool_count; i++)
 		for (int32_t k = 0; k < i; k++)
 			if (strcmp(session->tool[i].state.name, session->tool[k].state.name) == 0)
-				return unsound(error, session->tool[i].state.name, "is there twice");
+				return unsound(error, session->tool[i].state.name, "exists twice");
 	return CAU_OK;
 }
 
@@ -56,9 +56,9 @@ cau_status cau_session_check_sound(const cau_session *session, cau_error *error)
 {
 	cau_status status = CAU_OK;
 	if (session->tool_count < 0 || session->tool_count > CAU_MAX_TOOLS)
-		return unsound(error, "", "is one too many");
+		return unsound(error, "", "is beyond the largest number of tools");
 	if (session->command_count < 0 || session->command_count > session->command_capacity)
-		return unsound(error, "", "has more commands waiting than there is room for");
+		return unsound(error, "", "has more waiting commands than the queue can hold");
 	for (int32_t i = 0; i < session->tool_count && !status; i++)
 		status = check_tool(&session->tool[i], error);
 	return status ? status : check_names(session, error);

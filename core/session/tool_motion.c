@@ -19,7 +19,7 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 	if (session->tool_count == CAU_MAX_TOOLS)
 		return cau_fail(error, CAU_LIMIT, "tool", "a session has at most %d tools", CAU_MAX_TOOLS);
 	if (cau_session_find_tool(session, def->name) >= 0)
-		return cau_fail(error, CAU_ALREADY_EXISTS, "tool.name", "there is a tool \"%s\"",
+		return cau_fail(error, CAU_ALREADY_EXISTS, "tool.name", "there is a tool \"%s\" already",
 		                def->name);
 	cau_tool *tool = &session->tool[session->tool_count];
 	memset(tool, 0, sizeof *tool);

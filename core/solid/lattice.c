@@ -202,7 +202,8 @@ static cau_status lay_out(grid *of, cau_error *error)
 	}
 	if (cells > cells_most)
 		return cau_fail(error, CAU_LIMIT, "edge",
-		                "an edge so short makes %.3g cells, of %.3g at most: choose a longer one",
+		                "this edge is too short: it gives %.3g cells, and at most %.3g are "
+		                "allowed: choose a longer one",
 		                cells, cells_most);
 	return CAU_OK;
 }

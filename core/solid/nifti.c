@@ -119,7 +119,7 @@ static cau_status read_numbers(const head *of, size_t byte_count, cau_voxels *vo
 		                (long long)code);
 	if (isfinite(slope) && slope != 0 && (slope != 1 || inter != 0))
 		return cau_fail(error, CAU_BAD_MESH, NULL,
-		                "the voxels are scaled by %g: this is an image and no segmentation", slope);
+		                "the voxels are scaled by %g: this is an image, not a segmentation", slope);
 	if (!(offset >= NIFTI1_BYTES) || offset > (double)byte_count)
 		return cau_fail(error, CAU_BAD_SYNTAX, NULL, "the voxels begin outside the file");
 	voxels->swap = of->swap;
@@ -206,7 +206,7 @@ cau_status cau_nifti_read(const unsigned char *bytes, size_t byte_count, cau_vol
 	volume->format = of.at == &nifti1 ? "NIfTI 1" : "NIfTI 2";
 	if (bytes[of.at == &nifti1 ? 345 : 5] == 'i')
 		return cau_fail(error, CAU_UNSUPPORTED, NULL,
-		                "the voxels are in a file of their own: save header and voxels as one file "
+		                "the voxels are in a separate file: save header and voxels as one file "
 		                "(.nii)");
 	cau_status status = read_sizes(&of, volume, error);
 	if (!status)

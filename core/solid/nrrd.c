@@ -84,10 +84,11 @@ static cau_status read_dimension(header *of, const char *text)
 	of->dimension = (int)strtol(text, NULL, 10);
 	if (of->dimension == 3)
 		return CAU_OK;
-	return fail(of,
-	            "this volume has %.8s axes, and 3 are read: of segments that overlap, save one "
-	            "labelmap (in 3D Slicer: export to a labelmap node)",
-	            text);
+	return fail(
+		of,
+		"this volume has %.8s axes, but only 3 are supported: save overlapping segments as one "
+		"labelmap (in 3D Slicer: export to a labelmap node)",
+		text);
 }
 
 static cau_status read_sizes(header *of, const char *text)
@@ -96,7 +97,7 @@ static cau_status read_sizes(header *of, const char *text)
 	for (int c = 0; c < 3; c++, text = end) {
 		long size = strtol(text, &end, 10);
 		if (end == text || size < 1 || size > INT32_MAX)
-			return fail(of, "the sizes '%.60s' are no three counts", text);
+			return fail(of, "the sizes '%.60s' are not three whole numbers", text);
 		of->volume->size[c] = (int32_t)size;
 	}
 	of->has_sizes = true;
@@ -122,14 +123,14 @@ static cau_status read_directions(header *of, const char *text)
 	for (int c = 0; c < 3 && at; c++)
 		at = read_vector(at, of->volume->axis[c]);
 	of->has_directions = at != NULL;
-	return at ? CAU_OK : fail(of, "the space directions '%.80s' are no three vectors", text);
+	return at ? CAU_OK : fail(of, "the space directions '%.80s' are not three vectors", text);
 }
 
 static cau_status read_origin(header *of, const char *text)
 {
 	return read_vector(text, of->volume->origin)
 	           ? CAU_OK
-	           : fail(of, "the space origin '%.80s' is no vector", text);
+	           : fail(of, "the space origin '%.80s' is not a vector", text);
 }
 
 static cau_status read_space(header *of, const char *text)
@@ -160,7 +161,7 @@ static cau_status read_spacings(header *of, const char *text)
 	for (int c = 0; c < 3; c++, text = end) {
 		of->spacing[c] = strtod(text, &end);
 		if (end == text || !(of->spacing[c] > 0))
-			return fail(of, "the spacings '%.60s' are no three lengths", text);
+			return fail(of, "the spacings '%.60s' are not three lengths", text);
 	}
 	of->has_spacing = true;
 	return CAU_OK;
@@ -186,14 +187,15 @@ static cau_status read_endian(header *of, const char *text)
 static cau_status refuse_detached(header *of, const char *text)
 {
 	(void)text;
-	return fail(of, "the voxels are in a file of their own: save header and voxels as one %s",
+	return fail(of, "the voxels are in a separate file: save header and voxels as one %s",
 	            "file (.nrrd)");
 }
 
 static cau_status refuse_skip(header *of, const char *text)
 {
-	return strtol(text, NULL, 10) == 0 ? CAU_OK
-	                                   : fail(of, "a file that skips '%.20s' is not read", text);
+	return strtol(text, NULL, 10) == 0
+	           ? CAU_OK
+	           : fail(of, "the field '%.20s', which skips data, is not supported", text);
 }
 
 static const struct {
@@ -240,7 +242,7 @@ static cau_status read_line(header *of, char *line)
 	if (line[0] == '#' || !strncmp(line, "NRRD", 4))
 		return CAU_OK;
 	if (!mark)
-		return fail(of, "the line '%.40s' of the header is no field", line);
+		return fail(of, "the line '%.40s' of the header is not a field", line);
 	*mark = 0;
 	char *text = mark + 1 + strspn(mark + 1, "= ");
 	if (mark[1] == '=') {

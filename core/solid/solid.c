@@ -107,7 +107,7 @@ static cau_status judge_surface(const work *of, int32_t turned, const cau_mesh_r
 		                report->open_edge_count);
 	if (turned)
 		return cau_fail(error, CAU_BAD_MESH, "strict",
-		                "strict refuses to turn %d triangles that look inward", turned);
+		                "strict refuses to turn %d triangles whose normal points inward", turned);
 	return cau_mesh_report_refuse(report, error);
 }
 
@@ -129,7 +129,7 @@ static cau_status read_surface(work *of, const void *bytes, size_t byte_count, c
 		status = cau_mesh_report_measure(surface, 1, report, error);
 	if (!status && surface->tetrahedron_count)
 		status = cau_fail(error, CAU_BAD_MESH, NULL,
-		                  "this file has tetrahedra already: nothing is left to fill");
+		                  "this file has tetrahedra already: there is nothing to fill");
 	if (!status)
 		status = cau_domain_of_surface(surface, &of->domain, &turned, error);
 	of->is_closed = !report->open_edge_count;
@@ -213,7 +213,7 @@ static cau_status choose_spacing(work *of, double *spacing, cau_error *error)
 	if (*spacing > spacing_least * longest_side(&of->domain) && isfinite(*spacing))
 		return CAU_OK;
 	return cau_fail(error, CAU_BAD_MESH, NULL,
-	                "nothing is inside this %s: make a sheet of it (as fascia), or choose an edge",
+	                "nothing is inside this %s: use it as a sheet (as fascia), or choose an edge",
 	                of->is_volume ? "segmentation" : "surface");
 }
 

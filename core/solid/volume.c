@@ -47,11 +47,13 @@ cau_status cau_volume_check(cau_volume *volume, cau_error *error)
 		count *= volume->size[c];
 		for (int d = 0; d < 3; d++)
 			if (!(fabs(volume->axis[c][d]) < 1e6) || !(fabs(volume->origin[c]) < 1e6))
-				return cau_fail(error, CAU_BAD_MESH, NULL,
-				                "the axes of this volume are no lengths");
+				return cau_fail(
+					error, CAU_BAD_MESH, NULL,
+					"the origin or an axis of this volume is not a number below 1e6 mm");
 	}
 	if (count > voxels_most)
-		return cau_fail(error, CAU_LIMIT, NULL, "%lld voxels, of %lld at most: crop the volume",
+		return cau_fail(error, CAU_LIMIT, NULL,
+		                "the volume has %lld voxels, at most %lld are allowed: crop the volume",
 		                (long long)count, (long long)voxels_most);
 	return invert(volume, error);
 }
@@ -84,8 +86,8 @@ static cau_status refuse_value(double value, cau_error *error)
 {
 	return cau_fail(
 		error, CAU_BAD_MESH, NULL,
-		"a voxel holds %g, and labels are whole numbers from 0 to %d: this is an image and "
-		"no segmentation; segment it first",
+		"a voxel holds %g, and labels are whole numbers from 0 to %d: this is an image, "
+		"not a segmentation; segment it first",
 		value, CAU_LABEL_VALUE_MAX);
 }
 
@@ -110,8 +112,8 @@ static cau_status take_value(cau_volume *volume, uint8_t *of_value, double value
 	if (place < 0)
 		return cau_fail(
 			error, CAU_BAD_MESH, NULL,
-			"more than %d different labels: choose some of them (labels), if this is no "
-			"image that must be segmented first",
+			"more than %d different labels: choose some of them (labels); an image must "
+			"be segmented first",
 			CAU_SOLID_LABEL_MAX);
 	CAU_ASSERT_INDEX(place, CAU_SOLID_LABEL_MAX + 1);
 	volume->label[place].voxel_count++;
@@ -145,7 +147,7 @@ static cau_status decode_text(const cau_voxels *voxels, cau_volume *volume, size
 		if (!length)
 			return missing(i, count, error);
 		if (*rest)
-			return cau_fail(error, CAU_BAD_SYNTAX, NULL, "voxel %zu is no number", i);
+			return cau_fail(error, CAU_BAD_SYNTAX, NULL, "voxel %zu is not a number", i);
 		status = take_value(volume, of_value, value, &volume->voxel[i], error);
 	}
 	return status;

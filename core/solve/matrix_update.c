@@ -285,7 +285,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 	cau_background_wait(update->background);
 	update->making = false;
 	if (update->next_status)
-		return cau_fail(error, update->next_status, NULL, "the system could not be factored anew");
+		return cau_fail(error, update->next_status, NULL, "the system could not be factored again");
 	cau_step_solver *solver = update->solver;
 	if (update->next_panels.panel)
 		cau_sweep_swap_panels(&solver->sweep, &update->next_panels);

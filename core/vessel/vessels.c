@@ -91,8 +91,8 @@ static cau_status make_station(const cau_tissue *tissue, const cau_vessel_def *d
 	find_across(along, station->across);
 	if (embed(tissue, layer, at, &station->point[0]) < outside)
 		return cau_fail(error, CAU_BAD_VALUE, "vessels",
-		                "the line of \"%s\" leaves \"%s\" at (%.4g, %.4g, %.4g) m", def->name,
-		                def->layer, at.x, at.y, at.z);
+		                "the line of vessel \"%s\" leaves layer \"%s\" at (%.4g, %.4g, %.4g) m",
+		                def->name, def->layer, at.x, at.y, at.z);
 	double radius = def->radius_m - def->wall_m / 2;
 	for (int i = 1; i < CAU_STATION_POINTS; i++) {
 		double side = i % 2 ? radius : -radius;
@@ -158,8 +158,9 @@ static cau_status count_stations(cau_vessels *vessels, cau_error *error)
 			                def->layer);
 		if (length_m(def) > spacing_m(def) * CAU_STATIONS_MOST)
 			return cau_fail(error, CAU_LIMIT, "vessels",
-			                "vessel \"%s\" is longer than %d of its sections", def->name,
-			                CAU_STATIONS_MOST);
+			                "vessel \"%s\" is too long: it needs more than %d sections, four for "
+			                "each radius of length",
+			                def->name, CAU_STATIONS_MOST);
 		vessel->first = vessels->station_count;
 		vessel->count = station_count(def);
 		vessels->station_count += vessel->count;
@@ -168,7 +169,8 @@ static cau_status count_stations(cau_vessels *vessels, cau_error *error)
 	}
 	if (vessels->station_count > CAU_STATIONS_MOST)
 		return cau_fail(error, CAU_LIMIT, "vessels",
-		                "%d sections of vessels; %d are allowed, four to a radius of length",
+		                "the vessels need %d sections, at most %d are allowed; a length of one "
+		                "radius needs four",
 		                vessels->station_count, CAU_STATIONS_MOST);
 	return CAU_OK;
 }

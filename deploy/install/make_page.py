@@ -116,10 +116,10 @@ def bounds_of(setting):
 def page_of_settings(program):
     settings = json.loads(ask(program, "--settings-schema"))["properties"]
     made = [".SH DESCRIPTION",
-            text("The file that `cauteryd --config` reads is one JSON object, whose members are the settings below."),
-            text("A setting `max_sessions` is the flag `--max-sessions` too, which goes before all else, and the"),
-            text("variable `CAUTERY_MAX_SESSIONS` of the environment, which goes before the file."),
-            text("A JSON Schema of the file is printed by `cauteryd --settings-schema`."),
+            text("`cauteryd --config` reads a file with one JSON object. Its members are the settings below."),
+            text("Each setting is also a flag and a variable of the environment: `max_sessions` is `--max-sessions` and"),
+            text("`CAUTERY_MAX_SESSIONS`. A flag overrides the variable, and the variable overrides the file."),
+            text("`cauteryd --settings-schema` prints a JSON Schema of the file."),
             ".SH SETTINGS"]
     for name, setting in settings.items():
         default = json.dumps(setting["default"])

@@ -189,7 +189,7 @@ static void write_fault_schemas(cau_json_writer *writer)
 	static const char *const text[] = {"status", "path", "reason", "moved_to", "url"};
 	cau_json_open(writer, "Id", '{');
 	cau_json_string(writer, "description",
-	                "text or whole number; null only in answers to what had none");
+	                "text or whole number; null only in the answer to a message without id");
 	cau_json_open(writer, "type", '(');
 	cau_json_string(writer, NULL, "string");
 	cau_json_string(writer, NULL, "integer");
@@ -309,7 +309,7 @@ static void write_messages(cau_json_writer *writer, const model *from)
 		if (is_answered(cau_method_describe((cau_method)i)))
 			write_result(writer, from, i);
 	}
-	begin_payload(writer, "error", "the answer to what was refused", required, 3);
+	begin_payload(writer, "error", "the answer to a refused request", required, 3);
 	reference(writer, "id", "schemas", "Id");
 	reference(writer, "error", "schemas", "Fault");
 	end_payload(writer);
@@ -406,13 +406,12 @@ static void write_servers(cau_json_writer *writer)
 	cau_json_open(writer, "local", '{');
 	cau_json_string(writer, "host", "127.0.0.1:8740");
 	cau_json_string(writer, "protocol", "ws");
-	cau_json_string(writer, "description",
-	                "a daemon on this machine, as it starts without settings");
+	cau_json_string(writer, "description", "a daemon on this machine, with default settings");
 	cau_json_close(writer);
 	cau_json_open(writer, "secured", '{');
 	cau_json_string(writer, "host", "{host}");
 	cau_json_string(writer, "protocol", "wss");
-	cau_json_string(writer, "description", "a daemon or a proxy that does TLS; hello has a token");
+	cau_json_string(writer, "description", "a daemon or a proxy with TLS; hello has a token");
 	cau_json_open(writer, "variables", '{');
 	cau_json_open(writer, "host", '{');
 	cau_json_string(writer, "default", "localhost:8740");

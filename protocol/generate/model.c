@@ -189,7 +189,8 @@ static void add_region(model *to, int kind, char name[NAME_BYTES])
 	char word[24];
 	pascal(word, sizeof word, layer_words[kind]);
 	snprintf(name, NAME_BYTES, "%sRegion", word);
-	type *region = add_type(to, name, "what differs from the layer's material in a region");
+	type *region =
+		add_type(to, name, "members of a region's material that differ from the layer's material");
 	region->strict = true;
 	add_record(region, &cau_region_record, NULL, -1);
 	add_material(region, kind);
@@ -213,7 +214,7 @@ static void add_layer_types(model *to)
 		add_material(variant, kind);
 		if (kind != CAU_LAYER_LINKS)
 			add_objects(variant, "regions", region_names[kind], CAU_MAX_MATERIALS - 1,
-			            "what differs in regions of the mesh file");
+			            "regions of the mesh file, with the members that differ");
 	}
 }
 
@@ -222,7 +223,7 @@ static void add_scene_parts(model *to)
 	type *mesh = add_type(to, "Mesh", "a mesh of a scene");
 	mesh->strict = true;
 	add_record(mesh, &cau_mesh_record, &mesh_defaults, -1);
-	type *selection = add_type(to, "Selection", "a choice of vertices by rest position");
+	type *selection = add_type(to, "Selection", "a selection of vertices by their rest positions");
 	selection->strict = true;
 	add_record(selection, &cau_selection_record, NULL, -1);
 	type *tool = add_type(to, "Tool", "a tool of a scene");
@@ -237,7 +238,8 @@ static void add_scene_parts(model *to)
 	type *vessel = add_type(to, "Vessel", "a blood vessel in a layer of fat");
 	vessel->strict = true;
 	add_record(vessel, &cau_vessel_record, &vessel_defaults, -1);
-	add_objects(vessel, "points", "VesselPoint", CAU_MAX_VESSEL_POINTS, "its middle line");
+	add_objects(vessel, "points", "VesselPoint", CAU_MAX_VESSEL_POINTS,
+	            "points of the middle line of the vessel");
 	type *pull = add_type(to, "Pull", "a scripted pull, for measurements");
 	pull->strict = true;
 	add_record(pull, &cau_pull_record, &scene_defaults.pull, -1);
@@ -258,13 +260,13 @@ static void add_scene_types(model *to)
 		cau_default_layer_def(&layer_defaults[kind], kind);
 	add_scene_parts(to);
 	add_layer_types(to);
-	type *scene = add_type(to, "Scene", "the plain data from which a session is made");
+	type *scene = add_type(to, "Scene", "the data from which a session is created");
 	scene->strict = true;
 	add_record(scene, &cau_scene_record, &scene_defaults, -1);
-	add_objects(scene, "meshes", "Mesh", CAU_MAX_MESHES, "meshes that layers take");
+	add_objects(scene, "meshes", "Mesh", CAU_MAX_MESHES, "meshes of the layers");
 	add_objects(scene, "layers", "Layer", CAU_MAX_LAYERS, "layers of tissue");
-	add_objects(scene, "pins", "Selection", CAU_MAX_PINS, "vertices that are held");
-	add_objects(scene, "tools", "Tool", CAU_MAX_TOOLS, "tools that are there from the start");
+	add_objects(scene, "pins", "Selection", CAU_MAX_PINS, "pinned vertices");
+	add_objects(scene, "tools", "Tool", CAU_MAX_TOOLS, "tools at the start");
 	add_objects(scene, "vessels", "Vessel", CAU_MAX_VESSELS, "blood vessels");
 	add_object(scene, "pull", "Pull", false, "a scripted pull");
 	add_object(scene, "cut", "Cut", false, "a scripted cut");
@@ -274,8 +276,9 @@ static void add_scene_types(model *to)
 
 static void add_envelope(type *to)
 {
-	property *session = add_property(to, "session", PROPERTY_NAME,
-	                                 "its id; that of the connection's URL by default");
+	property *session =
+		add_property(to, "session", PROPERTY_NAME,
+	                 "id of the session (default: the session in the connection's URL)");
 	session->required = false;
 	property *sequence =
 		add_property(to, "client_sequence", PROPERTY_INTEGER, "see session_change");

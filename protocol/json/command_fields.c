@@ -19,11 +19,12 @@ static const cau_field command_fields[] = {
      .offset = offsetof(cau_command, kind),
      .choices = &command_choices,
      .required = true,
-     MEANS("", "what to do")},
+     MEANS("", "which command")},
 #define STRUCT cau_command
-	{OTHER(tick, COUNT, "applied at the first tick border at or after this; 0: the next")},
-	{OTHER(sequence, COUNT, "the driver's own count")},
-	{OTHER(tool, NAME, "which tool"), .required = true, .kinds = NEEDS_TOOL},
+	{OTHER(tick, COUNT,
+           "the command takes effect at the first tick border at or after this tick; 0: the next")},
+	{OTHER(sequence, COUNT, "number that the driver gives the command")},
+	{OTHER(tool, NAME, "name of the tool"), .required = true, .kinds = NEEDS_TOOL},
 };
 #undef STRUCT
 #undef KIND
@@ -41,19 +42,22 @@ static const cau_field move_fields[] = {
      RANGE(-CAU_PLACE_MOST_M, CAU_PLACE_MOST_M),
      .offset = offsetof(cau_command, as.move.pose.position_m) - offsetof(cau_command, as.move),
      .required = true,
-     MEANS("m", "place of the tip")},
+     MEANS("m", "position of the tip")},
 	{.name = "rotation",
      .type = CAU_FIELD_ROTATION,
      .offset = offsetof(cau_command, as.move.pose.rotation) - offsetof(cau_command, as.move),
      .required = true,
      MEANS("", "unit quaternion w, x, y, z")},
 	{INSIDE(jaw, move), .type = CAU_FIELD_NUMBER, RANGE(0.0, 1.0),
-     MEANS("1", "0 closed to 1 open")},
+     MEANS("1", "opening of the jaws: 0 closed to 1 open")},
 };
 RECORD(cau_move_record, "a move", move_fields, NULL)
 
 static const cau_field energize_fields[] = {
-	{.name = "energized", .type = CAU_FIELD_FLAG, .required = true, MEANS("", "on or off")},
+	{.name = "energized",
+     .type = CAU_FIELD_FLAG,
+     .required = true,
+     MEANS("", "whether energy is turned on or off")},
 };
 RECORD(cau_energize_record, "energy", energize_fields, NULL)
 
@@ -61,14 +65,15 @@ static const cau_field energize_limit_fields[] = {
 	{.name = "ticks",
      .type = CAU_FIELD_INTEGER,
      RANGE(0.0, INT32_MAX),
-     MEANS("1", "of an enable: its energy goes off after so many ticks; 0: no limit")},
+     MEANS("1", "energy goes off this many ticks after an enable; 0: no limit")},
 };
 RECORD(cau_energize_limit_record, "a limit", energize_limit_fields, NULL)
 
 static const cau_field material_fields[] = {
 	{INSIDE(kind, material), .type = CAU_FIELD_CHOICE, .choices = &material_kind_choices,
-     .required = true, MEANS("", "the layer's kind")},
-	{INSIDE(layer, material), .type = CAU_FIELD_NAME, .required = true, MEANS("", "which layer")},
+     .required = true, MEANS("", "kind of the layer")},
+	{INSIDE(layer, material), .type = CAU_FIELD_NAME, .required = true,
+     MEANS("", "name of the layer")},
 };
 RECORD(cau_material_record, "a material", material_fields, NULL)
 
@@ -76,7 +81,7 @@ static const cau_field material_region_fields[] = {
 	{.name = "region",
      .type = CAU_FIELD_INTEGER,
      RANGE(0.0, INT32_MAX),
-     MEANS("1", "of the mesh file; 0: the layer's default")},
+     MEANS("1", "number of a region in the mesh file; 0: the layer's own material")},
 };
 RECORD(cau_material_region_record, "a region", material_region_fields, NULL)
 
@@ -92,7 +97,7 @@ RECORD(cau_gravity_record, "gravity", gravity_fields, NULL)
 
 static const cau_field force_fields[] = {
 	{INSIDE(force_n, force), .type = CAU_FIELD_NUMBER, .count = 3, .required = true,
-     RANGE(-CAU_FORCE_MOST_N, CAU_FORCE_MOST_N), MEANS("N", "on each chosen vertex")},
+     RANGE(-CAU_FORCE_MOST_N, CAU_FORCE_MOST_N), MEANS("N", "force on each chosen vertex")},
 };
 RECORD(cau_force_record, "a force", force_fields, NULL)
 // clang-format on

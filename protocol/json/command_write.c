@@ -18,7 +18,7 @@ void cau_write_command(cau_json_writer *writer, const char *key, const cau_comma
 	// A part's base is not const, but writing does not change it.
 	cau_command *shared = (cau_command *)command;
 	if (!kinds_exist(command)) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "a command of a kind that does not exist");
+		cau_json_fail(writer, CAU_BAD_VALUE, "the kind of the command does not exist");
 		return;
 	}
 	cau_json_open(writer, key, '{');

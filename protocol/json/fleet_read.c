@@ -16,9 +16,10 @@ static void read_label(cau_reader *reader, const cJSON *value, cau_fleet *fleet)
 	size_t mark = cau_reader_enter(reader, NULL, fleet->count);
 	cau_read_name(reader, value, label);
 	if (!reader->status && strchr(label, '-'))
-		cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "a label has no \"-\", as \"%s\" has", label);
+		cau_reader_fail(reader, CAU_BAD_VALUE, NULL,
+		                "a label must not contain \"-\", as \"%s\" does", label);
 	if (!reader->status && is_there(fleet, label))
-		cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "\"%s\" is there twice", label);
+		cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "\"%s\" is in the list twice", label);
 	cau_reader_leave(reader, mark);
 }
 

@@ -19,18 +19,19 @@ enum { SETTINGS = sizeof settings / sizeof settings[0] };
 // clang-format off: tables
 #define STRUCT cau_choice_names
 static const cau_field choice_fields[] = {
-	{OTHER(instrument, NAME,
-           "profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings "
-           "where this object has none")},
-	{OTHER(mode, NAME, "mode of the instrument; its first by default")},
+	{OTHER(
+		instrument, NAME,
+		"profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the "
+		"settings that this object leaves out")},
+	{OTHER(mode, NAME, "mode of the instrument (default: its first)")},
 };
 #undef STRUCT
 RECORD(cau_instrument_record, "an instrument", choice_fields, NULL)
 
 #define STRUCT cau_instrument
 static const cau_field profile_fields[] = {
-	{OTHER(name, NAME, "of the file"), .required = true},
-	{OTHER(description, TEXT, "in words"), .required = true},
+	{OTHER(name, NAME, "name of the profile, the same as that of its file"), .required = true},
+	{OTHER(description, TEXT, "description of the instrument in words"), .required = true},
 };
 #undef STRUCT
 static RECORD(profile_record, "a profile", profile_fields, NULL)
@@ -38,9 +39,9 @@ static RECORD(profile_record, "a profile", profile_fields, NULL)
 #define STRUCT cau_instrument_mode
 	static const cau_field mode_fields[] = {
 		{OTHER(name, NAME, "name of the mode"), .required = true},
-		{OTHER(description, TEXT, "in words"), .required = true},
-		{SCALAR_OF(power_least_w, 0.0, 400.0, "W", "range of power_w"), .required = true},
-		{SCALAR_OF(power_most_w, 0.0, 400.0, "W", "range of power_w"), .required = true},
+		{OTHER(description, TEXT, "description of the mode in words"), .required = true},
+		{SCALAR_OF(power_least_w, 0.0, 400.0, "W", "least power of the mode"), .required = true},
+		{SCALAR_OF(power_most_w, 0.0, 400.0, "W", "largest power of the mode"), .required = true},
 };
 #undef STRUCT
 static RECORD(mode_record, "a mode", mode_fields, NULL)
@@ -236,7 +237,8 @@ void cau_begin_tool(cau_reader *reader, const cJSON *object, cau_tool_def *tool,
 	const cJSON *mode = cau_value_member(object, "mode");
 	memset(choice, 0, sizeof *choice);
 	if (!name && mode)
-		cau_reader_fail(reader, CAU_BAD_VALUE, "mode", "a mode is one of an instrument: name it");
+		cau_reader_fail(reader, CAU_BAD_VALUE, "mode",
+		                "a mode needs the member instrument, which names the instrument");
 	if (!name || reader->status)
 		return;
 	int index = read_instrument_name(reader, name);

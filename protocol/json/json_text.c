@@ -92,7 +92,7 @@ static cau_status scan_unicode_escape(scanner *s)
 	if (code < 0)
 		return syntax(s, "\\u needs four hexadecimal digits");
 	if (code == 0)
-		return syntax(s, "\\u0000 in a string");
+		return syntax(s, "\\u0000 is not allowed in a string");
 	if (code >= 0xDC00 && code <= 0xDFFF)
 		return syntax(s, "a low surrogate without its high one");
 	s->at += 5;
@@ -116,7 +116,7 @@ static cau_status scan_escape(scanner *s)
 	if (c == 'u')
 		return scan_unicode_escape(s);
 	if (c < 0 || !strchr("\"\\/bfnrt", c) || c == 0)
-		return syntax(s, "an unknown escape");
+		return syntax(s, "unknown escape sequence in a string");
 	s->at++;
 	return CAU_OK;
 }
@@ -208,7 +208,7 @@ static cau_status scan_key(scanner *s)
 		return fail_at(s, start, CAU_LIMIT, "more than 1024 members in open objects");
 	for (size_t i = first; i < s->key_count; i++)
 		if (same_key(s, s->keys[i], start))
-			return fail_at(s, start, CAU_BAD_SYNTAX, "a name that the object has already");
+			return fail_at(s, start, CAU_BAD_SYNTAX, "the object has this name twice");
 	s->keys[s->key_count++] = start;
 	CAU_ASSERT(s->key_count <= CAU_JSON_MAX_OPEN_KEYS, "%zu names of open objects", s->key_count);
 	return CAU_OK;
@@ -311,13 +311,13 @@ static cau_status scan_member_start(scanner *s)
 {
 	skip_space(s);
 	if (peek(s) != '"')
-		return syntax(s, "a name in quotes is wanted here");
+		return syntax(s, "a name in quotes is needed here");
 	cau_status status = scan_key(s);
 	if (status)
 		return status;
 	skip_space(s);
 	if (peek(s) != ':')
-		return syntax(s, "a colon is wanted here");
+		return syntax(s, "a colon is needed here");
 	s->at++;
 	return CAU_OK;
 }
@@ -329,7 +329,7 @@ static cau_status scan_after_value(scanner *s, bool *done)
 		skip_space(s);
 		if (s->depth == 0) {
 			*done = true;
-			return s->at == s->bytes ? CAU_OK : syntax(s, "something follows the value");
+			return s->at == s->bytes ? CAU_OK : syntax(s, "more text follows the value");
 		}
 		bool object = s->levels[s->depth - 1].object;
 		if (peek(s) == ',') {
@@ -338,7 +338,7 @@ static cau_status scan_after_value(scanner *s, bool *done)
 		}
 		if (peek(s) != (object ? '}' : ']'))
 			return syntax(s,
-			              object ? "a comma or } is wanted here" : "a comma or ] is wanted here");
+			              object ? "a comma or } is needed here" : "a comma or ] is needed here");
 		close_level(s);
 	}
 }

@@ -8,7 +8,7 @@ static void write_choice(cau_json_writer *writer, const cau_field *field, int ch
 {
 	CAU_ASSERT(field->choices && field->choices->count > 0, "\"%s\" has no choices", field->name);
 	if (choice < 0 || choice >= field->choices->count)
-		cau_json_fail(writer, CAU_BAD_VALUE, "a choice that does not exist");
+		cau_json_fail(writer, CAU_BAD_VALUE, "the value is not one of the choices");
 	else
 		cau_json_string(writer, field->name, field->choices->names[choice]);
 }
@@ -18,7 +18,7 @@ static void write_text(cau_json_writer *writer, const char *key, const char *tex
 	if (memchr(text, 0, bytes))
 		cau_json_string(writer, key, text);
 	else
-		cau_json_fail(writer, CAU_BAD_VALUE, "text without its closing zero");
+		cau_json_fail(writer, CAU_BAD_VALUE, "the text does not end with a zero byte");
 }
 
 static void write_integers(cau_json_writer *writer, const cau_field *field, const int32_t *value)

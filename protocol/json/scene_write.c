@@ -41,7 +41,7 @@ static void write_regions(cau_json_writer *writer, const cau_layer_def *layer)
 static void write_layer(cau_json_writer *writer, const cau_layer_def *layer)
 {
 	if (layer->material_count < 1 || layer->material_count > CAU_MAX_MATERIALS) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "a layer without materials or with too many");
+		cau_json_fail(writer, CAU_BAD_VALUE, "the layer has no materials, or too many");
 		return;
 	}
 	cau_json_open(writer, NULL, '{');
@@ -71,7 +71,7 @@ static void write_tool(cau_json_writer *writer, const cau_tool_def *tool)
 static void write_vessel(cau_json_writer *writer, const cau_vessel_def *vessel)
 {
 	if (vessel->point_count < 0 || vessel->point_count > CAU_MAX_VESSEL_POINTS) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "a vessel with too many points");
+		cau_json_fail(writer, CAU_BAD_VALUE, "the vessel has too many points");
 		return;
 	}
 	cau_json_open(writer, NULL, '{');
@@ -123,7 +123,7 @@ static bool counts_fit(const cau_scene_def *scene)
 void cau_write_scene(cau_json_writer *writer, const char *key, const cau_scene_def *scene)
 {
 	if (!counts_fit(scene)) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "a scene whose counts are out of range");
+		cau_json_fail(writer, CAU_BAD_VALUE, "a count of the scene is out of range");
 		return;
 	}
 	cau_json_open(writer, key, '{');

@@ -108,7 +108,8 @@ static bool take_word(reading *r)
 {
 	const char *word = r->arguments[r->at];
 	if (r->word_count == r->line->word_count) {
-		fprintf(r->complaints, "%s: \"%s\" belongs to no option\n", r->line->program, word);
+		fprintf(r->complaints, "%s: the argument \"%s\" is not expected here\n", r->line->program,
+		        word);
 		return false;
 	}
 	r->words[r->word_count++] = word;
@@ -129,7 +130,7 @@ static bool take_option(reading *r)
 		value = r->arguments[++r->at];
 	if (!option->argument != !value) {
 		fprintf(r->complaints, "%s: --%s %s\n", r->line->program, option->name,
-		        option->argument ? "wants a value" : "takes no value");
+		        option->argument ? "needs a value" : "takes no value");
 		return false;
 	}
 	r->helped = r->helped || option->kind == CAU_OPTION_HELP;
@@ -169,6 +170,6 @@ bool cau_options_read(const cau_command_line *line, int argument_count, char **a
 			return false;
 	if (r.helped || r.word_count == line->word_count)
 		return true;
-	fprintf(complaints, "%s: wants %s (see --help)\n", line->program, line->words);
+	fprintf(complaints, "%s: needs the arguments %s (see --help)\n", line->program, line->words);
 	return false;
 }

@@ -16,7 +16,7 @@ static bool read_number(const cau_command_line *line, const cau_option *option, 
 	*number = strtod(text, &end);
 	if (end != text && *end == 0 && *number >= option->least && *number <= option->most)
 		return true;
-	fprintf(complaints, "%s: --%s wants a number from %g to %g, not \"%s\"\n", line->program,
+	fprintf(complaints, "%s: --%s needs a number from %g to %g, not \"%s\"\n", line->program,
 	        option->name, option->least, option->most, text);
 	return false;
 }
@@ -30,7 +30,7 @@ static bool read_whole(const cau_command_line *line, const cau_option *option, c
 	*whole = (int64_t)number;
 	if ((double)*whole == number)
 		return true;
-	fprintf(complaints, "%s: --%s wants a whole number, not \"%s\"\n", line->program, option->name,
+	fprintf(complaints, "%s: --%s needs a whole number, not \"%s\"\n", line->program, option->name,
 	        text);
 	return false;
 }
@@ -56,7 +56,7 @@ static bool read_point(const cau_command_line *line, const cau_option *option, c
 		char *end;
 		point[i] = strtod(next, &end);
 		if (end == next || *end != (i < 2 ? ',' : 0) || !isfinite(point[i])) {
-			fprintf(complaints, "%s: --%s wants three numbers X,Y,Z, not \"%s\"\n", line->program,
+			fprintf(complaints, "%s: --%s needs three numbers X,Y,Z, not \"%s\"\n", line->program,
 			        option->name, text);
 			return false;
 		}

@@ -38,7 +38,7 @@ static uint64_t read_hex64(cau_reader *reader, const cJSON *value)
 		result = result << 4 | (unsigned)digit;
 	}
 	if (!good)
-		cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "not 16 lower-case hex digits");
+		cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "must be 16 lower-case hex digits");
 	return result;
 }
 
@@ -53,7 +53,7 @@ static uint32_t read_choices(cau_reader *reader, const cJSON *value, const cau_c
 		size_t mark = cau_reader_enter(reader, NULL, index++);
 		int choice = cau_read_choice(reader, element, choices->names, choices->count);
 		if (choice >= 0 && set & 1u << choice)
-			cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "\"%s\" stands twice",
+			cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "\"%s\" is in the list twice",
 			                choices->names[choice]);
 		set |= choice >= 0 ? 1u << choice : 0;
 		cau_reader_leave(reader, mark);

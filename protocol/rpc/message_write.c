@@ -32,7 +32,7 @@ static void write_text(cau_json_writer *writer, const cau_wire_field *field, con
 {
 	bool name = field->type == CAU_WIRE_TYPE_NAME;
 	if (!memchr(text, 0, name ? CAU_NAME_BYTES : (size_t)field->count + 1))
-		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "text without its closing zero");
+		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "the text does not end with a zero byte");
 	else if (name && !cau_name_is_valid(text))
 		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "\"%s\" is not a name", text);
 	else
@@ -43,7 +43,7 @@ static void write_choice(cau_json_writer *writer, const char *key, const cau_cho
                          int32_t choice, cau_reader *place)
 {
 	if (choice < 0 || choice >= choices->count)
-		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "%d stands for no word", choice);
+		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "no word has the number %d", choice);
 	else
 		cau_json_string(writer, key, choices->names[choice]);
 }
@@ -53,7 +53,7 @@ static void write_choices(cau_json_writer *writer, const cau_wire_field *field, 
 {
 	CAU_ASSERT(field->choices->count <= 32, "a set of %d words", field->choices->count);
 	if (field->choices->count < 32 && set >> field->choices->count)
-		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "a bit stands for no word");
+		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "a bit of the set has no word");
 	cau_json_open(writer, field->name, '(');
 	for (int i = 0; i < field->choices->count; i++)
 		if (set & 1u << i)

@@ -67,18 +67,19 @@ static cau_status read_frame(const cJSON *root, cau_rpc_message *message, cau_rp
 	static const char *const names[] = {"jsonrpc", "id", "method", "params", "result", "error"};
 	message->kind = CAU_RPC_REQUEST;
 	if (cJSON_IsArray(root))
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "", "batches are not served");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "",
+		              "batches of requests are not supported: send one message for each request");
 	if (!cJSON_IsObject(root))
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "", "the message is no object");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "", "the message is not a JSON object");
 	const cJSON *id = cau_value_member(root, "id");
 	bool is_answer = !cau_value_member(root, "method") &&
 	                 (cau_value_member(root, "result") || cau_value_member(root, "error"));
 	if (id && !read_id(id, &message->id) && !(is_answer && cJSON_IsNull(id)))
 		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id",
-		              "neither text of at most 64 bytes nor a whole number below 2^53");
+		              "must be a text of at most 64 bytes or a whole number below 2^53");
 	const cJSON *version = cau_value_member(root, "jsonrpc");
 	if (!cJSON_IsString(version) || strcmp(version->valuestring, "2.0") != 0)
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "jsonrpc", "not \"2.0\"");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "jsonrpc", "must be \"2.0\"");
 	cau_error error = {0};
 	cau_reader reader;
 	cau_reader_begin(&reader, NULL, &error);
@@ -95,9 +96,11 @@ static cau_status check_form(const cau_rpc_message *message, cau_rpc_fault *faul
 	CAU_ASSERT_INDEX(message->method, CAU_METHOD_COUNT);
 	cau_method_form form = cau_method_describe(message->method)->form;
 	if (message->kind == CAU_RPC_NOTIFICATION && form == CAU_FORM_REQUEST)
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id", "the method needs an id");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id",
+		              "missing: this method is a request and needs an id");
 	if (message->kind == CAU_RPC_REQUEST && (form == CAU_FORM_NOTICE || form == CAU_FORM_PUSH))
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id", "the method is a notification");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id",
+		              "this method is a notification and must not have an id");
 	return CAU_OK;
 }
 
@@ -106,7 +109,8 @@ static cau_status take_command_apart(rpc_document *document, const char *name, c
 	CAU_ASSERT(!document->session && !document->client_sequence, "\"%s\" is taken apart twice",
 	           name);
 	if (cau_value_member(document->params, "command"))
-		return refuse(fault, CAU_RPC_BAD_VALUE, "params.command", "the method says which command");
+		return refuse(fault, CAU_RPC_BAD_VALUE, "params.command",
+		              "must not be given: the method names the command");
 	document->session = cJSON_DetachItemFromObjectCaseSensitive(document->params, "session");
 	document->client_sequence =
 		cJSON_DetachItemFromObjectCaseSensitive(document->params, "client_sequence");
@@ -120,9 +124,10 @@ static cau_status read_call(rpc_document *document, cau_rpc_message *message, ca
 {
 	const cJSON *method = cau_value_member(document->root, "method");
 	if (!cJSON_IsString(method))
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "method", "missing or no text");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "method", "missing, or not a text");
 	if (cau_value_member(document->root, "result") || cau_value_member(document->root, "error"))
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "method", "a request and an answer in one");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "method",
+		              "the message has a method and a result or error: send only one of them");
 	message->kind = message->id.kind == CAU_RPC_ID_NONE ? CAU_RPC_NOTIFICATION : CAU_RPC_REQUEST;
 	int32_t found = cau_method_find(method->valuestring);
 	if (found < 0)
@@ -139,9 +144,10 @@ static cau_status read_call(rpc_document *document, cau_rpc_message *message, ca
 		return CAU_NO_MEMORY;
 	}
 	if (cJSON_IsArray(document->params))
-		return refuse(fault, CAU_RPC_BAD_VALUE, "params", "params go by name");
+		return refuse(fault, CAU_RPC_BAD_VALUE, "params",
+		              "params must be an object, with members by name");
 	if (!cJSON_IsObject(document->params))
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "params", "neither object nor array");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "params", "params must be an object");
 	if (cau_method_describe(message->method)->command < 0)
 		return CAU_OK;
 	return take_command_apart(document, method->valuestring, fault);
@@ -159,7 +165,7 @@ static cau_status read_fault(const cJSON *value, cau_rpc_message *message, cau_r
 {
 	const cJSON *code = cau_value_member(value, "code"), *data = cau_value_member(value, "data");
 	if (!cJSON_IsNumber(code) || fabs(code->valuedouble) > INT32_MAX)
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "error.code", "missing or no number");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "error.code", "missing, or not a number");
 	message->kind = CAU_RPC_ERROR;
 	message->fault = (cau_rpc_fault){.code = (int32_t)code->valuedouble};
 	copy_text(data, "status", message->fault.status, sizeof message->fault.status);
@@ -178,7 +184,8 @@ static cau_status read_answer(rpc_document *document, cau_rpc_message *message,
 	const cJSON *error = cau_value_member(document->root, "error");
 	document->result = cJSON_GetObjectItemCaseSensitive(document->root, "result");
 	if (!error == !document->result)
-		return refuse(fault, CAU_RPC_INVALID_REQUEST, "", "neither a request nor an answer");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "",
+		              "the message has no method, and not exactly one of result and error");
 	message->kind = CAU_RPC_RESULT;
 	return error ? read_fault(error, message, fault) : CAU_OK;
 }

@@ -87,7 +87,7 @@ cau_status cau_rpc_write_command(cau_rpc_buffer *out, const int64_t *id,
 	bool material = command->kind == CAU_COMMAND_SET_MATERIAL;
 	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT ||
 	    (material && (unsigned)command->as.material.kind >= CAU_LAYER_COUNT))
-		return cau_fail(error, CAU_BAD_VALUE, "params", "a command of a kind that does not exist");
+		return cau_fail(error, CAU_BAD_VALUE, "params", "the kind of the command does not exist");
 	cau_json_writer writer;
 	begin(&writer, out);
 	if (id)

@@ -9,7 +9,7 @@ cau_status cau_chunk_read(const void *bytes, size_t byte_count, cau_chunk *chunk
 {
 	const uint8_t *at = bytes;
 	if (byte_count < CAU_CHUNK_HEADER_BYTES || memcmp(at, magic, sizeof magic) != 0)
-		return cau_fail(error, CAU_CORRUPT, "header", "the bytes are no chunk");
+		return cau_fail(error, CAU_CORRUPT, "header", "the bytes are not a chunk");
 	*chunk = (cau_chunk){.transfer = load_u32(at + 4),
 	                     .offset = load_u64(at + 8),
 	                     .data = at + CAU_CHUNK_HEADER_BYTES,

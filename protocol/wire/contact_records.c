@@ -75,18 +75,18 @@ const char *cau_tool_contact_check(const cau_tool_contact *contact)
 {
 	double numbers[NUMBERS];
 	if (!cau_name_is_valid(contact->name))
-		return "its name is none";
+		return "the name of the tool breaks the rule for names";
 	if (contact->plane_count < 0 || contact->plane_count > CAU_CONTACT_PLANES)
 		return "it has too many planes";
 	list(contact, numbers);
 	if (!are_finite(numbers, NUMBERS))
-		return "one of its numbers is not finite";
+		return "a number of the contact is not finite";
 	if (contact->friction < 0 || contact->damping_ns_m < 0 || contact->grasp_n_m < 0)
 		return "friction, damping or the grasp's stiffness is below 0";
 	for (int32_t i = 0; i < contact->plane_count; i++) {
 		list_plane(&contact->plane[i], numbers);
 		if (!are_finite(numbers, PLANE_NUMBERS))
-			return "one of its planes is not finite";
+			return "a plane of the contact is not finite";
 	}
 	return NULL;
 }

@@ -32,14 +32,14 @@ static const char *read_head(const uint8_t *payload, size_t bytes, const element
 	                  .count = load_u32(payload + 4),
 	                  .run_bytes = load_u32(payload + 8)};
 	if (head->width != 1 && head->width != 2 && head->width != 4)
-		return "a width is none of 1, 2, 4";
+		return "the width of a section is not 1, 2 or 4";
 	if (head->components != target->components)
-		return "a section has another number of components";
+		return "a section has the wrong number of components";
 	if (head->coding > ELEMENTS_MESHOPT)
-		return "a coding is not known";
+		return "the coding of a section is unknown";
 	if (head->reference > ELEMENTS_HELD ||
 	    (head->reference == ELEMENTS_HELD && !target->may_refer_to_held))
-		return "a reference is not known or not allowed here";
+		return "the reference of a section is unknown or not allowed here";
 	if (head->count > target->count || (target->all && head->count != target->count))
 		return "a section has too many or too few elements";
 	size_t room = bytes - ELEMENTS_HEAD_BYTES;
@@ -82,7 +82,7 @@ static const char *check_runs(const section *head, size_t element_count)
 		element += skip + length;
 		total += length;
 	}
-	return total == head->count ? NULL : "a run list does not add up to its count";
+	return total == head->count ? NULL : "the runs of a list do not add up to its count";
 }
 
 // Unpacks the section's data. *numbers points to elements that are *stride bytes apart.

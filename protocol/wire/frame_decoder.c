@@ -89,7 +89,8 @@ static cau_status check_place(const cau_frame_decoder *decoder, const cau_frame_
 {
 	const cau_stream_state *state = &decoder->state;
 	if (header->kind == CAU_FRAME_TOPOLOGY)
-		return cau_fail(error, CAU_BAD_STATE, "kind", "topology is not for the frame decoder");
+		return cau_fail(error, CAU_BAD_STATE, "kind",
+		                "the frame is a topology frame, which the frame decoder does not read");
 	if (header->session != decoder->def.session)
 		return cau_fail(error, CAU_BAD_STATE, "session", "the frame is of session %u, not %u",
 		                header->session, decoder->def.session);
@@ -100,20 +101,23 @@ static cau_status check_place(const cau_frame_decoder *decoder, const cau_frame_
 		bool older =
 			state->synced && header->epoch == state->epoch && header->sequence <= state->sequence;
 		return older ? cau_fail(error, CAU_BAD_STATE, "sequence",
-		                        "the key frame is not newer than what is held")
+		                        "the key frame is not newer than the frame that the decoder holds")
 		             : CAU_OK;
 	}
 	if (!state->synced)
 		return cau_fail(error, CAU_BAD_STATE, NULL, "a key frame is needed first");
 	if (header->epoch != state->epoch)
-		return cau_fail(error, CAU_BAD_STATE, "epoch", "the frame is of another epoch");
+		return cau_fail(error, CAU_BAD_STATE, "epoch",
+		                "the frame has another epoch than the decoder");
 	if (header->base_sequence != state->sequence)
-		return cau_fail(
-			error, CAU_BAD_STATE, "base_sequence", "the frame builds on %llu, what is held is %llu",
-			(unsigned long long)header->base_sequence, (unsigned long long)state->sequence);
+		return cau_fail(error, CAU_BAD_STATE, "base_sequence",
+		                "the frame builds on frame %llu, but the decoder holds frame %llu",
+		                (unsigned long long)header->base_sequence,
+		                (unsigned long long)state->sequence);
 	return header->sequence > header->base_sequence
 	           ? CAU_OK
-	           : cau_fail(error, CAU_CORRUPT, "sequence", "a delta does not advance");
+	           : cau_fail(error, CAU_CORRUPT, "sequence",
+	                      "the delta is not newer than the frame that it builds on");
 }
 
 static void forget(cau_frame_decoder *decoder)

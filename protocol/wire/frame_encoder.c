@@ -44,7 +44,7 @@ cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau
 	if (status)
 		return status;
 	if (epoch == 0)
-		return cau_fail(error, CAU_BAD_VALUE, "epoch", "an epoch is not 0");
+		return cau_fail(error, CAU_BAD_VALUE, "epoch", "the epoch must not be 0");
 	if (storage_bytes < cau_frame_encoder_bytes(def))
 		return cau_fail(error, CAU_LIMIT, NULL, "the encoder needs %zu bytes",
 		                cau_frame_encoder_bytes(def));
@@ -117,7 +117,7 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 		if (wants(encoder, channel) && !given(sample, channel))
 			return cau_fail(error, CAU_BAD_VALUE,
 			                cau_channel_describe((cau_channel_index)channel)->name,
-			                "the stream has this channel");
+			                "the stream has this channel already");
 	}
 	if (sample->tool_count < 0 || sample->tool_count > CAU_MAX_TOOLS)
 		return cau_fail(error, CAU_BAD_VALUE, "tool_count", "%d is not within 0 and %d",
@@ -175,9 +175,10 @@ static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_strea
 		for (size_t i = 0; i < 3; i++) {
 			double steps = (sample->position[first + i] - def->origin_m[i]) * steps_per_m;
 			if (!(fabs(steps) <= POSITION_LIMIT))
-				return cau_fail(error, CAU_NUMERICAL, "position",
-				                "vertex %d at %g m cannot be told in steps of %g m", vertex,
-				                sample->position[first + i], def->step_m);
+				return cau_fail(
+					error, CAU_NUMERICAL, "position",
+					"vertex %d at %g m is too far from the origin to be sent in steps of %g m",
+					vertex, sample->position[first + i], def->step_m);
 			next[first + i] = (uint32_t)(int32_t)lrint(steps);
 		}
 	}

@@ -54,20 +54,23 @@ cau_status cau_frame_header_read(const void *bytes, size_t byte_count, cau_frame
 {
 	const uint8_t *at = bytes;
 	if (byte_count < CAU_FRAME_HEADER_BYTES)
-		return cau_fail(error, CAU_CORRUPT, "header", "%zu bytes are no frame", byte_count);
+		return cau_fail(error, CAU_CORRUPT, "header", "%zu bytes are too few for a frame",
+		                byte_count);
 	if (memcmp(at, magic, sizeof magic) != 0)
 		return cau_fail(error, CAU_CORRUPT, "magic", "the bytes do not start with CAUF");
 	load_header(at, header);
 	if (header->version != CAU_FRAME_VERSION)
-		return cau_fail(error, CAU_UNSUPPORTED, "version", "version %d is not %d", header->version,
+		return cau_fail(error, CAU_UNSUPPORTED, "version",
+		                "the frame has version %d, this decoder reads %d", header->version,
 		                CAU_FRAME_VERSION);
 	if (header->kind < CAU_FRAME_KEY || header->kind > CAU_FRAME_TOPOLOGY)
-		return cau_fail(error, CAU_CORRUPT, "kind", "%d is no kind of frame", header->kind);
+		return cau_fail(error, CAU_CORRUPT, "kind", "no kind of frame has the number %d",
+		                header->kind);
 	if (header->byte_count != byte_count)
 		return cau_fail(error, CAU_CORRUPT, "byte_count", "%zu bytes came, the header says %u",
 		                byte_count, header->byte_count);
 	if (header->epoch == 0 || !isfinite(header->time_s))
-		return cau_fail(error, CAU_CORRUPT, "header", "the epoch or the time cannot be");
+		return cau_fail(error, CAU_CORRUPT, "header", "the epoch is 0 or the time is not finite");
 	return CAU_OK;
 }
 
@@ -101,7 +104,7 @@ bool cau_sections_next(section_cursor *cursor)
 	int type = cursor->at[0];
 	size_t payload_bytes = load_u32(cursor->at + 4);
 	if (payload_bytes > room - CAU_FRAME_SECTION_BYTES || payload_bytes % 4 != 0) {
-		cursor->wrong = "a section is longer than its frame, or no multiple of 4";
+		cursor->wrong = "a section is longer than its frame, or its length is not a multiple of 4";
 		return false;
 	}
 	if (type <= cursor->type) {

@@ -45,13 +45,13 @@ const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream
 	size_t at = 4;
 	for (uint32_t i = 0; i < announced; i++) {
 		if (bytes - at < 2 || bytes - at - 2 < payload[at + 1] || payload[at + 1] >= CAU_NAME_BYTES)
-			return "a tool's name is longer than its section or than names may be";
+			return "the name of a tool is longer than its section, or longer than names may be";
 		tools[i].shape = payload[at];
 		size_t length = payload[at + 1];
 		memcpy(tools[i].name, payload + at + 2, length);
 		tools[i].name[length] = 0;
 		if (tools[i].shape >= CAU_TOOL_SHAPE_COUNT || !cau_name_is_valid(tools[i].name))
-			return "a tool's shape or name cannot be";
+			return "a tool has an unknown shape or an invalid name";
 		at += 2 + length;
 	}
 	*count = (int32_t)announced;
@@ -102,7 +102,7 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 		return "its name breaks the rule " CAU_NAME_RULE;
 	if (tool->shape < 0 || tool->shape >= CAU_TOOL_SHAPE_COUNT ||
 	    tool->energy_off >= CAU_ENERGY_OFF_COUNT)
-		return "its shape or its reason for energy off is none";
+		return "the tool's shape, or its reason for energy off, has an unknown number";
 	if (!is_finite(tool->pose.position_m, 3) || !is_finite(tool->pose.rotation, 4) ||
 	    !is_finite(&tool->jaw, 1) || !is_finite(&tool->asked_jaw, 1) ||
 	    !is_finite(&tool->jaw_force_n, 1) || !is_finite(&tool->delivered_w, 1) ||
@@ -226,10 +226,10 @@ const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool
 {
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	if (bytes != (size_t)count * TOOL_RECORD_BYTES)
-		return "there are not as many tools as names";
+		return "the list of tools does not have one entry for each name";
 	for (int32_t i = 0; i < count; i++) {
 		if (!load_tool(payload + (size_t)i * TOOL_RECORD_BYTES, &tools[i]))
-			return "a tool's number is not finite or its reason for energy off is not known";
+			return "a number of a tool is not finite, or its reason for energy off is unknown";
 	}
 	return NULL;
 }
@@ -240,7 +240,7 @@ const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_strea
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool finite = true;
 	if (bytes != (size_t)count * TOOL_ASKED_BYTES)
-		return "there are not as many poses asked as tools";
+		return "the list of commanded poses does not have one entry for each tool";
 	for (int32_t i = 0; i < count; i++) {
 		payload = load_vector(payload, tools[i].asked_pose.position_m, 3, &finite);
 		payload = load_vector(payload, tools[i].asked_pose.rotation, 4, &finite);
@@ -249,7 +249,7 @@ const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_strea
 		for (int c = 0; c < 4; c++)
 			tools[i].behind |= tools[i].asked_pose.rotation[c] != tools[i].pose.rotation[c];
 	}
-	return finite ? NULL : "a pose that is asked is not finite";
+	return finite ? NULL : "a commanded pose is not finite";
 }
 
 const char *cau_tool_jaws_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
@@ -258,12 +258,12 @@ const char *cau_tool_jaws_read(const uint8_t *payload, size_t bytes, cau_stream_
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool finite = true;
 	if (bytes != (size_t)count * TOOL_JAW_BYTES)
-		return "there are not as many jaws as tools";
+		return "the list of jaws does not have one entry for each tool";
 	for (int32_t i = 0; i < count; i++) {
 		payload = load_vector(payload, &tools[i].asked_jaw, 1, &finite);
 		payload = load_vector(payload, &tools[i].jaw_force_n, 1, &finite);
 	}
-	return finite ? NULL : "a number of jaws is not finite";
+	return finite ? NULL : "a number in the list of jaws is not finite";
 }
 
 const char *cau_tool_power_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
@@ -272,7 +272,7 @@ const char *cau_tool_power_read(const uint8_t *payload, size_t bytes, cau_stream
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool finite = true;
 	if (bytes != (size_t)count * TOOL_POWER_BYTES)
-		return "there is not as much power as tools";
+		return "the list of powers does not have one entry for each tool";
 	for (int32_t i = 0; i < count; i++) {
 		payload = load_vector(payload, &tools[i].delivered_w, 1, &finite);
 		payload = load_vector(payload, &tools[i].load_ohm, 1, &finite);
@@ -286,7 +286,7 @@ const char *cau_tool_force_read(const uint8_t *payload, size_t bytes, cau_stream
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool finite = true;
 	if (bytes != (size_t)count * TOOL_FORCE_BYTES)
-		return "there are not as many raw forces as tools";
+		return "the list of raw forces does not have one entry for each tool";
 	for (int32_t i = 0; i < count; i++) {
 		tools[i].has_raw_force = true;
 		payload = load_vector(payload, tools[i].raw_force_n, 3, &finite);

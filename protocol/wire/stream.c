@@ -63,7 +63,8 @@ cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error)
 		return cau_fail(error, CAU_BAD_VALUE, "profile", "%d is not below %d", def->profile,
 		                CAU_STREAM_PROFILES_MAX);
 	if (def->channels & ~(uint32_t)CAU_CHANNEL_ALL)
-		return cau_fail(error, CAU_BAD_VALUE, "channels", "a bit stands for no channel");
+		return cau_fail(error, CAU_BAD_VALUE, "channels",
+		                "a bit of the set of channels has no channel");
 	if (!(def->step_m >= 1e-7 && def->step_m <= 1e-2))
 		return cau_fail(error, CAU_BAD_VALUE, "step_m", "%g m is not within 1e-7 m and 0.01 m",
 		                def->step_m);

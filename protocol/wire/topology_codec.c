@@ -59,9 +59,10 @@ static cau_status quantise_rest(const cau_stream_def *def, const double *positio
 	for (size_t i = 0; i < 3 * (size_t)def->vertex_count; i++) {
 		double steps = (position[i] - def->origin_m[i % 3]) / def->step_m;
 		if (!(fabs(steps) <= POSITION_LIMIT))
-			return cau_fail(error, CAU_NUMERICAL, "rest_position",
-			                "vertex %zu at %g m cannot be told in steps of %g m", i / 3,
-			                position[i], def->step_m);
+			return cau_fail(
+				error, CAU_NUMERICAL, "rest_position",
+				"vertex %zu at %g m is too far from the origin to be sent in steps of %g m", i / 3,
+				position[i], def->step_m);
 		values[i] = (uint32_t)(int32_t)lrint(steps);
 	}
 	return CAU_OK;
@@ -123,7 +124,8 @@ static cau_status copy_faces(const cau_stream_def *def, const cau_topology *topo
 	if (status)
 		return status;
 	if (header.kind != CAU_FRAME_TOPOLOGY || header.session != def->session)
-		return cau_fail(error, CAU_BAD_STATE, "known", "the frame is not this session's topology");
+		return cau_fail(error, CAU_BAD_STATE, "known",
+		                "the frame is not a topology frame of this session");
 	size_t room = cau_topology_bytes_max(def) - CAU_FRAME_HEADER_BYTES - CAU_FRAME_SECTION_BYTES -
 	              cau_elements_bytes_max(shape_of(def).vertices, 3);
 	section_cursor cursor = cau_sections_begin(topology->known, &header);
@@ -132,7 +134,8 @@ static cau_status copy_faces(const cau_stream_def *def, const cau_topology *topo
 			continue;
 		size_t bytes = CAU_FRAME_SECTION_BYTES + cursor.payload_bytes;
 		if (bytes > room)
-			return cau_fail(error, CAU_LIMIT, "known", "the frame is of more faces");
+			return cau_fail(error, CAU_LIMIT, "known",
+			                "the frame has another number of faces than the session");
 		room -= bytes;
 		cau_section_head_write(writer->at, (cau_section)cursor.type, cursor.payload_bytes);
 		memcpy(writer->at + CAU_FRAME_SECTION_BYTES, cursor.payload, cursor.payload_bytes);
@@ -271,7 +274,7 @@ cau_status cau_topology_decode(const cau_stream_def *def, const void *bytes, siz
 		return status;
 	if (header.kind != CAU_FRAME_TOPOLOGY || header.session != def->session)
 		return cau_fail(error, CAU_BAD_STATE, "session",
-		                "the frame is not this session's topology");
+		                "the frame is not a topology frame of this session");
 	arrays->has_texture = false;
 	memset(arrays->texture, 0, sizeof(float) * TEXTURE_COMPONENTS * (size_t)def->face_count);
 	const char *wrong = read_sections(def, bytes, &header, scratch, arrays);

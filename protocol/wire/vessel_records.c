@@ -19,21 +19,21 @@ _Static_assert(4 + CAU_MAX_VESSELS * (VESSEL_BYTES + CAU_NAME_BYTES + 3 +
 const char *cau_vessel_state_check(const cau_vessel_state *vessel)
 {
 	if (!cau_name_is_valid(vessel->name))
-		return "its name is none";
+		return "the name of the vessel breaks the rule for names";
 	if (vessel->point_count < 0 || vessel->point_count > CAU_VESSEL_SHOWN_POINTS)
-		return "it has too many points";
+		return "the vessel has too many points";
 	const double scalars[] = {vessel->radius_m, vessel->bleeding_m3_s, vessel->shed_m3,
 	                          vessel->burst_pa};
 	for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
 		if (!isfinite((float)scalars[i]) || scalars[i] < 0)
-			return "one of its numbers is not finite, or below 0";
+			return "a number of the vessel is not finite, or below 0";
 	for (int32_t i = 0; i < vessel->point_count; i++) {
 		const cau_vessel_point *point = &vessel->point[i];
 		if (!isfinite(point->position_m[0]) || !isfinite(point->position_m[1]) ||
 		    !isfinite(point->position_m[2]) || !isfinite(point->open))
-			return "one of its points is not finite";
+			return "a point of the vessel is not finite";
 	}
-	return vessel->flags & ~(uint32_t)CAU_VESSEL_FLAGS ? "a flag that is none" : NULL;
+	return vessel->flags & ~(uint32_t)CAU_VESSEL_FLAGS ? "a vessel has an unknown flag" : NULL;
 }
 
 static uint8_t *write_vessel(uint8_t *at, const cau_vessel_state *vessel)

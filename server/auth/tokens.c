@@ -61,13 +61,14 @@ static cau_status read_secret(token *made, const char *word, int number, cau_err
 		if (strlen(hash) != sizeof made->hash - 1 ||
 		    strspn(hash, "0123456789abcdef") != sizeof made->hash - 1)
 			return cau_fail(error, CAU_BAD_VALUE, "tokens",
-			                "line %d: a hash has 64 digits of 0-9 and a-f", number);
+			                "line %d: a hash must have 64 digits 0-9 and a-f", number);
 		memcpy(made->hash, hash, sizeof made->hash);
 		return CAU_OK;
 	}
 	if (bytes < LEAST_TOKEN_BYTES || bytes > MOST_TOKEN_BYTES)
-		return cau_fail(error, CAU_BAD_VALUE, "tokens", "line %d: a token has %d to %d characters",
-		                number, LEAST_TOKEN_BYTES, MOST_TOKEN_BYTES);
+		return cau_fail(error, CAU_BAD_VALUE, "tokens",
+		                "line %d: a token must have %d to %d characters", number, LEAST_TOKEN_BYTES,
+		                MOST_TOKEN_BYTES);
 	if (!cau_sha256(word, bytes, made->hash))
 		return cau_fail(error, CAU_NO_MEMORY, "tokens", "no memory for tokens");
 	return CAU_OK;
@@ -85,7 +86,8 @@ static cau_status read_sessions(token *made, const char *list, int number, cau_e
 	}
 	if (!right)
 		return cau_fail(error, CAU_BAD_VALUE, "tokens",
-		                "line %d: sessions are written d1-anna-*,d1-demo, in at most %d characters",
+		                "line %d: sessions= needs ids with commas between, as in "
+		                "d1-anna-*,d1-demo; at most %d characters",
 		                number, CAU_AUTH_SESSIONS_BYTES - 1);
 	snprintf(made->bounds.sessions, sizeof made->bounds.sessions, "%s", list);
 	return CAU_OK;
@@ -105,7 +107,8 @@ static cau_status read_field(token *made, const char *word, int number, cau_erro
 		const char *end = strptime(value, "%Y-%m-%dT%H:%M:%SZ", &utc);
 		if (!end || *end)
 			return cau_fail(error, CAU_BAD_VALUE, "tokens",
-			                "line %d: a time is written 2027-01-31T12:00:00Z", number);
+			                "line %d: expires= needs a UTC time, as in 2027-01-31T12:00:00Z",
+			                number);
 		made->expires_us = (int64_t)timegm(&utc) * 1000000;
 		return CAU_OK;
 	}
@@ -115,9 +118,10 @@ static cau_status read_field(token *made, const char *word, int number, cau_erro
 		char *end;
 		long long most = strtoll(value, &end, 10);
 		if (*end || most < 1 || most > MOST_QUOTA || *value < '0' || *value > '9')
-			return cau_fail(error, CAU_BAD_VALUE, "tokens",
-			                "line %d: a quota is 1 to %d expensive requests a minute", number,
-			                MOST_QUOTA);
+			return cau_fail(
+				error, CAU_BAD_VALUE, "tokens",
+				"line %d: quota= needs a number of expensive requests a minute, 1 to %d", number,
+				MOST_QUOTA);
 		made->bounds.quota = most;
 		return CAU_OK;
 	}
@@ -169,7 +173,8 @@ static cau_status read_line(token_list *list, char *line, int number, cau_error 
 	const token *twin = find_hash(list, made.hash);
 	if (twin)
 		return cau_fail(error, CAU_BAD_VALUE, "tokens",
-		                "line %d has the token of line %d: keep one of them", number, twin->line);
+		                "lines %d and %d have the same token: keep one of them", number,
+		                twin->line);
 	made.line = number;
 	if (list->count == MAX_TOKENS)
 		return cau_fail(error, CAU_LIMIT, "tokens", "more than %d tokens", MAX_TOKENS);
@@ -196,7 +201,7 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 	fclose(stream);
 	explicit_bzero(line, sizeof line);
 	if (!status && list->count == 0)
-		status = cau_fail(error, CAU_BAD_VALUE, "tokens", "%.200s has no token", file);
+		status = cau_fail(error, CAU_BAD_VALUE, "tokens", "%.200s contains no token", file);
 	if (status && error)
 		snprintf(error->file, sizeof error->file, "%s", file);
 	return status;

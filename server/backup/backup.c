@@ -45,7 +45,7 @@ static cau_status make_folder(const copying *what, cau_error *error)
 	bool named = *what->backups->config->backups;
 	if (named || mkdir(what->folder, 0700) == 0 || errno == EEXIST)
 		return CAU_OK;
-	return cau_fail(error, CAU_IO, "", "cannot make the folder %.150s: %s", what->folder,
+	return cau_fail(error, CAU_IO, "", "cannot create the folder %.150s: %s", what->folder,
 	                strerror(errno));
 }
 
@@ -114,7 +114,7 @@ cau_status cau_backups_make(cau_backups *backups, const char *name, const cau_re
 {
 	if (atomic_exchange(&backups->copying, true))
 		return cau_fail(error, CAU_BAD_STATE, "",
-		                "a copy is being made: try again when it is done");
+		                "the store is already being copied: try again when that is done");
 	copying *what = calloc(1, sizeof *what);
 	if (!what) {
 		backups->copying = false;

@@ -87,8 +87,9 @@ static cau_status read_flags(cau_config *config, cau_config_request *request, co
 	for (int i = 1; i < count; i++) {
 		const char *flag = arguments[i];
 		if (strncmp(flag, "--", 2) != 0)
-			return cau_fail(error, CAU_BAD_SYNTAX, flag,
-			                "is no flag: flags begin with --, and one value may follow each");
+			return cau_fail(
+				error, CAU_BAD_SYNTAX, flag,
+				"is not a flag: a flag begins with --, with at most one value after it");
 		if (read_request(request, flag))
 			continue;
 		char name[64];
@@ -136,28 +137,29 @@ static bool is_loopback(const char *address)
 static cau_status check_together(const cau_config *config, cau_error *error)
 {
 	if (!is_loopback(config->listen) && !*config->tokens)
-		return cau_fail(error, CAU_BAD_VALUE, "listen",
-		                "%.60s is not loopback: that needs a file of tokens (--tokens)",
-		                config->listen);
+		return cau_fail(
+			error, CAU_BAD_VALUE, "listen",
+			"%.60s is not a loopback address: other addresses need a file of tokens (--tokens)",
+			config->listen);
 	if (!*config->tls_certificate != !*config->tls_key)
 		return cau_fail(error, CAU_BAD_VALUE, *config->tls_key ? "tls_certificate" : "tls_key",
 		                "TLS needs both a certificate and its key");
 	if (!is_loopback(config->listen) && !*config->tls_certificate && !config->tls_by_proxy)
 		return cau_fail(
 			error, CAU_BAD_VALUE, "listen",
-			"%.60s is not loopback: that needs TLS (--tls-certificate and --tls-key), or "
-			"--tls-by-proxy where a proxy in front does it",
+			"%.60s is not a loopback address: other addresses need TLS (--tls-certificate and "
+			"--tls-key), or --tls-by-proxy if a proxy terminates TLS",
 			config->listen);
 	if (*config->dds_config && !*config->dds_security && !config->dds_network)
 		return cau_fail(
 			error, CAU_BAD_VALUE, "dds_config",
-			"may leave loopback: that needs dds_security, or dds_network to do without");
+			"lets DDS leave this machine: set dds_security, or dds_network to allow it without");
 	if (!cau_role_read(config->dds_role, &(cau_role){0}))
 		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "%.60s is not view, operate or admin",
 		                config->dds_role);
 	if (*config->dds_roles && !*config->dds_security)
 		return cau_fail(error, CAU_BAD_VALUE, "dds_roles",
-		                "is for identities: that needs dds_security");
+		                "has roles of DDS identities, which exist only with dds_security");
 	return CAU_OK;
 }
 

@@ -17,7 +17,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 // TEXT(name, default, meaning) INTEGER(name, default, least, most, meaning)
 // REAL(name, default, least, most, meaning) SWITCH(name, default, meaning)
 #define CAU_CONFIG_TABLE(TEXT, INTEGER, REAL, SWITCH)                                              \
-	TEXT(listen, "127.0.0.1", "address to listen on; beyond loopback it needs tokens and TLS")     \
+	TEXT(listen, "127.0.0.1",                                                                      \
+	     "address to listen on; other addresses than loopback need tokens and TLS")                \
 	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free port")                  \
 	INTEGER(agent_port, 0, 0, 65535, "port of HAProxy's agent-check, at `listen`; 0: none")        \
 	TEXT(store, "cautery.db", "file of the store")                                                 \
@@ -25,75 +26,96 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
 	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
 	TEXT(manual, "", "folder of the manual to serve at /manual/; empty: the installed one")        \
-	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
-	TEXT(etcd, "", "addresses of etcd (http://HOST:PORT,...): no label is served twice")           \
-	REAL(etcd_ttl_s, 15, 2, 3600, "etcd frees the label if it was not renewed for so long")        \
-	SWITCH(take_label, false, "serve this store although etcd knows a newer one of the label")     \
+	TEXT(label, "d1",                                                                              \
+	     "label of this daemon, with which the ids of its sessions begin; without `-`")            \
+	TEXT(etcd, "", "addresses of etcd (http://HOST:PORT,...), which allows each label one daemon") \
+	REAL(etcd_ttl_s, 15, 2, 3600,                                                                  \
+	     "etcd frees the label if the daemon does not renew it for this time")                     \
+	SWITCH(take_label, false, "serve this store although etcd has a newer store of this label")    \
 	TEXT(demo, "", "scene of a session that is created at start if the store has none")            \
-	TEXT(tokens, "", "file of access tokens, a line each; empty: every client is admin")           \
+	TEXT(tokens, "", "file of access tokens, one in each line; empty: every client is admin")      \
 	TEXT(tls_certificate, "", "file of the certificate and its chain (PEM); empty: no TLS")        \
 	TEXT(tls_key, "", "file of the certificate's key (PEM)")                                       \
-	SWITCH(tls_by_proxy, false, "allow plain HTTP beyond loopback: a proxy terminates TLS")        \
+	SWITCH(tls_by_proxy, false,                                                                    \
+	       "allow plain HTTP on other addresses, because a proxy terminates TLS")                  \
 	TEXT(trusted_proxies, "", "proxies whose X-Forwarded-For is trusted, separated by commas")     \
-	TEXT(hosts, "", "more accepted Host names, separated by commas")                               \
-	TEXT(origins, "", "more accepted Origins, separated by commas")                                \
-	TEXT(log_level, "info", "least level logged: debug, info, notice, warning, error")             \
-	TEXT(log_format, "text", "how lines are logged: text (key=value) or json")                     \
+	TEXT(hosts, "", "further accepted Host names, separated by commas")                            \
+	TEXT(origins, "", "further accepted Origins, separated by commas")                             \
+	TEXT(log_level, "info", "lowest level that is logged: debug, info, notice, warning, error")    \
+	TEXT(log_format, "text", "format of log lines: text (key=value) or json")                      \
 	TEXT(trace_session, "", "folder for a trace of each session's decisions; empty: none")         \
-	INTEGER(workers, 0, 0, 256, "threads that step sessions; 0: one a core")                       \
-	INTEGER(session_threads, 1, 1, 16, "threads one session's step may use")                       \
-	INTEGER(max_sessions, 64, 1, 4096, "sessions at once")                                         \
-	INTEGER(max_session_vertices, 4000000, 3, 100000000, "vertices of one session")                \
-	INTEGER(max_session_elements, 16000000, 1, 1000000000, "elements of one session")              \
-	INTEGER(max_session_bytes, 4000000000, 1000000, 1000000000000, "memory of one session, about") \
+	INTEGER(workers, 0, 0, 256, "threads that compute steps; 0: one for each core")                \
+	INTEGER(session_threads, 1, 1, 16, "largest number of threads for a step of one session")      \
+	INTEGER(max_sessions, 64, 1, 4096, "largest number of sessions")                               \
+	INTEGER(max_session_vertices, 4000000, 3, 100000000,                                           \
+	        "largest number of vertices of a session")                                             \
+	INTEGER(max_session_elements, 16000000, 1, 1000000000,                                         \
+	        "largest number of elements of a session")                                             \
+	INTEGER(max_session_bytes, 4000000000, 1000000, 1000000000000,                                 \
+	        "largest estimated memory of a session, bytes")                                        \
 	INTEGER(max_sessions_bytes, 16000000000, 1000000, 1000000000000,                               \
-	        "memory of all sessions, about")                                                       \
+	        "largest estimated memory of all sessions, bytes")                                     \
 	INTEGER(look_bytes, 67108864, 0, 1000000000000,                                                \
-	        "bytes of states that a session keeps for past views")                                 \
-	INTEGER(max_connections, 1024, 1, 65536, "WebSocket connections at once")                      \
-	INTEGER(max_subscribers, 128, 1, 4096, "streams of one session at once")                       \
-	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client")             \
-	INTEGER(max_upload_bytes, 67108864, 1024, 1073741824, "largest uploaded mesh")                 \
+	        "bytes of stored states that a session keeps for past views")                          \
+	INTEGER(max_connections, 1024, 1, 65536, "largest number of WebSocket connections")            \
+	INTEGER(max_subscribers, 128, 1, 4096, "largest number of streams of a session")               \
+	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client, bytes")      \
+	INTEGER(max_upload_bytes, 67108864, 1024, 1073741824, "largest uploaded mesh, bytes")          \
 	INTEGER(max_connection_upload_bytes, 134217728, 65536, 17179869184,                            \
-	        "one connection's uploads")                                                            \
-	INTEGER(max_all_upload_bytes, 536870912, 65536, 1099511627776, "all connections' uploads")     \
-	INTEGER(mesh_memory_mb, 2048, 64, 1000000, "memory that filling one upload may take")          \
-	INTEGER(mesh_time_s, 20, 1, 3600, "processor time that filling one upload may take")           \
-	INTEGER(max_requests_per_s, 2000, 1, 1000000, "messages of one client in a second")            \
-	INTEGER(queue_commands, 256, 8, 65536, "commands that wait for a session's tick border")       \
-	INTEGER(queue_reads, 64, 8, 65536, "requests that only read, waiting for a session")           \
-	INTEGER(quota_connection, 120, 1, 1000000, "expensive requests a minute of one connection")    \
-	INTEGER(quota_address, 600, 1, 1000000, "expensive requests a minute of one address")          \
-	INTEGER(quota_view, 300, 1, 1000000, "expensive requests a minute of all viewers")             \
-	INTEGER(quota_operate, 1200, 1, 1000000, "expensive requests a minute of all operators")       \
-	INTEGER(quota_admin, 1200, 1, 1000000, "expensive requests a minute of all admins")            \
-	INTEGER(quota_all, 2400, 1, 1000000, "expensive requests a minute in all")                     \
-	INTEGER(subscriber_bytes, 196608, 16384, 16777216, "frames in flight to one subscriber")       \
-	REAL(hello_timeout_s, 5, 0.05, 60, "a connection without hello is closed after so long")       \
+	        "largest size of all uploads of one connection, bytes")                                \
+	INTEGER(max_all_upload_bytes, 536870912, 65536, 1099511627776,                                 \
+	        "largest size of all uploads together, bytes")                                         \
+	INTEGER(mesh_memory_mb, 2048, 64, 1000000,                                                     \
+	        "memory to fill one uploaded surface with tetrahedra, MB")                             \
+	INTEGER(mesh_time_s, 20, 1, 3600,                                                              \
+	        "processor time to fill one uploaded surface with tetrahedra, s")                      \
+	INTEGER(max_requests_per_s, 2000, 1, 1000000,                                                  \
+	        "largest number of messages of one client in a second")                                \
+	INTEGER(queue_commands, 256, 8, 65536, "capacity of a session's queue of commands")            \
+	INTEGER(queue_reads, 64, 8, 65536,                                                             \
+	        "largest number of waiting requests that only read a session")                         \
+	INTEGER(quota_connection, 120, 1, 1000000,                                                     \
+	        "largest number of expensive requests of one connection a minute")                     \
+	INTEGER(quota_address, 600, 1, 1000000,                                                        \
+	        "largest number of expensive requests of one address a minute")                        \
+	INTEGER(quota_view, 300, 1, 1000000,                                                           \
+	        "largest number of expensive requests of all viewers a minute")                        \
+	INTEGER(quota_operate, 1200, 1, 1000000,                                                       \
+	        "largest number of expensive requests of all operators a minute")                      \
+	INTEGER(quota_admin, 1200, 1, 1000000,                                                         \
+	        "largest number of expensive requests of all admins a minute")                         \
+	INTEGER(quota_all, 2400, 1, 1000000,                                                           \
+	        "largest number of expensive requests of all clients a minute")                        \
+	INTEGER(subscriber_bytes, 196608, 16384, 16777216,                                             \
+	        "bytes of frames that may be on the way to one subscriber")                            \
+	REAL(hello_timeout_s, 5, 0.05, 60, "time after which a connection without hello is closed")    \
 	REAL(browser_deadline_s, 0.25, 0.02, 10,                                                       \
-	     "energy goes off if a WebSocket driver is silent for so long")                            \
-	REAL(resume_s, 10, 0, 600, "a lost client keeps its tools for so long")                        \
-	REAL(ping_s, 10, 0.5, 3600, "silence before a ping; three unanswered pings close")             \
-	REAL(slow_close_s, 30, 1, 3600, "a subscriber that takes no frame for so long is closed")      \
+	     "silence of a WebSocket driver after which energy goes off")                              \
+	REAL(resume_s, 10, 0, 600,                                                                     \
+	     "time for which a client keeps its tools after its connection was lost")                  \
+	REAL(ping_s, 10, 0.5, 3600,                                                                    \
+	     "silence before a ping; after three unanswered pings the connection closes")              \
+	REAL(slow_close_s, 30, 1, 3600,                                                                \
+	     "time without a taken frame after which a subscriber is closed")                          \
 	REAL(checkpoint_s, 10, 0.1, 3600, "time between checkpoints of a driven session")              \
-	REAL(retention_h, 24, 0.01, 8760, "branches that a rewind left are kept for so long")          \
+	REAL(retention_h, 24, 0.01, 8760, "time for which the branches before a rewind are kept")      \
 	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776,                                   \
-	        "largest size of a session in the store")                                              \
+	        "largest size of a session in the store, bytes")                                       \
 	INTEGER(store_bytes, 17179869184, 0, 1125899906842624,                                         \
-	        "largest size of the store, all tables; 0: no bound")                                  \
+	        "largest size of the store with all tables, bytes; 0: no limit")                       \
 	INTEGER(ephemeral_bytes, 1073741824, 1048576, 1099511627776,                                   \
-	        "largest memory of what ephemeral sessions keep of their past")                        \
+	        "largest memory for the history of all ephemeral sessions, bytes")                     \
 	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints at shutdown")                        \
-	SWITCH(dds, false, "open the DDS transport")                                                   \
+	SWITCH(dds, false, "also serve clients over DDS")                                              \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \
 	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
 	TEXT(dds_security, "", "folder of this daemon's DDS identity; empty: no DDS Security")         \
-	SWITCH(dds_optional, false, "serve WebSocket alone where DDS cannot be opened")                \
+	SWITCH(dds_optional, false, "if DDS cannot be opened, start with WebSocket only")              \
 	SWITCH(dds_network, false,                                                                     \
-	       "allow DDS beyond loopback without DDS Security: a guarded network")                    \
+	       "allow DDS on other networks without DDS Security, if the network is guarded")          \
 	TEXT(dds_role, "operate", "role of DDS participants: view, operate or admin")                  \
-	TEXT(dds_roles, "", "file of roles, `ROLE SUBJECT` a line, for identities of DDS Security")    \
-	REAL(dds_deadline_s, 0.25, 0.02, 1, "energy goes off after so much silence of a DDS driver")
+	TEXT(dds_roles, "", "file of roles of DDS Security identities, `ROLE SUBJECT` in each line")   \
+	REAL(dds_deadline_s, 0.25, 0.02, 1, "silence of a DDS driver after which energy goes off")
 
 #define CAU_CONFIG_TEXT(name, default_, meaning) char name[CAU_CONFIG_TEXT_BYTES];
 #define CAU_CONFIG_INTEGER(name, default_, least, most, meaning) int64_t name;

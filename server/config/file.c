@@ -80,15 +80,17 @@ static cau_status read_members(cau_config *config, const char *at, cau_error *er
 	char name[64], text[CAU_CONFIG_TEXT_BYTES];
 	at = skip_space(at);
 	if (*at != '{')
-		return cau_fail(error, CAU_BAD_VALUE, "", "must be an object");
+		return cau_fail(error, CAU_BAD_VALUE, "", "the file must contain a JSON object");
 	at = skip_space(at + 1);
 	while (*at != '}') {
 		if (!take_string(&at, name, sizeof name))
-			return cau_fail(error, CAU_NOT_FOUND, "", "a name is no setting's");
+			return cau_fail(error, CAU_NOT_FOUND, "",
+			                "a name is too long to be a setting, or not a string");
 		at = skip_space(skip_space(at) + 1); // past the colon
 		bool quoted = *at == '"';
 		if (!(quoted ? take_string(&at, text, sizeof text) : take_plain(&at, text, sizeof text)))
-			return cau_fail(error, CAU_BAD_VALUE, name, "too long or nested");
+			return cau_fail(error, CAU_BAD_VALUE, name,
+			                "the value is too long, or is an object or array");
 		cau_status status = store_member(config, name, text, quoted, error);
 		if (status)
 			return status;

@@ -14,13 +14,13 @@ static bool is_readable(int descriptor, int64_t most_bytes, struct stat *info,
 	if (fstat(descriptor, info))
 		what = strerrordesc_np(errno);
 	else if (S_ISDIR(info->st_mode))
-		what = "it is a folder";
+		what = "this is a folder, not a file";
 	else if (!S_ISREG(info->st_mode))
-		what = "it is no regular file";
+		what = "this is not a regular file";
 	if (what)
 		snprintf(reason, CAU_NAMED_FILE_REASON_BYTES, "%s", what);
 	else if (info->st_size > most_bytes)
-		snprintf(reason, CAU_NAMED_FILE_REASON_BYTES, "it is longer than %lld bytes",
+		snprintf(reason, CAU_NAMED_FILE_REASON_BYTES, "the file is longer than %lld bytes",
 		         (long long)most_bytes);
 	return !what && info->st_size <= most_bytes;
 }

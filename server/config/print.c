@@ -101,7 +101,8 @@ void cau_config_help(FILE *stream)
 			*c = *c == '_' ? '-' : *c;
 		fprintf(stream, "  --%-28s %s [%s]\n", flag, s->meaning, s->default_text);
 	}
-	fputs("\nExit code: 0 ended by a signal; 1 it could not start or lost its label, and the last "
+	fputs("\nExit code: 0 ended by a signal; 1 the daemon could not start or lost its label; the "
+	      "last "
 	      "line of "
 	      "the log says why;\n2 the settings are wrong.\n",
 	      stream);

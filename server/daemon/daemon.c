@@ -317,7 +317,8 @@ static cau_status find_files(cau_config *config, cau_error *error)
 	if (*config->scenes || cau_place_find("scenes", config->scenes, sizeof config->scenes))
 		return CAU_OK;
 	return cau_fail(error, CAU_NOT_FOUND, "scenes",
-	                "no folder ../share/cautery/scenes beside this program: say where they are");
+	                "the folder ../share/cautery/scenes beside this program is missing: give the "
+	                "folder of scenes with the setting scenes");
 }
 
 // Opens DDS. With `dds_optional` the daemon continues without DDS if the machine lacks ports or an

@@ -79,7 +79,8 @@ static void reload_settings(call *called)
 	cau_status status =
 		cau_config_load(&now, &request, called->argument_count, called->arguments, environ, &error);
 	if (!status && !cau_log_set_level(now.log_level))
-		status = cau_fail(&error, CAU_BAD_VALUE, "log_level", "there is no level `%.20s`",
+		status = cau_fail(&error, CAU_BAD_VALUE, "log_level",
+		                  "`%.20s` is not a level: use debug, info, notice, warning or error",
 		                  now.log_level);
 	if (status) {
 		cau_log(CAU_LOG_ERROR, NULL, "reload_failed",
@@ -161,13 +162,15 @@ int main(int argument_count, char **arguments)
 		return EXIT_STARTED;
 	}
 	if (!cau_log_set_format(config.log_format)) {
-		cau_fail(&error, CAU_BAD_VALUE, "log_format", "`%.20s` is neither text nor json",
+		cau_fail(&error, CAU_BAD_VALUE, "log_format", "`%.20s` is not a format: use text or json",
 		         config.log_format);
 		fail("bad_settings", &error);
 		return EXIT_USAGE;
 	}
 	if (!cau_log_set_level(config.log_level)) {
-		cau_fail(&error, CAU_BAD_VALUE, "log_level", "there is no level `%.20s`", config.log_level);
+		cau_fail(&error, CAU_BAD_VALUE, "log_level",
+		         "`%.20s` is not a level: use debug, info, notice, warning or error",
+		         config.log_level);
 		fail("bad_settings", &error);
 		return EXIT_USAGE;
 	}

@@ -19,7 +19,7 @@ static cau_status check_size(const struct stat *info, size_t most, cau_error *er
 		return fail_file("read", error);
 	}
 	if ((uint64_t)info->st_size > most)
-		return cau_fail(error, CAU_LIMIT, NULL, "%lld bytes, the limit is %zu",
+		return cau_fail(error, CAU_LIMIT, NULL, "the file has %lld bytes, the limit is %zu",
 		                (long long)info->st_size, most);
 	return CAU_OK;
 }

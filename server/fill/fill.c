@@ -183,7 +183,9 @@ static cau_status start(process *of, const cau_fill_wish *wish, cau_error *error
 	command line = {0};
 	int pipes[2] = {-1, -1};
 	if (!find_program(line.path))
-		return cau_fail(error, CAU_IO, "", "the program cautery-mesh is not beside the daemon's");
+		return cau_fail(
+			error, CAU_IO, "",
+			"the program cautery-mesh is missing in the daemon's folder: install it there");
 	make_command(wish, &line);
 	of->in = memfd_create("mesh", MFD_CLOEXEC);
 	of->out = memfd_create("solid", MFD_CLOEXEC);
@@ -193,13 +195,15 @@ static cau_status start(process *of, const cau_fill_wish *wish, cau_error *error
 		if (pipes[1] >= 0)
 			close(pipes[1]);
 		of->said = pipes[0];
-		return cau_fail(error, CAU_IO, "", "cautery-mesh gets no files: %s", strerror(reason));
+		return cau_fail(error, CAU_IO, "", "the files for cautery-mesh cannot be opened: %s",
+		                strerror(reason));
 	}
 	of->said = pipes[0];
 	int failed = spawn(of, &line, pipes[1]);
 	close(pipes[1]);
-	return failed ? cau_fail(error, CAU_IO, "", "cautery-mesh does not start: %s", strerror(failed))
-	              : CAU_OK;
+	return failed
+	           ? cau_fail(error, CAU_IO, "", "cautery-mesh cannot be started: %s", strerror(failed))
+	           : CAU_OK;
 }
 
 // Reads output of the process from its pipe. Returns false if the process has ended.
@@ -231,7 +235,7 @@ static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish
 		int ready = poll(&said, 1, LOOK_MS);
 		goes_on = ready <= 0 || hear(of);
 		if (cau_filling_is_cancelled(filling))
-			*why = "it was cancelled";
+			*why = "the meshing was cancelled";
 		else if (wish->is_over(wish->user))
 			*why = "the server is shutting down";
 		else if (now_s() > end_s)
@@ -297,7 +301,7 @@ static cau_status judge(const process *of, int state, const char *why, const cau
 		                "meshing took more than %lld s (setting mesh_time_s): choose a longer edge",
 		                (long long)wish->time_s);
 	if (WIFSIGNALED(state))
-		return cau_fail(error, CAU_IO, "", "cautery-mesh died of signal %d", WTERMSIG(state));
+		return cau_fail(error, CAU_IO, "", "cautery-mesh was ended by signal %d", WTERMSIG(state));
 	if (WEXITSTATUS(state) != 0 && strstr(of->text, ": no memory for "))
 		return cau_fail(error, CAU_LIMIT, "",
 		                "meshing needs more than %lld MB (setting mesh_memory_mb): choose a longer "

@@ -84,7 +84,7 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	if (!cau_worker_pool_add(around->pool, &h->task)) {
 		status = cau_fail(
 			error, CAU_LIMIT, NULL,
-			"the daemon has as many sessions as it may (setting max_sessions): destroy one");
+			"the daemon has the largest number of sessions (setting max_sessions): destroy one");
 		goto give_up;
 	}
 	note_store(h);

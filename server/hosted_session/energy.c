@@ -56,7 +56,7 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 	                 drive->tool, drive->driver.name, 0, drive->cut_cause);
 	if (watchdog) // shows the driver why the tool stays cold although the pedal is pressed
 		cau_log(CAU_LOG_WARNING, h->identity.id, "energy_cut",
-		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"it stays dark until its driver "
+		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"energy stays off until the driver "
 		        "releases and enables it anew\"",
 		        drive->tool, drive->driver.name, drive->cut_cause);
 }

@@ -82,8 +82,8 @@ static void note_gain(cau_hosted_findings *findings, cau_hosted_timeline *timeli
 	if (!(now->energy_gain_j > GAIN_MOST * now->energy_scale_j) || (findings->gain_tick && !again))
 		return;
 	findings->gain_tick = timeline->core->tick;
-	snprintf(detail, sizeof detail, "%.3g J in a tick that had %.3g J", now->energy_gain_j,
-	         now->energy_scale_j);
+	snprintf(detail, sizeof detail, "%.3g J were gained in a tick that began with %.3g J",
+	         now->energy_gain_j, now->energy_scale_j);
 	cau_timeline_add(timeline, CAU_EVENT_ENERGY_GAIN, NULL, NULL, 0, detail);
 }
 
@@ -155,7 +155,7 @@ void cau_fault_stop_unsound(cau_hosted *h)
 	for (int32_t i = 0; i < frame.tool_count; i++)
 		cau_energy_turn_off(h, frame.tools[i].name);
 	cau_energy_turn_off(h, h->decisions.odd_tool); // this tool may not have been added yet
-	cau_fail(&error, CAU_FAULTED, "", "tool %s had energy on without an enable that counts",
+	cau_fail(&error, CAU_FAULTED, "", "tool %s had energy on without a valid enable",
 	         h->decisions.odd_tool);
 	cau_log(CAU_LOG_ERROR, h->identity.id, "energy_disagrees", "tick=%llu tool=%s",
 	        (unsigned long long)h->core.tick, h->decisions.odd_tool);

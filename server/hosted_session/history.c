@@ -88,11 +88,11 @@ cau_outcome_kind cau_apply_snapshot(cau_hosted *h, cau_order *order, const cau_a
 		         (unsigned long long)h->core.tick, (long long)h->history.branch);
 	if (cau_history_find(&h->history, order->as.name)) {
 		return cau_answer_refuse(order, CAU_ALREADY_EXISTS, "params.name",
-		                         "a snapshot has this name");
+		                         "a snapshot of the session already has this name");
 	}
 	if (h->history.snapshot_count == SNAPSHOT_COUNT) {
 		return cau_answer_refuse(order, CAU_LIMIT, "params.name",
-		                         "the session has 64 snapshots, the most");
+		                         "the session already has 64 snapshots, which is the limit");
 	}
 	cau_record_checkpoint(&h->record, &result.hash, &bytes);
 	cau_named_snapshot *made = &h->history.snapshots[h->history.snapshot_count++];

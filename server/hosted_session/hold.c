@@ -56,7 +56,7 @@ static void run_stop(cau_job *job)
 	holding->order = NULL;
 	holding->job.run = holding->job.drop = run_on;
 	if (!stored)
-		cau_fail(&error, CAU_IO, "", "the store has not stored all commands yet: try again later");
+		cau_fail(&error, CAU_IO, "", "the store has not written all commands yet: try again later");
 	outcome.text = text;
 	outcome.error = text ? NULL : &error;
 	// from here on cau_hosted_go_on or cau_hosted_go_away may be called

@@ -200,9 +200,10 @@ static cau_status read_mesh(reading *what, cau_mesh_report *file, cau_error *err
 	bool volume = cau_solid_is_volume(asked->bytes, asked->byte_count), has_inside = volume;
 	if (volume && asked->layer_kind == CAU_LAYER_FASCIA)
 		return cau_fail(error, CAU_BAD_VALUE, "as",
-		                "a segmentation has no sheet: make a solid of it (as fat)");
+		                "a segmentation cannot become a sheet: use it as a solid (as fat)");
 	if (!volume && asked->labels[0])
-		return cau_fail(error, CAU_BAD_VALUE, "labels", "this file is no segmentation");
+		return cau_fail(error, CAU_BAD_VALUE, "labels",
+		                "this file is not a segmentation, so it has no labels");
 	cau_status status = volume ? CAU_OK : read_surface(what, &has_inside, error);
 	*file = what->report;
 	if (status || !has_inside)

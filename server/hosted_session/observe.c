@@ -33,7 +33,8 @@ cau_status cau_advance_check(const cau_session_info *info, const cau_advance *ad
 	each += advance->channels & CAU_CHANNEL_POSITIONS ? 3 : 0;
 	for (int32_t i = 0; i < advance->vertex_count; i++)
 		if (advance->vertices[i] >= info->vertex_count) {
-			cau_fail(error, CAU_BAD_VALUE, "", "the session has %d vertices", info->vertex_count);
+			cau_fail(error, CAU_BAD_VALUE, "", "not a vertex of the session, which has %d vertices",
+			         info->vertex_count);
 			snprintf(error->path, sizeof error->path, "params.observe.vertices[%d]", i);
 			return CAU_BAD_VALUE;
 		}

@@ -14,9 +14,10 @@ cau_status cau_replay_check(const cau_hosted_identity *identity, const cau_hoste
 	cau_store_flush(identity->around->store);
 	uint64_t lost_from = commits->lost_from;
 	if (present && tick > lost_from)
-		return cau_fail(error, CAU_BAD_VALUE, "params.tick",
-		                "commands from tick %llu on could not be stored",
-		                (unsigned long long)lost_from);
+		return cau_fail(
+			error, CAU_BAD_VALUE, "params.tick",
+			"commands from tick %llu on could not be stored: only earlier ticks can be reached",
+			(unsigned long long)lost_from);
 	return cau_store_check_reach(identity->around->store, identity->id, branch, tick, error);
 }
 

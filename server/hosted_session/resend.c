@@ -29,6 +29,7 @@ void cau_resend_answer(const cau_reply *reply, const char *text, size_t text_byt
 		return;
 	}
 	cau_error error = {0};
-	cau_fail(&error, CAU_ALREADY_EXISTS, "params.client_sequence", "belongs to a `%s`", method);
+	cau_fail(&error, CAU_ALREADY_EXISTS, "params.client_sequence",
+	         "this number belongs to a request `%s`", method);
 	cau_reply_fail(reply, &error, CAU_RPC_SEQUENCE_CONFLICT);
 }

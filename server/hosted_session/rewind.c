@@ -104,7 +104,8 @@ static cau_status return_to_present(going *g, cau_error *error)
 		return CAU_OK;
 	g->hosted->core.tick = g->present_tick;
 	if (!g->present)
-		return cau_fail(error, CAU_FAULTED, "", "the session was faulted before, and still is");
+		return cau_fail(error, CAU_FAULTED, "",
+		                "the session was faulted before the rewind, and is still faulted");
 	return cau_session_restore(g->hosted->core.session, g->present, g->present_bytes, &exact,
 	                           error);
 }

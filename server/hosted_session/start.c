@@ -160,10 +160,11 @@ static cau_status resume_from_store(cau_hosted *h, cau_error *error)
 
 void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_error *error)
 {
-	cau_log(CAU_LOG_ERROR, id, "not_resumed",
-	        "status=%s path=%s reason=\"%s\" remedy=\"it stays in the store; `cautery rm %s` "
-	        "removes it\"",
-	        cau_status_name(status), error->path, error->reason, id);
+	cau_log(
+		CAU_LOG_ERROR, id, "not_resumed",
+		"status=%s path=%s reason=\"%s\" remedy=\"the session stays in the store; `cautery rm %s` "
+		"removes it\"",
+		cau_status_name(status), error->path, error->reason, id);
 }
 
 void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)

@@ -64,7 +64,8 @@ cau_status cau_suspension_check(cau_hosted *h, const char *doing, const char *ne
 		return cau_fail(error, CAU_BAD_STATE, "",
 		                "the session was destroyed while it %s, before %s", doing, next);
 	if (h->life.drain_wanted)
-		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending; it ended before %s", next);
+		return cau_fail(error, CAU_BAD_STATE, "",
+		                "the daemon is ending; the session ended before %s", next);
 	return CAU_OK;
 }
 
@@ -72,8 +73,9 @@ static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error
 {
 	cau_status status = cau_suspension_check(h, "was being built", next, error);
 	if (!status && h->creation.abandoned)
-		status = cau_fail(error, CAU_BAD_STATE, "", "its creator disconnected; it ended before %s",
-		                  next);
+		status = cau_fail(
+			error, CAU_BAD_STATE, "",
+			"the client that created the session disconnected; the session ended before %s", next);
 	h->creation.unwanted = status != CAU_OK;
 	return status;
 }
@@ -112,7 +114,7 @@ bool cau_suspension_cancel(cau_hosted_suspension *suspension, const char *id, ca
 	bool taken = keep_cancelling(suspension, order);
 	if (taken)
 		cau_log(CAU_LOG_INFO, id, "cancelled",
-		        "client=\"%s\" reason=\"it ends when its present stage does\"", name);
+		        "client=\"%s\" reason=\"the session ends after its present stage\"", name);
 	return taken;
 }
 

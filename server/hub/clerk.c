@@ -72,7 +72,7 @@ static cau_status make_id(cau_hub *hub, const cau_creation *creation, char id[CA
 		         ++hub->last_name);
 	if (strlen(text) >= CAU_NAME_BYTES)
 		return cau_fail(error, CAU_BAD_VALUE, "params.name",
-		                "with the label `%s-` it is longer than %d bytes", label,
+		                "the name with the label `%s-` is longer than %d bytes", label,
 		                CAU_NAME_BYTES - 1);
 	memcpy(id, text, strlen(text) + 1);
 	return CAU_OK;
@@ -90,14 +90,16 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
 	if (other)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` exists", id);
 	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_moved(hub, id, &to))
-		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` has moved and is `%s` now",
-		                id, to.session);
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
+		                "the session `%s` has moved and is now `%s`", id, to.session);
 	if (arrives)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
-		                "`%s` is moving here from another daemon", id);
+		                "the session `%s` is moving here from another daemon", id);
 	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
-		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
-		                (long long)hub->def.config->max_sessions);
+		return cau_fail(
+			error, CAU_LIMIT, "",
+			"the daemon has %lld sessions, which is the limit (setting max_sessions): destroy one",
+			(long long)hub->def.config->max_sessions);
 	return CAU_OK;
 }
 

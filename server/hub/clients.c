@@ -158,7 +158,7 @@ void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection)
 	}
 	pthread_mutex_unlock(&hub->mutex);
 	if (its_own)
-		cau_hub_each(hub, cut_one, &(cut){number, "its connection is lost"});
+		cau_hub_each(hub, cut_one, &(cut){number, "the driver's connection was lost"});
 }
 
 typedef struct sign {
@@ -177,7 +177,7 @@ void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible, double alive
 	if (visible)
 		cau_hub_each(hub, feed_one, &(sign){number, alive_s});
 	else
-		cau_hub_each(hub, cut_one, &(cut){number, "its page is hidden"});
+		cau_hub_each(hub, cut_one, &(cut){number, "the driver's page is hidden"});
 }
 
 bool cau_hub_find_client(cau_hub *hub, uint32_t number, cau_asker *asker)

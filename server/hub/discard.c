@@ -40,7 +40,8 @@ static void committed(void *user, cau_status status, const char *reason)
 	cau_error error = {0};
 	cau_outcome outcome = {.text = what->text, .text_bytes = what->text_bytes};
 	if (!status) {
-		cau_log(CAU_LOG_INFO, what->id, "destroyed", "reason=\"it had not been brought up\"");
+		cau_log(CAU_LOG_INFO, what->id, "destroyed",
+		        "reason=\"the session could not be started from the store\"");
 		cau_reply_answer(&what->reply, &outcome);
 	} else if (status == CAU_NOT_FOUND) {
 		cau_clerk_answer_missing(what->hub, &what->reply, what->id);

@@ -11,7 +11,7 @@
 
 static cau_status refuse(cau_error *error, const char *what)
 {
-	return cau_fail(error, CAU_CORRUPT, "etcd", "%s in etcd's answer", what);
+	return cau_fail(error, CAU_CORRUPT, "etcd", "unexpected answer of etcd: %s", what);
 }
 
 // ---- moving in the text
@@ -140,7 +140,7 @@ static cau_status open_answer(const char *text, size_t bytes, const char **objec
 	if (cau_json_scan(text, bytes, CAU_ETCD_ANSWER_BYTES, &scanned))
 		return cau_fail(error, CAU_CORRUPT, "etcd", "etcd's answer: %.200s", scanned.reason);
 	*object = skip_space(text);
-	return **object == '{' ? CAU_OK : refuse(error, "no object");
+	return **object == '{' ? CAU_OK : refuse(error, "not a JSON object");
 }
 
 cau_status cau_etcd_read_lease(const char *text, size_t bytes, cau_etcd_lease *lease,
@@ -155,9 +155,9 @@ cau_status cau_etcd_read_lease(const char *text, size_t bytes, cau_etcd_lease *l
 	const char *result = find(object, "result");
 	object = result ? result : object;
 	if (!read_number(find(object, "ID"), &lease->id) || lease->id <= 0)
-		return refuse(error, "no lease");
+		return refuse(error, "the lease is missing");
 	if (!read_count(find(object, "TTL"), &ttl))
-		return refuse(error, "no time to live");
+		return refuse(error, "the time to live is missing");
 	lease->ttl_s = ttl > 0 ? (double)ttl : 0;
 	return CAU_OK;
 }
@@ -165,13 +165,13 @@ cau_status cau_etcd_read_lease(const char *text, size_t bytes, cau_etcd_lease *l
 static cau_status read_value(const char *pair, cau_etcd_value *value, cau_error *error)
 {
 	if (value->is_there)
-		return refuse(error, "a key twice");
+		return refuse(error, "a key comes twice");
 	if (!read_number(find(pair, "mod_revision"), &value->revision) || value->revision <= 0)
-		return refuse(error, "no revision of a key");
+		return refuse(error, "the revision of a key is missing");
 	if (!read_count(find(pair, "lease"), &value->lease))
-		return refuse(error, "no lease of a key");
+		return refuse(error, "the lease of a key is missing");
 	if (!read_base64(find(pair, "value"), value->text, &value->bytes))
-		return refuse(error, "no value of a key");
+		return refuse(error, "the value of a key is missing");
 	value->is_there = true;
 	return CAU_OK;
 }
@@ -186,14 +186,14 @@ cau_status cau_etcd_read_values(const char *text, size_t bytes, const char *cons
 		return status;
 	const char *pairs = find(object, "kvs");
 	if (pairs && *pairs != '[')
-		return refuse(error, "no list of keys");
+		return refuse(error, "the list of keys is missing");
 	if (!find(object, "header"))
-		return refuse(error, "no header");
+		return refuse(error, "the header is missing");
 	for (const char *pair = first_element(pairs); pair && !status; pair = next_element(pair)) {
 		char key[CAU_ETCD_VALUE_BYTES];
 		size_t key_bytes;
 		if (!read_base64(find(pair, "key"), key, &key_bytes) || key_bytes == 0)
-			return refuse(error, "no key");
+			return refuse(error, "the key is missing");
 		for (size_t i = 0; i < count && !status; i++)
 			if (strlen(keys[i]) == key_bytes && memcmp(keys[i], key, key_bytes) == 0)
 				status = read_value(pair, &values[i], error);
@@ -210,9 +210,9 @@ cau_status cau_etcd_read_success(const char *text, size_t bytes, bool *success, 
 		return status;
 	const char *succeeded = find(object, "succeeded");
 	if (!find(object, "header"))
-		return refuse(error, "no header");
+		return refuse(error, "the header is missing");
 	if (succeeded && strncmp(succeeded, "true", 4) != 0 && strncmp(succeeded, "false", 5) != 0)
-		return refuse(error, "no outcome");
+		return refuse(error, "the outcome is missing");
 	*success = succeeded && *succeeded == 't';
 	return CAU_OK;
 }

@@ -40,7 +40,8 @@ static cau_status read_addresses(cau_etcd *etcd, const char *text, cau_error *er
 	for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
 		size_t bytes = strcspn(at, ",");
 		if (bytes >= ADDRESS_BYTES || etcd->address_count == ADDRESSES_MAX)
-			return cau_fail(error, CAU_BAD_VALUE, "etcd", "at most %d addresses of %d bytes",
+			return cau_fail(error, CAU_BAD_VALUE, "etcd",
+			                "at most %d addresses of at most %d bytes each are allowed",
 			                ADDRESSES_MAX, ADDRESS_BYTES - 1);
 		char *address = etcd->address[etcd->address_count++];
 		memcpy(address, at, bytes);

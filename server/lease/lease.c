@@ -69,7 +69,7 @@ static cau_status name_kernel(char name[40], cau_error *error)
 	if (read)
 		return CAU_OK;
 	if (getrandom(random, sizeof random, 0) != sizeof random)
-		return cau_fail(error, CAU_IO, NULL, "no random bytes");
+		return cau_fail(error, CAU_IO, NULL, "the system gives no random bytes");
 	snprintf(name, 40, "%016" PRIx64 "-%016" PRIx64, random[0], random[1]);
 	return CAU_OK;
 }
@@ -104,7 +104,7 @@ static cau_status read_stored(cau_lease *lease, cau_error *error)
 		lease->stored_file = strtoumax(second + 1, &end, 10);
 	if (end && end > second + 1 && *end == 0)
 		return CAU_OK;
-	return cau_fail(error, CAU_CORRUPT, "store", "`%.60s` is no generation of a store", text);
+	return cau_fail(error, CAU_CORRUPT, "store", "`%.60s` in the store is not a generation", text);
 }
 
 static cau_status store(const cau_lease *lease, cau_error *error)
@@ -133,8 +133,8 @@ static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_v
 	if (generation->is_there &&
 	    (!cau_generation_read(generation->text, generation->bytes, &claim.known) ||
 	     claim.known.number == 0))
-		return cau_fail(error, CAU_CORRUPT, "etcd", "the value of %.80s in etcd is no generation",
-		                lease->keys.generation);
+		return cau_fail(error, CAU_CORRUPT, "etcd",
+		                "the value of %.80s in etcd is not a generation", lease->keys.generation);
 	claim.is_held = holder->is_there;
 	claim.is_held_here = holder->bytes == strlen(lease->holder) &&
 	                     memcmp(holder->text, lease->holder, holder->bytes) == 0;
@@ -147,7 +147,7 @@ static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_v
 		return error->status;
 	uint64_t mark = 0;
 	if (getrandom(&mark, sizeof mark, 0) != sizeof mark)
-		return cau_fail(error, CAU_IO, NULL, "no random bytes");
+		return cau_fail(error, CAU_IO, NULL, "the system gives no random bytes");
 	cau_lease_choose(&claim, &lease->has_next, mark);
 	lease->held = claim.held;
 	lease->next = claim.next;
@@ -171,7 +171,8 @@ static cau_status try_to_take(cau_lease *lease, bool *again, cau_error *error)
 	double sent_s = now_s();
 	status = cau_etcd_grant(lease->etcd, lease->rules.ttl_s, lease->rules.limit_s, &granted, error);
 	if (!status && granted.ttl_s < 1)
-		status = cau_fail(error, CAU_CORRUPT, "etcd", "a lease without a time to live");
+		status =
+			cau_fail(error, CAU_CORRUPT, "etcd", "etcd granted a lease without a time to live");
 	cau_generation_write(lease->next, next);
 	if (!status)
 		status = cau_etcd_claim(lease->etcd, &lease->keys, &generation, &holder, next,

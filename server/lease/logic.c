@@ -64,19 +64,21 @@ static bool is_the_newest(const cau_claim *claim)
 static void explain(const cau_claim *claim, cau_error *error)
 {
 	if (claim->is_copy)
-		cau_fail(error, CAU_BAD_STATE, "etcd",
-		         "the store's file is a copy of the one that was opened last, which may hold more; "
-		         "--take-label serves it all the same");
+		cau_fail(
+			error, CAU_BAD_STATE, "etcd",
+			"this file is a copy of the store that was opened last. The original may have newer "
+			"data: start that one, or give --take-label once");
 	else if (claim->known.number == 0)
 		cau_fail(error, CAU_BAD_STATE, "etcd",
-		         "etcd knows no generation of this label, and the store is of generation %" PRId64
-		         ": it is another etcd, or has lost its data; --take-label serves the store",
+		         "etcd has no generation of this label, but the store has generation %" PRId64
+		         ". This is another etcd, or etcd has lost its data. To serve the store all the "
+		         "same, give --take-label once",
 		         claim->held.number);
 	else
 		cau_fail(error, CAU_BAD_STATE, "etcd",
-		         "the store is of generation %" PRId64 " and etcd knows %" PRId64
-		         " of this label, of another store: this one is a copy from before; "
-		         "--take-label serves it all the same",
+		         "this store is an older copy: it has generation %" PRId64 ", etcd has %" PRId64
+		         " from another store of this label. Start the newer store, or give --take-label "
+		         "once, which abandons the newer data",
 		         claim->held.number, claim->known.number);
 }
 

@@ -33,19 +33,19 @@ static const cau_option rows[] = {
      .meaning = "where the solid goes, a Gmsh file; \"-\": standard output"},
 	{"edge", "L", CAU_OPTION_NUMBER, AT(edge), 1e-9, 1e9,
      .meaning = "length of an edge, in units of the file (of a segmentation: mm);\n"
-                "default: as long as makes about 8,000 tetrahedra"},
+                "default: a length that gives about 8,000 tetrahedra"},
 	{"labels", "A,B", CAU_OPTION_TEXT, AT(labels),
      .meaning = "labels of a segmentation to keep (default: all but 0)"},
 	{"name", "N", CAU_OPTION_TEXT, AT(name),
-     .meaning = "what messages call standard input (default: \"standard input\")"},
+     .meaning = "name of standard input in messages (default: \"standard input\")"},
 	{"strict", NULL, CAU_OPTION_FLAG, AT(strict),
      .meaning = "refuses a surface that is open or has to be mended"},
 	{"memory-mb", "N", CAU_OPTION_WHOLE, AT(memory_mb), 64, 1e6,
-     .meaning = "memory at most (default: no bound)"},
+     .meaning = "largest memory (default: no limit)"},
 	{"time-s", "N", CAU_OPTION_WHOLE, AT(time_s), 1, 1e6,
-     .meaning = "processor time at most (default: no bound)"},
+     .meaning = "largest processor time (default: no limit)"},
 	{"with-parent", NULL, CAU_OPTION_FLAG, AT(with_parent),
-     .meaning = "ends when the process that started it ends"},
+     .meaning = "ends when its parent process ends"},
 	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
 	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "version of this program"},
 };
@@ -229,11 +229,12 @@ int main(int argument_count, char **arguments)
 		return 0;
 	}
 	if (!options.out) {
-		fputs("cautery-mesh: --out FILE says where the solid goes\n", stderr);
+		fputs("cautery-mesh: --out FILE is missing: the file for the solid\n", stderr);
 		return EXIT_USAGE;
 	}
 	if (!take_bounds(&options)) {
-		fprintf(stderr, "cautery-mesh: the bounds cannot be set: %s\n", strerror(errno));
+		fprintf(stderr, "cautery-mesh: the limits of memory and time cannot be set: %s\n",
+		        strerror(errno));
 		return EXIT_USAGE;
 	}
 	return run(&options, file);

@@ -62,9 +62,9 @@ static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *er
 	bool waits = state == CAU_COMING_INCOMING || state == CAU_COMING_WHOLE;
 	if (!waits || a->writing)
 		*status = cau_fail(error, CAU_BAD_STATE, "params.move",
-		                   "no such move waits here, or a piece is being written");
+		                   "no such move waits here, or a piece of this move is being written");
 	else if (a->hosted && !a->ready)
-		*status = cau_fail(error, CAU_BAD_STATE, "", "it is being built");
+		*status = cau_fail(error, CAU_BAD_STATE, "", "the session is being built");
 	else if (a->hosted)
 		cau_move_answer(&job->reply, &a->stands);
 	bool begins = waits && !*status && !a->hosted;
@@ -295,7 +295,7 @@ static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error
 	accepting *what = calloc(1, sizeof *what);
 	cau_status status = batch && what
 	                        ? cau_store_put_arrival(batch, &row, error)
-	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to accept it");
+	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to accept the session");
 	if (!status) {
 		*what = (accepting){.job = {.run = run, .drop = drop},
 		                    .moves = job->moves,
@@ -321,12 +321,13 @@ void cau_arrival_accept(cau_move_job *job)
 	pthread_mutex_lock(&job->moves->mutex);
 	arrival *a = cau_arrival_find_own(job->moves, &job->asked);
 	if (!a)
-		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
+		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "this daemon has no such move");
 	else if (job->moves->ends)
 		status = cau_fail(&error, CAU_BAD_STATE, "",
 		                  "the daemon is shutting down: ask again when it is back");
 	else if (!cau_move_opens(job->asked.key, a->lock))
-		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "the proof is of another move");
+		status =
+			cau_fail(&error, CAU_BAD_VALUE, "params.proof", "the proof belongs to another move");
 	else if (a->accepting)
 		status = wait_too(a->accepting, &job->reply, &error);
 	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))
@@ -334,7 +335,7 @@ void cau_arrival_accept(cau_move_job *job)
 	else
 		act = cau_coming_take(&a->coming, CAU_COMING_PROOF, true);
 	if (act == CAU_COMING_REFUSE)
-		status = cau_fail(&error, CAU_BAD_STATE, "", "not all pieces have come");
+		status = cau_fail(&error, CAU_BAD_STATE, "", "not all pieces of the session have arrived");
 	if (!status && act == CAU_COMING_DO_WRITE)
 		status = write_accepted(job, a, &error);
 	pthread_mutex_unlock(&job->moves->mutex);
@@ -381,7 +382,7 @@ static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau
 	cau_store_batch *batch = cau_store_batch_create();
 	cau_status status = batch && travelling
 	                        ? cau_store_forget_arrival(batch, a->id, error)
-	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to forget it");
+	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to forget the move");
 	if (!status) {
 		*travelling =
 			(forgetting){.moves = job->moves, .arrival = a, .reply = job->reply, .whole = whole};
@@ -421,7 +422,7 @@ static cau_status check_forget(const cau_move_job *job, const arrival *a, int32_
 		return cau_fail(error, CAU_BAD_STATE, "", "the session is being built: ask again");
 	if (a && !may_forget(job, a))
 		return cau_fail(error, CAU_BAD_VALUE, "params.release",
-		                "it is not the one that move.cancel of the other daemon gives for this "
+		                "not the release that move.cancel of the other daemon returned for this "
 		                "move");
 	return CAU_OK;
 }
@@ -437,7 +438,7 @@ void cau_arrival_forget(cau_move_job *job)
 	if (!status &&
 	    (!a || cau_coming_take(&a->coming, CAU_COMING_FORGET, true) != CAU_COMING_DO_FORGET))
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move",
-		                  "no such move is known here, or the session is this daemon's");
+		                  "this daemon has no such move, or has accepted the session already");
 	else if (!status)
 		status = write_forgotten(job, a, whole, &error);
 	pthread_mutex_unlock(&job->moves->mutex);

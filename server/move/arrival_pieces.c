@@ -54,7 +54,8 @@ static void take_hand(const cau_row *row, contents *found)
 static cau_status take_seal(cau_move_asked *asked, contents *found, cau_error *error)
 {
 	if (asked->piece_bytes < CAU_SEAL_BYTES)
-		return cau_fail(error, CAU_CORRUPT, "params.upload", "it is no piece of a session");
+		return cau_fail(error, CAU_CORRUPT, "params.upload",
+		                "the upload is not a piece of a session");
 	asked->piece_bytes -= CAU_SEAL_BYTES;
 	memcpy(found->seal, asked->piece + asked->piece_bytes, CAU_SEAL_BYTES);
 	return CAU_OK;
@@ -83,7 +84,7 @@ static cau_status read_contents(const cau_move_asked *asked, contents *found, ca
 	              strlen(found->lock) == CAU_SEAL_BYTES &&
 	              strlen(found->unlock) == CAU_SEAL_BYTES && cau_name_is_valid(found->source);
 	if (found->has_header != (found->index == 0) || (found->has_header && !begins))
-		return cau_fail(error, CAU_BAD_VALUE, "params.upload", "the piece is of another move");
+		return cau_fail(error, CAU_BAD_VALUE, "params.upload", "the piece belongs to another move");
 	return CAU_OK;
 }
 
@@ -93,7 +94,7 @@ static cau_status check_id(const cau_moves *moves, const char *id, cau_error *er
 	if (strncmp(id, moves->def.config->label, bytes) == 0 && id[bytes] == '-')
 		return CAU_OK;
 	return cau_fail(error, CAU_BAD_VALUE, "params.session",
-	                "this daemon's sessions begin with `%s-`", moves->def.config->label);
+	                "the ids of this daemon's sessions begin with `%s-`", moves->def.config->label);
 }
 
 // Called with the lock. Checks whether a new move may bring a session with this id.
@@ -153,9 +154,10 @@ static cau_status check_seal(const cau_move_asked *asked, const char *before, co
 	if (!cau_move_seal(before, asked->piece, asked->piece_bytes, seal))
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece");
 	if (strcmp(seal, found->seal) != 0)
-		return cau_fail(error, CAU_CORRUPT, "params.upload",
-		                "the piece was damaged on its way, or belongs elsewhere: cancel the move "
-		                "and begin again");
+		return cau_fail(
+			error, CAU_CORRUPT, "params.upload",
+			"the piece was damaged in transfer, or belongs to another daemon: cancel the move "
+			"and begin again");
 	return CAU_OK;
 }
 

@@ -92,8 +92,7 @@ static cau_status take_arrival(void *user, const cau_store_arrival *row)
 	moves->arrivals = a;
 	if (!cau_coming_serves(&a->coming))
 		cau_log(CAU_LOG_WARNING, a->id, "in_doubt",
-		        "move=%s from=%s whole=%d remedy=\"`cautery move %s %s` asks the daemon that it "
-		        "came from\"",
+		        "move=%s from=%s whole=%d remedy=\"`cautery move %s %s` asks the source daemon\"",
 		        a->move, a->source, row->state == CAU_STORE_WHOLE, a->source,
 		        moves->def.config->label);
 	return CAU_OK;

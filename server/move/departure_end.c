@@ -25,7 +25,7 @@ static void let_go(cau_moves *moves, departure *d, cau_leaving_state from, cau_l
 	}
 	if (act != CAU_LEAVING_DO_GO_ON)
 		return;
-	cau_log(CAU_LOG_NOTICE, d->id, "move_ended", "move=%s reason=\"it stays here\"",
+	cau_log(CAU_LOG_NOTICE, d->id, "move_ended", "move=%s reason=\"the session stays here\"",
 	        d->becomes.move);
 	if (from != CAU_LEAVING_SENDS)
 		cau_hosted_go_on(d->hosted);
@@ -185,7 +185,8 @@ void cau_departure_hold(cau_move_job *job)
 		cau_departure_fail_unknown(&job->reply);
 	else if (!stops)
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "",
-		              "it is suspended already, or its first part has not been read yet");
+		              "the session is suspended already, or the first part of this move has not "
+		              "been read yet");
 	else
 		ask_to_hold(job, hosted);
 	cau_hosted_release(hosted);
@@ -291,7 +292,7 @@ void cau_departure_commit(cau_move_job *job)
 	} else if (!is_received(d, job->asked.key)) {
 		cau_move_fail(
 			&job->reply, CAU_BAD_VALUE, 0, "params.receipt",
-			"it is not the one that the other daemon gives for the last piece of this move");
+			"not the receipt that the other daemon returned for the last piece of this move");
 	} else if (cau_leaving_take(&d->leaving, CAU_LEAVING_COMMIT, true) == CAU_LEAVING_DO_WRITE) {
 		write_tombstone(job->moves, d, &job->reply);
 	} else {
@@ -341,7 +342,7 @@ void cau_departure_cancel(cau_move_job *job)
 		cancel(job, d);
 	else if (!is_of_this_daemon(job->moves, job->asked.session))
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
-		              "the session's label is not this daemon's");
+		              "the session id does not begin with this daemon's label");
 	else if (!show(job))
 		keep(job);
 	pthread_mutex_unlock(&job->moves->mutex);

@@ -78,7 +78,7 @@ static cau_status fill(const cau_moves *moves, departure *d, const cau_move_aske
 	size_t label_bytes = strlen(asked->label);
 	if (strncmp(asked->to.session, asked->label, label_bytes) != 0 ||
 	    asked->to.session[label_bytes] != '-')
-		return cau_fail(error, CAU_BAD_VALUE, "params.target", "it does not begin with `%s-`",
+		return cau_fail(error, CAU_BAD_VALUE, "params.target", "the new id must begin with `%s-`",
 		                asked->label);
 	if (strcmp(asked->to.session, asked->session) == 0)
 		return cau_fail(error, CAU_BAD_VALUE, "params.target",
@@ -89,7 +89,7 @@ static cau_status fill(const cau_moves *moves, departure *d, const cau_move_aske
 	d->becomes.to = asked->to;
 	d->becomes.move[0] = 'm'; // a name must begin with a letter
 	if (!make_hex(d->becomes.move + 1, 16) || !make_hex(d->becomes.proof, 32))
-		return cau_fail(error, CAU_UNSUPPORTED, "", "the system has no random bytes");
+		return cau_fail(error, CAU_UNSUPPORTED, "", "the system gives no random bytes");
 	if (!cau_sha256(d->becomes.proof, strlen(d->becomes.proof), d->lock) ||
 	    !cau_move_release(moves->secret, d->becomes.move, d->release) ||
 	    !cau_sha256(d->release, strlen(d->release), d->unlock))
@@ -108,9 +108,10 @@ static cau_hosted *find_hosted(cau_move_job *job)
 		return hosted;
 	if (ephemeral)
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "params.session",
-		              "it is ephemeral: it is not stored, and cannot move");
+		              "an ephemeral session is not stored, so it cannot move");
 	else if (hosted)
-		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "params.session", "it is being built");
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "params.session",
+		              "the session is being built");
 	else if (cau_tombstones_have(job->moves, job->asked.session, &to))
 		cau_reply_moved(&job->reply, &to);
 	else
@@ -136,8 +137,8 @@ static void give_way(cau_moves *moves, const char *id)
 	if (!d || !is_left(d, cau_monotonic_s()))
 		return;
 	cau_leaving_take(&d->leaving, CAU_LEAVING_LATE, true);
-	cau_log(CAU_LOG_NOTICE, d->id, "move_ended", "move=%s reason=\"its courier has gone\"",
-	        d->becomes.move);
+	cau_log(CAU_LOG_NOTICE, d->id, "move_ended",
+	        "move=%s reason=\"the courier of the move is gone\"", d->becomes.move);
 	cau_departure_take_out(moves, d);
 }
 
@@ -151,7 +152,8 @@ static cau_status enlist(cau_moves *moves, departure *d, cau_error *error)
 			error, CAU_BAD_STATE, "params.session",
 			"the session is being moved already: cancel that with `cautery move --cancel`");
 	else if (moves->tombstone_count >= TOMBSTONES_MOST)
-		status = cau_fail(error, CAU_LIMIT, "", "%d sessions have moved away from this daemon",
+		status = cau_fail(error, CAU_LIMIT, "",
+		                  "%d sessions have moved away from this daemon, which is the limit",
 		                  TOMBSTONES_MOST);
 	else {
 		cau_leaving_take(&d->leaving, CAU_LEAVING_BEGIN, true);
@@ -267,7 +269,7 @@ static departure *begin_reading(cau_move_job *job, bool *held)
 	else if (d && d->all_sent)
 		why = "all pieces have been read";
 	else if (d && d->part_sent && !*held)
-		why = "the rest can be read when it is suspended (move.hold)";
+		why = "the rest can be read when the session is suspended: call move.hold";
 	if (d && !why) {
 		d->reading = true;
 		d->touched_s = cau_monotonic_s();

@@ -110,7 +110,7 @@ static cau_status refuse(const bound *over, cau_error *error)
 	double wait_s =
 		(over->allowance->taken + 1 - (double)over->most) * MINUTE_S / (double)over->most;
 	return cau_fail(error, CAU_LIMIT, "",
-	                "%s made %lld expensive requests within a minute, as many as it may (%s): "
+	                "%s: %lld expensive requests within a minute, which is the limit (%s): "
 	                "try again in %.1f s",
 	                over->whose, (long long)over->most, over->where, wait_s + 0.05);
 }
@@ -144,7 +144,7 @@ cau_status cau_quota_take(cau_quota *quota, cau_allowance *connection,
 	     "this address"},
 		by_role[role],
 		{&quota->all, config->quota_all, "setting quota_all", "all clients together"},
-		{NULL, 0, "the quota in its line", "this token"},
+		{NULL, 0, "quota= in the file of tokens", "this token"},
 	};
 	int count = sizeof bounds / sizeof bounds[0] - 1;
 	bounds[2].allowance = &quota->roles[role];

@@ -61,9 +61,11 @@ static cau_status read_move(const cau_wire_advance_command *from, int32_t index,
                             cau_error *error)
 {
 	if (!from->has_position_m)
-		return fail_at(error, index, "commands", "position_m", "missing: tool.move needs it");
+		return fail_at(error, index, "commands", "position_m",
+		               "missing: tool.move needs this member");
 	if (!from->has_rotation)
-		return fail_at(error, index, "commands", "rotation", "missing: tool.move needs it");
+		return fail_at(error, index, "commands", "rotation",
+		               "missing: tool.move needs this member");
 	memcpy(to->as.move.pose.position_m, from->position_m, sizeof from->position_m);
 	to->as.move.jaw = from->has_jaw ? from->jaw : 0;
 	if (!read_rotation(from->rotation, to->as.move.pose.rotation))
@@ -90,7 +92,8 @@ static cau_status read_command(const cau_wire_advance_command *from, int32_t ind
 	if (from->method != CAU_ADVANCE_TOOL_ENERGIZE)
 		return CAU_OK;
 	if (!from->has_energized)
-		return fail_at(error, index, "commands", "energized", "missing: tool.energize needs it");
+		return fail_at(error, index, "commands", "energized",
+		               "missing: tool.energize needs this member");
 	to->as.energized = from->energized;
 	to->as.ticks = from->has_ticks && from->energized ? (int32_t)from->ticks : 0;
 	return CAU_OK;
@@ -110,8 +113,9 @@ static cau_status check_tools(const cau_advance *advance, int32_t index, cau_err
 		tools += first && strcmp(older->tool, newest->tool) != 0;
 		if (newest->kind == CAU_COMMAND_TOOL_ENERGIZE && older->kind == newest->kind &&
 		    strcmp(newest->tool, older->tool) == 0)
-			return fail_at(error, index, "commands", "tool",
-			               "a command before it states this tool's energy already");
+			return fail_at(
+				error, index, "commands", "tool",
+				"an earlier command of this request sets the energy of this tool already");
 	}
 	if (tools > CAU_MAX_TOOLS)
 		return fail_at(error, index, "commands", "tool", "a session has at most 8 tools");
@@ -139,8 +143,9 @@ static cau_status read_region(const cau_wire_observed_region *from, int32_t inde
 	bool whole =
 		box ? from->has_least_m && from->has_most_m : from->has_center_m && from->has_radius_m;
 	if (box == ball || !whole)
-		return fail_at(error, index, "observe.regions", "",
-		               "neither a box (least_m, most_m) nor a ball (center_m, radius_m)");
+		return fail_at(
+			error, index, "observe.regions", "",
+			"a region needs least_m and most_m (a box), or center_m and radius_m (a ball)");
 	memcpy(to->name, from->name, sizeof to->name);
 	to->where = (cau_selection){.kind = box ? CAU_SELECT_BOX : CAU_SELECT_SPHERE,
 	                            .radius_m = from->radius_m};
@@ -159,7 +164,7 @@ static cau_status read_observed(const wanted *from, cau_advance *to, cau_error *
 	to->energy = observe->has_energy && observe->energy;
 	if (to->channels & CAU_CHANNEL_STATISTICS)
 		return cau_fail(error, CAU_BAD_VALUE, "params.observe.channels",
-		                "`statistics` is in frames alone: call session.join");
+		                "`statistics` is only in frames: call session.join");
 	for (int32_t i = 0; i < to->vertex_count; i++)
 		to->vertices[i] = (int32_t)from->vertices[i];
 	for (int32_t i = 0; i < to->region_count && !status; i++)

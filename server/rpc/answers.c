@@ -28,7 +28,7 @@ const char *cau_answers_method_name(cau_method method)
 void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out)
 {
 	static const cau_metric_family family = {"calls", CAU_METRIC_COUNTER, "",
-	                                         "Requests and notifications on WebSocket by method"};
+	                                         "Requests and notifications on WebSocket, by method"};
 	cau_metrics_begin(out, format, &family);
 	for (int m = 0; m < CAU_METHOD_COUNT; m++)
 		if (cau_method_describe((cau_method)m)->form != CAU_FORM_PUSH)

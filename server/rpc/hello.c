@@ -102,7 +102,7 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	if (peer->greeted) {
-		cau_fail(&error, CAU_BAD_STATE, "", "hello must come only once");
+		cau_fail(&error, CAU_BAD_STATE, "", "hello must be sent only once on a connection");
 		cau_call_fail(call, &error, 0);
 		return;
 	}

@@ -13,29 +13,32 @@
 #define SESSION_METRICS(X)                                                                         \
 	X("session_steps", COUNTER, "", "Steps computed", c->steps)                                    \
 	X("session_step_seconds", COUNTER, "seconds", "Wall time spent in steps", c->step_seconds)     \
-	X("session_energy_gain_joules", COUNTER, "joules", "Energy that steps added without a source", \
-	  c->energy_gain_j)                                                                            \
-	X("session_realtime_factor", GAUGE, "", "Simulated over wall time", c->realtime_factor)        \
-	X("session_speed", GAUGE, "", "Wanted ratio of simulated to wall time", s->speed)              \
-	X("session_running", GAUGE, "", "1 while its clock runs", s->state == CAU_SESSION_RUNNING)     \
+	X("session_energy_gain_joules", COUNTER, "joules",                                             \
+	  "Energy that steps gained without a source", c->energy_gain_j)                               \
+	X("session_realtime_factor", GAUGE, "", "Simulated time over wall time", c->realtime_factor)   \
+	X("session_speed", GAUGE, "", "Wanted simulated time over wall time", s->speed)                \
+	X("session_running", GAUGE, "", "1 while the session runs", s->state == CAU_SESSION_RUNNING)   \
 	X("session_frames", COUNTER, "", "Delta frames encoded", c->frames)                            \
 	X("session_frame_bytes", COUNTER, "bytes", "Bytes of delta frames", c->frame_bytes)            \
 	X("session_key_frames", COUNTER, "", "Key frames encoded", c->key_frames)                      \
 	X("session_commands", COUNTER, "", "Commands applied", c->commands)                            \
 	X("session_motions", COUNTER, "", "Tool motions applied", c->motions)                          \
 	X("session_refused", COUNTER, "", "Motions refused, and DDS samples refused", c->refused)      \
-	X("session_watchdog_cuts", COUNTER, "", "Times a driver's silence cut energy",                 \
-	  c->watchdog_cuts)                                                                            \
-	X("session_subscribers", GAUGE, "", "Streams joined", s->subscriber_count)                     \
+	X("session_watchdog_cuts", COUNTER, "",                                                        \
+	  "Number of times that energy went off because a driver was silent", c->watchdog_cuts)        \
+	X("session_subscribers", GAUGE, "", "Streams of the session", s->subscriber_count)             \
 	X("session_subscribers_half_rate", GAUGE, "", "Streams served at half rate", c->half_rate)     \
-	X("session_resting", GAUGE, "", "1 while its tissue is at rest", c->resting)                   \
+	X("session_resting", GAUGE, "", "1 while the tissue of the session is at rest", c->resting)    \
 	X("session_contacts_left_out", GAUGE, "",                                                      \
-	  "Vertices near tools beyond the capacity of the last step's contact", c->contacts_left_out)  \
+	  "Vertices near tools that exceeded the contact capacity of the last step",                   \
+	  c->contacts_left_out)                                                                        \
 	X("session_touching_cut_short", GAUGE, "",                                                     \
-	  "Times in the last step that tissue contact exceeded its capacity or diverged",              \
+	  "Number of times in the last step that tissue contact exceeded its capacity or diverged",    \
 	  c->touching_cut_short)                                                                       \
-	X("session_paused", GAUGE, "", "1 while it is paused", s->state == CAU_SESSION_PAUSED)         \
-	X("session_faulted", GAUGE, "", "1 after a fault", s->state == CAU_SESSION_FAULTED)
+	X("session_paused", GAUGE, "", "1 while the session is paused",                                \
+	  s->state == CAU_SESSION_PAUSED)                                                              \
+	X("session_faulted", GAUGE, "", "1 while the session is faulted",                              \
+	  s->state == CAU_SESSION_FAULTED)
 
 static const cau_metric_family session_families[] = {
 #define X(name, type, unit, help, value) {name, CAU_METRIC_##type, unit, help},
@@ -99,7 +102,8 @@ static void write_rows(FILE *out, cau_metrics_format format, const session_rows 
 
 unsigned cau_service_metrics(cau_service *service, cau_metrics_format format, FILE *out)
 {
-	static const cau_metric_family sessions = {"sessions", CAU_METRIC_GAUGE, "", "Sessions hosted"};
+	static const cau_metric_family sessions = {"sessions", CAU_METRIC_GAUGE, "",
+	                                           "Sessions of the daemon"};
 	session_rows taken = {0};
 	cau_hub_each(service->hub, take_session, &taken);
 	cau_metrics_begin(out, format, &sessions);

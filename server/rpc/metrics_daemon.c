@@ -44,7 +44,7 @@ static void write_network(cau_service *service, const exposition *to)
 {
 	cau_network_counts n = cau_network_count(service->network);
 	gauge(to, "connections", "", "WebSocket connections open", (double)n.connections);
-	gauge(to, "connections_served", "", "WebSocket connections that have said hello",
+	gauge(to, "connections_served", "", "WebSocket connections that have sent hello",
 	      (double)n.served);
 	counter(to, "connections_accepted", "", "WebSocket connections accepted", (double)n.accepted);
 	counter(to, "handshakes_refused", "", "Upgrade requests refused", (double)n.refused_handshakes);
@@ -53,7 +53,7 @@ static void write_network(cau_service *service, const exposition *to)
 	counter(to, "connections_closed_error", "", "Connections closed because they broke a rule",
 	        (double)n.closed_errors);
 	counter(to, "connections_closed_without_hello", "",
-	        "Connections without hello that were closed for newer ones",
+	        "Connections without hello that were closed to accept newer connections",
 	        (double)n.strangers_closed);
 	counter(to, "messages_received", "", "Messages from clients", (double)n.messages_in);
 	counter(to, "received_bytes", "bytes", "Bytes of messages from clients", (double)n.bytes_in);
@@ -70,7 +70,7 @@ static void write_commits(const exposition *to, const cau_store_metrics *m)
 {
 	enum { OCTAVES = 20, QUARTERS = 4 }; // OCTAVES: from 10 us to 10 s
 	static const cau_metric_family family = {"store_commit_seconds", CAU_METRIC_HISTOGRAM,
-	                                         "seconds", "How long a commit takes, its sync too"};
+	                                         "seconds", "Time of a commit, with its sync"};
 	double bounds[OCTAVES + 1];
 	uint64_t counts[OCTAVES + 2] = {0};
 	for (int i = 0; i <= OCTAVES; i++)
@@ -91,12 +91,14 @@ static void write_store(cau_service *service, const exposition *to)
 	cau_store_get_metrics(service->store, &m);
 	cau_store_get_health(service->store, &health);
 	gauge(to, "store_ready", "", "1 if the store takes requests", health.state == CAU_STORE_READY);
-	counter(to, "store_commits", "", "Groups committed", (double)m.commits);
+	counter(to, "store_commits", "", "Groups of batches committed", (double)m.commits);
 	counter(to, "store_records", "", "Rows committed", (double)m.records);
-	counter(to, "store_failed_batches", "", "Batches that failed", (double)m.failed_batches);
-	counter(to, "store_full", "", "Times the disk was found full", (double)m.full_count);
+	counter(to, "store_failed_batches", "", "Batches that could not be committed",
+	        (double)m.failed_batches);
+	counter(to, "store_full", "", "Number of times that the disk was full", (double)m.full_count);
 	gauge(to, "store_queue_batches", "", "Batches waiting", m.queue_batches);
-	gauge(to, "store_commit_p99_seconds", "seconds", "99th percentile of commits", m.commit_p99_s);
+	gauge(to, "store_commit_p99_seconds", "seconds", "99th percentile of the time of commits",
+	      m.commit_p99_s);
 	gauge(to, "store_database_bytes", "bytes", "Size of the store", (double)m.database_bytes);
 	gauge(to, "store_log_bytes", "bytes", "Size of the store's write-ahead log",
 	      (double)m.wal_bytes);
@@ -120,7 +122,7 @@ static void write_disk(const cau_service *service, const exposition *to)
 	struct statvfs disk;
 	if (statvfs(service->config->store, &disk))
 		return;
-	gauge(to, "disk_free_bytes", "bytes", "Free on the store's disk, for this user",
+	gauge(to, "disk_free_bytes", "bytes", "Free space on the disk of the store, for this user",
 	      (double)disk.f_bavail * (double)disk.f_frsize);
 	gauge(to, "disk_size_bytes", "bytes", "Size of the store's disk",
 	      (double)disk.f_blocks * (double)disk.f_frsize);
@@ -187,11 +189,11 @@ static void write_process(const exposition *to)
 	double user_s = (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec;
 	double system_s = (double)usage.ru_stime.tv_sec + 1e-6 * (double)usage.ru_stime.tv_usec;
 	started_s = started_s > 0 ? started_s : start_time_s();
-	gauge(to, "resident_bytes", "bytes", "Resident memory",
+	gauge(to, "resident_bytes", "bytes", "Resident memory of the process",
 	      (double)resident_pages() * (double)sysconf(_SC_PAGESIZE));
 	gauge(to, "heap_bytes", "bytes", "Memory in live allocations", heap_bytes());
 	counter(to, "cpu_seconds", "seconds", "Processor time used", user_s + system_s);
-	gauge(to, "start_time_seconds", "seconds", "When the process began, Unix time", started_s);
+	gauge(to, "start_time_seconds", "seconds", "Start time of the process, Unix time", started_s);
 	gauge(to, "open_files", "", "File descriptors in use", open_files());
 	if (!getrlimit(RLIMIT_NOFILE, &files))
 		gauge(to, "open_files_most", "", "File descriptors that the process may use",
@@ -226,16 +228,17 @@ static void write_times(const cau_hosted_times *times, const exposition *to)
 		cau_metric_family family;
 		const cau_histogram *histogram;
 	} rows[] = {
-		{{"step_seconds", CAU_METRIC_HISTOGRAM, "seconds", "How long a step takes"}, &times->step},
+		{{"step_seconds", CAU_METRIC_HISTOGRAM, "seconds", "Time of a step"}, &times->step},
 		{{"lateness_seconds", CAU_METRIC_HISTOGRAM, "seconds",
-	      "How late a tick of a running session begins"},
+	      "Delay with which a tick of a running session begins"},
 	     &times->lateness},
 		{{"command_to_frame_seconds", CAU_METRIC_HISTOGRAM, "seconds",
-	      "From a command's arrival to the first frame that shows it, where a client watches"},
+	      "Time from the arrival of a command to the first frame that shows the command, for "
+	      "watched sessions"},
 	     &times->command_to_frame},
 	};
 	const cau_metric_family stage = {"step_stage_seconds", CAU_METRIC_HISTOGRAM, "seconds",
-	                                 "A step's share of each of its stages"};
+	                                 "Share of each stage in the time of a step"};
 	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
 		cau_metrics_begin(to->out, to->format, &rows[i].family);
 		write_histogram(to, &rows[i].family, NULL, rows[i].histogram);
@@ -248,8 +251,9 @@ static void write_times(const cau_hosted_times *times, const exposition *to)
 
 static void write_refused_tokens(cau_service *service, const exposition *to)
 {
-	static const cau_metric_family family = {"authentication_failures", CAU_METRIC_COUNTER, "",
-	                                         "Tokens that were missing, not known, or expired"};
+	static const cau_metric_family family = {
+		"authentication_failures", CAU_METRIC_COUNTER, "",
+		"Requests whose token was missing, unknown or expired"};
 	cau_network_counts counts = cau_network_count(service->network);
 	cau_metrics_begin(to->out, to->format, &family);
 	cau_metrics_sample(to->out, to->format, &family, "door", "hello",
@@ -262,7 +266,7 @@ void cau_service_daemon_metrics(cau_service *service, cau_metrics_format format,
 	exposition to = {out, format};
 	write_build(service, &to);
 	gauge(&to, "longest_slice_seconds", "seconds",
-	      "Processor time of the longest piece of work on a worker thread, steps not counted",
+	      "Processor time of the longest work on a worker thread, without steps",
 	      cau_hub_longest_slice_s(service->hub));
 	write_times(cau_hub_times(service->hub), &to);
 	write_network(service, &to);

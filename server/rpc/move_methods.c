@@ -118,7 +118,7 @@ void cau_call_move_forget(cau_call *call)
 	asked.source_lost = params.has_source_lost && params.source_lost;
 	if (!status && !params.has_release && !asked.source_lost)
 		status = cau_fail(&error, CAU_BAD_VALUE, "params.release",
-		                  "missing: move.cancel of the daemon that it came from gives it");
+		                  "missing: move.cancel of the source daemon returns the release");
 	if (status)
 		cau_call_fail(call, &error, 0);
 	else
@@ -137,7 +137,7 @@ void cau_call_move_receive(cau_call *call)
 	cau_upload *upload = status ? NULL : cau_uploads_find(&peer->uploads, params.upload);
 	if (!status && (!upload || !upload->complete))
 		status = cau_fail(&error, CAU_NOT_FOUND, "params.upload",
-		                  "no upload of this connection is named `%.48s`", params.upload);
+		                  "this connection has no complete upload named `%.48s`", params.upload);
 	if (status) {
 		cau_call_fail(call, &error, 0);
 		return;

@@ -136,8 +136,8 @@ bool cau_call_may_use(const cau_call *call, const char *id)
 	cau_error error = {0};
 	if (cau_auth_session_allowed(&call->peer->bounds, id))
 		return true;
-	cau_fail(&error, CAU_BAD_STATE, "params.session", "the token is not for the session `%.48s`",
-	         id);
+	cau_fail(&error, CAU_BAD_STATE, "params.session",
+	         "the token does not allow the session `%.48s`", id);
 	cau_call_fail(call, &error, CAU_RPC_FORBIDDEN);
 	return false;
 }
@@ -151,7 +151,7 @@ bool cau_call_may_make(const cau_call *call, const char *name)
 	    (*name && cau_auth_session_allowed(&call->peer->bounds, id)))
 		return true;
 	cau_fail(&error, CAU_BAD_STATE, "params.name",
-	         "the token is for the sessions %s alone: give the new one such a name",
+	         "the token allows only the sessions %s: give the new session such a name",
 	         call->peer->bounds.sessions);
 	cau_call_fail(call, &error, CAU_RPC_FORBIDDEN);
 	return false;

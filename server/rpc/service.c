@@ -54,10 +54,10 @@ static bool afford(const cau_call *call)
 	if (call->method->cost == CAU_COST_CHEAP || begins_own_again(call))
 		return true;
 	if (call->method->cost == CAU_COST_FILE && !cau_peer_has_room_for_file(peer)) {
-		cau_fail(
-			&error, CAU_LIMIT, "",
-			"%d files of this connection are under way, the most: try again when one has arrived",
-			FILES_OF_PEER);
+		cau_fail(&error, CAU_LIMIT, "",
+		         "%d files are being sent on this connection, which is the limit: try again when "
+		         "one has arrived",
+		         FILES_OF_PEER);
 		cau_call_fail(call, &error, 0);
 		return false;
 	}
@@ -83,7 +83,7 @@ static bool admit(cau_call *call)
 		refuse(call, CAU_BAD_STATE, CAU_RPC_FORBIDDEN,
 		       "the connection's role does not allow this method: use a token with a higher role");
 	else if (!handlers[call->message->method])
-		refuse(call, CAU_BAD_VALUE, CAU_RPC_METHOD_NOT_FOUND, "only the server sends this");
+		refuse(call, CAU_BAD_VALUE, CAU_RPC_METHOD_NOT_FOUND, "only the server sends this method");
 	else if (cau_rpc_params_known(call->message, &error) ||
 	         (!hello && cau_rpc_envelope_read(call->message, &call->envelope, &error)))
 		cau_call_fail(call, &error, 0);

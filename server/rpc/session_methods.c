@@ -76,7 +76,7 @@ static cau_status choose_scene(cau_peer *peer, const cau_wire_session_create *pa
 	cau_scenes *scenes = cau_hub_scenes(peer->service->hub);
 	if (params->has_scene == params->has_definition)
 		return cau_fail(error, CAU_BAD_VALUE, "params.scene",
-		                "either scene or definition must be given");
+		                "give either scene or definition, and not both");
 	if (params->has_scene) {
 		if (cau_scenes_copy(scenes, params->scene, scene))
 			return CAU_OK;
@@ -85,9 +85,9 @@ static cau_status choose_scene(cau_peer *peer, const cau_wire_session_create *pa
 	}
 	for (int32_t i = 0; i < scene->mesh_count; i++)
 		if (scene->meshes[i].source == CAU_MESH_FILE)
-			return cau_fail(
-				error, CAU_UNSUPPORTED, "params.definition.meshes",
-				"only the daemon's own scenes may name its mesh files: upload the mesh");
+			return cau_fail(error, CAU_UNSUPPORTED, "params.definition.meshes",
+			                "only scenes of the daemon may name mesh files on its disk: upload the "
+			                "mesh instead");
 	return cau_peer_fill_meshes(peer, scene, error);
 }
 
@@ -289,7 +289,7 @@ void cau_call_session_cancel(cau_call *call)
 		result.count = cau_hosted_cancel(hosted, anybodys ? 0 : asker->client, number);
 		if (number && !result.count)
 			cau_fail(&error, CAU_NOT_FOUND, "params.number",
-			         "no waiting command of this client has this number");
+			         "this client has no waiting command with this number");
 	}
 	if (error.status)
 		cau_call_fail(call, &error, 0);

@@ -68,7 +68,8 @@ static cau_status end(cau_peer *peer, const cau_wire_upload_end *params, cau_upl
 {
 	cau_upload *upload = cau_uploads_find_transfer(&peer->uploads, (uint32_t)params->transfer);
 	if (!upload)
-		return cau_fail(error, CAU_NOT_FOUND, "params.transfer", "no such upload");
+		return cau_fail(error, CAU_NOT_FOUND, "params.transfer",
+		                "this connection has no complete upload of this name");
 	cau_status status = cau_upload_check(upload, params->sha256, error);
 	upload->complete = !status;
 	*ended = upload;
@@ -116,7 +117,7 @@ static cau_status check_wish(const cau_wire_mesh_read *params, const cau_uploads
 	if (readings_of(uploads, upload) >= READINGS_OF_PEER)
 		return cau_fail(
 			error, CAU_LIMIT, "",
-			"%d readings of this connection are under way: wait for an answer, or discard "
+			"%d meshes of this connection are being read: wait for an answer, or discard "
 			"an upload",
 			READINGS_OF_PEER);
 	return CAU_OK;

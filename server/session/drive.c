@@ -138,7 +138,8 @@ void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 	for (int32_t i = 0; i < logic->drive_count; i++) {
 		cau_drive *drive = &logic->drives[i];
 		if (cau_drive_is_silent(logic, drive, now_s))
-			cut_lost(drive, "its driver is silent", effects); // the watchdog's cut-off for silence
+			cut_lost(drive, "the driver sent no heartbeat in time",
+			         effects); // the watchdog's cut-off for silence
 	}
 }
 
@@ -151,7 +152,7 @@ void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects)
 		CAU_RULE(drive->enabled || !drive->limit_tick, "tool %s is off and has a limit",
 		         drive->tool);
 		if (drive->limit_tick && drive->limit_tick <= logic->tick)
-			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "its limit of ticks is over", effects);
+			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "the limit of ticks is reached", effects);
 	}
 }
 
@@ -172,7 +173,7 @@ void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects)
 		cau_drive *drive = &logic->drives[i];
 		if (!client || drive->driver.client != client)
 			continue;
-		cut_lost(drive, "its driver is gone", effects);
+		cut_lost(drive, "the driver is gone", effects);
 		drive->driver = (cau_asker){0};
 		cau_effect_tell(effects, drive);
 	}
@@ -257,8 +258,8 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 	char reason[160];
 	if (!drive->driver.client)
 		return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER,
-		              "it has no driver: call tool.take_over first");
-	snprintf(reason, sizeof reason, "%s drives it", drive->driver.name);
+		              "the tool has no driver: call tool.take_over first");
+	snprintf(reason, sizeof reason, "%s drives the tool", drive->driver.name);
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
 }
 
@@ -282,14 +283,15 @@ static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const 
 	bool advances = order->asked.ask == CAU_ASK_ADVANCE;
 	bool off_follows = drive->by_order && !order->cut_moment && !advances;
 	if (!counts(drive, order) && !off_follows) {
-		snprintf(reason, sizeof reason, "its energy was cut after this request: %s",
-		         *drive->cut_cause ? drive->cut_cause : "its driver had left");
+		snprintf(reason, sizeof reason, "energy of the tool went off after this request: %s",
+		         *drive->cut_cause ? drive->cut_cause : "the driver had left");
 		return refuse(action, CAU_BAD_STATE, 0, reason);
 	}
 	// In lock-step only ticks count as time, and an advance starts their count.
 	bool by_ticks = advances || is_in_lockstep(logic, drive);
 	if (!by_ticks && alive_s + drive->driver.deadline_s <= logic->now_s)
-		return refuse(action, CAU_BAD_STATE, 0, "its driver fell silent after this request");
+		return refuse(action, CAU_BAD_STATE, 0,
+		              "the driver sent no heartbeat in time after this request");
 	return true;
 }
 
@@ -299,7 +301,7 @@ static bool allows_take_over(const cau_drive *drive, const cau_asked *asked, cau
 	uint32_t driver = drive->driver.client;
 	if (!driver || driver == asked->asker.client || asked->asker.role == CAU_ROLE_ADMIN)
 		return true;
-	snprintf(reason, sizeof reason, "%s drives it; only an admin takes it over",
+	snprintf(reason, sizeof reason, "%s drives the tool; only an admin can take it over",
 	         drive->driver.name);
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, reason);
 }
@@ -346,7 +348,7 @@ bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *ac
 		return allows_take_over(drive, asked, action);
 	case CAU_ASK_HAND_OVER:
 		return drives || refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER,
-		                        "only its driver can hand it over");
+		                        "only the driver of a tool can hand it over");
 	default: // energy off and requests to the driver: any client with the role operate
 		return true;
 	}

@@ -222,7 +222,7 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 	bool takes = asked->ask == CAU_ASK_TAKE_OVER;
 	cau_asker to = takes || !order->to_gone ? takes ? asked->asker : asked->to : (cau_asker){0};
 	if (takes && order->gone)
-		return refuse(action, CAU_BAD_STATE, 0, "", "the client that asked for it is gone");
+		return refuse(action, CAU_BAD_STATE, 0, "", "the client that sent this request is gone");
 	action->changed = drive->driver.client != to.client;
 	const cau_drive before = *drive;
 	// The cut-off comes first: the tool's `lit` is set, so cau_drive_next_cut finds one.
@@ -244,7 +244,7 @@ static bool remove_tool(cau_logic *logic, const cau_waiting *order, cau_action *
 	         order->asked.tool);
 	if (!drive->lit)
 		return true;
-	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "it was removed", effects);
+	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "the tool was removed", effects);
 	return !cau_drive_next_cut(logic, true, action);
 }
 

@@ -89,11 +89,11 @@ typedef struct cau_asked {
 // Why a waiting order will not be done.
 #define CAU_VOID_CAUSE_TABLE(X)                                                                    \
 	X(NOT, "")                                                                                     \
-	X(LOST, "its asker was lost after this was asked")                                             \
-	X(CHANGED_HANDS, "its tool changed hands after this was asked")                                \
-	X(REMOVED, "its tool was removed after this was asked")                                        \
-	X(CANCELLED, "it was cancelled")                                                               \
-	X(DARKENED, "energy that it turns on was turned off after this was asked")
+	X(LOST, "the client that sent this request disconnected before it took effect")                \
+	X(CHANGED_HANDS, "the tool has another driver since the request")                              \
+	X(REMOVED, "the tool was removed since the request")                                           \
+	X(CANCELLED, "the request was cancelled")                                                      \
+	X(DARKENED, "energy was turned off after this request to turn it on")
 typedef enum cau_void_cause {
 #define X(code, words) CAU_VOIDED_##code,
 	CAU_VOID_CAUSE_TABLE(X)

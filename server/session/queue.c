@@ -326,8 +326,8 @@ static cau_status no_room_for_later(const cau_logic *logic, uint32_t client, cau
 	int32_t most = cau_logic_later_most(logic->capacity);
 	if (count_later(logic, client) >= most)
 		return cau_fail(error, CAU_LIMIT, "params.tick",
-		                "%d of this client's commands wait for later ticks already "
-		                "(session.waiting lists them, session.cancel takes them back)",
+		                "%d commands of this client wait for later ticks, which is the limit "
+		                "(session.waiting lists them, session.cancel cancels them)",
 		                most);
 	if (count_later(logic, 0) >= logic->capacity || logic->count >= 2 * logic->capacity)
 		return cau_fail(

@@ -83,7 +83,7 @@ bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *act
 	if (logic->steps_left && !logic->lockstep)
 		return refuse(action, CAU_BAD_STATE, "the session is being stepped");
 	if (order->overtaken)
-		return refuse(action, CAU_BAD_STATE, "a later pause replaced this");
+		return refuse(action, CAU_BAD_STATE, "a later pause request replaced this request");
 	if (!leave_lockstep(logic, order, action, effects))
 		return false;
 	action->changed = logic->state == CAU_SESSION_PAUSED;
@@ -100,9 +100,9 @@ bool cau_time_step(cau_logic *logic, const cau_waiting *order, cau_action *actio
 	if (logic->state == CAU_SESSION_FAULTED)
 		return refuse(action, CAU_FAULTED, logic->fault);
 	if (logic->state != CAU_SESSION_PAUSED || (logic->stepping && !logic->lockstep))
-		return refuse(
-			action, CAU_BAD_STATE,
-			"session.step needs a paused session without another step under way: pause it first");
+		return refuse(action, CAU_BAD_STATE,
+		              "session.step needs a paused session in which no other step runs: pause the "
+		              "session first");
 	if (!leave_lockstep(logic, order, action, effects))
 		return false;
 	logic->steps_left = order->asked.ticks;

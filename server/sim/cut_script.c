@@ -152,7 +152,7 @@ cau_status sim_cut_script(const cau_scene_def *scene, char **text, size_t *bytes
 	*text = NULL;
 	*bytes = 0;
 	if (!scene->cut.present)
-		return cau_fail(error, CAU_BAD_VALUE, "cut", "the scene describes no cut");
+		return cau_fail(error, CAU_BAD_VALUE, "cut", "the scene has no member cut");
 	const cau_tool_def *tool = find_tool(scene);
 	if (!tool)
 		return cau_fail(error, CAU_BAD_VALUE, "cut.tool", "the scene has no tool \"%s\"",

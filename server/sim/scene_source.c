@@ -24,11 +24,13 @@ static cau_status load_name(const char *name, const char *folder, cau_scene_def 
 {
 	char path[PATH_BYTES], installed[PATH_BYTES];
 	if (strlen(name) >= CAU_NAME_BYTES || !cau_name_is_valid(name))
-		return cau_fail(error, CAU_BAD_VALUE, NULL, "\"%.100s\" is no scene name (%s) and no file",
-		                name, CAU_NAME_RULE);
+		return cau_fail(error, CAU_BAD_VALUE, NULL,
+		                "\"%.100s\" is neither the name of a scene (%s) nor a file", name,
+		                CAU_NAME_RULE);
 	if (!folder && !cau_place_find("scenes", installed, sizeof installed))
-		return cau_fail(error, CAU_NOT_FOUND, NULL,
-		                "no folder ../share/cautery/scenes beside this program: say --scenes DIR");
+		return cau_fail(
+			error, CAU_NOT_FOUND, NULL,
+			"the folder ../share/cautery/scenes beside this program is missing: give --scenes DIR");
 	if (!folder)
 		folder = installed;
 	int bytes = snprintf(path, sizeof path, "%s/%s.json", folder, name);

@@ -34,7 +34,7 @@ static cau_status copy_pages(sqlite3 *from, sqlite3 *to, cau_error *error)
 		code = sqlite3_backup_step(backup, -1);
 	}
 	sqlite3_backup_finish(backup);
-	return code == SQLITE_DONE ? CAU_OK : cau_store_fault(to, code, "copying it", error);
+	return code == SQLITE_DONE ? CAU_OK : cau_store_fault(to, code, "copying the store", error);
 }
 
 // Makes an empty file that only this user can read.
@@ -88,8 +88,9 @@ static cau_status put_in_place(const char *made, const char *file, cau_error *er
 {
 	if (link(made, file) == 0)
 		return CAU_OK;
-	return errno == EEXIST ? cau_fail(error, CAU_ALREADY_EXISTS, NULL, "something is there already")
-	                       : fail_file(error, "putting the copy in its place");
+	return errno == EEXIST
+	           ? cau_fail(error, CAU_ALREADY_EXISTS, NULL, "a file of this name exists already")
+	           : fail_file(error, "renaming the copy");
 }
 
 cau_status cau_store_backup(const char *path, const char *file, cau_error *error)
@@ -99,9 +100,9 @@ cau_status cau_store_backup(const char *path, const char *file, cau_error *error
 	if ((size_t)snprintf(made, sizeof made, "%s.%d.new", file, (int)getpid()) >= sizeof made)
 		return cau_fail(error, CAU_BAD_VALUE, NULL, "the name is too long");
 	if (access(path, F_OK) != 0)
-		return cau_fail(error, CAU_NOT_FOUND, NULL, "no store %.200s", path);
+		return cau_fail(error, CAU_NOT_FOUND, NULL, "there is no store %.200s", path);
 	if (access(file, F_OK) == 0)
-		return cau_fail(error, CAU_ALREADY_EXISTS, NULL, "something is there already");
+		return cau_fail(error, CAU_ALREADY_EXISTS, NULL, "a file of this name exists already");
 	cau_status status = copy(path, made, error);
 	if (!status)
 		status = cau_store_probe(made, NULL, &found, error);

@@ -16,7 +16,7 @@ static cau_status open_connection(const char *path, int flags, sqlite3 **databas
 {
 	int code = sqlite3_open_v2(path, database, flags, NULL);
 	if (code) {
-		cau_status status = cau_store_fault(*database, code, "opening it", error);
+		cau_status status = cau_store_fault(*database, code, "opening the store", error);
 		sqlite3_close(*database);
 		*database = NULL;
 		return status;
@@ -56,7 +56,8 @@ static cau_status sync_folder(const char *path, cau_error *error)
 	if (descriptor >= 0)
 		close(descriptor);
 	if (code)
-		return cau_fail(error, CAU_IO, NULL, "cannot sync its folder: %s", strerrordesc_np(reason));
+		return cau_fail(error, CAU_IO, NULL, "cannot sync the store's folder: %s",
+		                strerrordesc_np(reason));
 	return CAU_OK;
 }
 
@@ -81,11 +82,12 @@ cau_status cau_store_file_create(const char *path, cau_error *error)
 	snprintf(draft, sizeof draft, "%s-new-%ld", path, (long)getpid());
 	int descriptor = open(draft, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
 	if (descriptor < 0)
-		return cau_fail(error, CAU_IO, NULL, "cannot make it: %s", strerrordesc_np(errno));
+		return cau_fail(error, CAU_IO, NULL, "cannot create the store: %s", strerrordesc_np(errno));
 	close(descriptor);
 	cau_status status = build(draft, error);
 	if (!status && link(draft, path))
-		status = cau_fail(error, CAU_IO, NULL, "cannot make it: %s", strerrordesc_np(errno));
+		status =
+			cau_fail(error, CAU_IO, NULL, "cannot create the store: %s", strerrordesc_np(errno));
 	unlink(draft);
 	return status ? status : sync_folder(path, error);
 }

@@ -159,7 +159,7 @@ static cau_status put_row(struct importing *to, const cau_row *row, cau_error *e
 	sqlite3_bind_int64(*statement, 9, to->key);
 	status = run(to->database, *statement, error);
 	if (status == CAU_ALREADY_EXISTS)
-		return cau_fail(error, CAU_BAD_VALUE, "rows", "a record of the session comes twice");
+		return cau_fail(error, CAU_BAD_VALUE, "rows", "a record of the session is there twice");
 	return status;
 }
 
@@ -181,7 +181,7 @@ static cau_status put_rows(sqlite3 *database, const struct record *record, cau_e
 		sqlite3_finalize(to.statement[i]);
 	// the error is the piece's; the store is sound
 	if (status == CAU_CORRUPT || status == CAU_UNSUPPORTED)
-		status = cau_fail(error, CAU_BAD_VALUE, "rows", "a piece that was not checked");
+		status = cau_fail(error, CAU_BAD_VALUE, "rows", "the piece of the session is damaged");
 	if (!all_read)
 		return status;
 	if (to.first && !to.made)

@@ -25,7 +25,7 @@ static cau_status held_by_another(int descriptor, const char *path, cau_error *e
 	ssize_t count = pread(descriptor, holder, sizeof holder - 1, 0);
 	holder[count > 0 ? count : 0] = 0;
 	holder[strspn(holder, "0123456789")] = 0;
-	return cau_fail(error, CAU_BAD_STATE, NULL, "in use by process %s (lock file %s)",
+	return cau_fail(error, CAU_BAD_STATE, NULL, "the store is in use by process %s (lock file %s)",
 	                holder[0] ? holder : "unknown", path);
 }
 
@@ -94,9 +94,10 @@ static cau_status lock_file(int descriptor, cau_error *error)
 	if (fcntl(descriptor, F_OFD_SETLK, &whole) == 0)
 		return CAU_OK;
 	if (errno == EAGAIN || errno == EACCES)
-		return cau_fail(error, CAU_BAD_STATE, NULL,
-		                "in use by another process under another name (a hard link, or a mount)");
-	return cau_fail(error, CAU_IO, NULL, "cannot lock it: %s", strerrordesc_np(errno));
+		return cau_fail(
+			error, CAU_BAD_STATE, NULL,
+			"the store is in use by another process under another name (a hard link, or a mount)");
+	return cau_fail(error, CAU_IO, NULL, "cannot lock the store: %s", strerrordesc_np(errno));
 }
 
 // Locks the database at `path` if it exists. The caller holds the mutex.
@@ -106,7 +107,8 @@ static cau_status hold(struct cau_store_lock *lock, const char *path, cau_error 
 	if (stat(path, &file) || !S_ISREG(file.st_mode))
 		return CAU_OK; // no database yet, or a file that the probe refuses
 	if (is_held_here(&file))
-		return cau_fail(error, CAU_BAD_STATE, NULL, "this process has it open under another name");
+		return cau_fail(error, CAU_BAD_STATE, NULL,
+		                "this process has the store open under another name");
 	int descriptor = open(path, O_RDWR | O_CLOEXEC);
 	if (descriptor < 0)
 		return CAU_OK; // not writable by this process: the later open for writing reports why

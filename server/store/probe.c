@@ -39,11 +39,12 @@ static cau_status check_version(int64_t version, cau_error *error)
 {
 	if (version > CAU_STORE_SCHEMA_VERSION)
 		return cau_fail(error, CAU_UNSUPPORTED, NULL,
-		                "written by a newer Cautery: schema %lld, this build knows %d: run that "
-		                "one, or restore a copy from before the upgrade",
+		                "written by a newer Cautery: schema %lld, this build reads %d: run the "
+		                "newer Cautery, or restore a copy from before the upgrade",
 		                (long long)version, CAU_STORE_SCHEMA_VERSION);
 	if (version < 0)
-		return cau_fail(error, CAU_CORRUPT, NULL, "impossible schema %lld", (long long)version);
+		return cau_fail(error, CAU_CORRUPT, NULL, "the schema number %lld is not possible",
+		                (long long)version);
 	return CAU_OK;
 }
 
@@ -52,15 +53,15 @@ static cau_status check_header(const char *path, cau_error *error)
 	unsigned char header[HEADER_BYTES];
 	struct stat info;
 	if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) // opening a FIFO would wait for a writer
-		return cau_fail(error, CAU_IO, NULL, "it is no regular file");
+		return cau_fail(error, CAU_IO, NULL, "the store is not a regular file");
 	int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 	if (descriptor < 0)
-		return cau_fail(error, CAU_IO, NULL, "cannot read it: %s", strerrordesc_np(errno));
+		return cau_fail(error, CAU_IO, NULL, "cannot read the store: %s", strerrordesc_np(errno));
 	ssize_t count = pread(descriptor, header, sizeof header, 0);
 	int reason = errno;
 	close(descriptor);
 	if (count < 0)
-		return cau_fail(error, CAU_IO, NULL, "cannot read it: %s", strerrordesc_np(reason));
+		return cau_fail(error, CAU_IO, NULL, "cannot read the store: %s", strerrordesc_np(reason));
 	if (count == 0)
 		return cau_fail(error, CAU_CORRUPT, NULL,
 		                "the file is empty (remove it to start a new store)");
@@ -68,7 +69,7 @@ static cau_status check_header(const char *path, cau_error *error)
 		return cau_fail(error, CAU_CORRUPT, NULL, "not a database");
 	if (word_at(header, APPLICATION_ID_AT) != CAU_STORE_APPLICATION_ID)
 		return cau_fail(error, CAU_UNSUPPORTED, NULL,
-		                "it is another program's database (application id %#x)",
+		                "the file is a database of another program (application id %#x)",
 		                word_at(header, APPLICATION_ID_AT));
 	return check_version((int32_t)word_at(header, USER_VERSION_AT), error);
 }
@@ -84,7 +85,7 @@ static cau_status check_pages(sqlite3 *database, cau_error *error)
 	const char *finding =
 		code == SQLITE_ROW ? (const char *)sqlite3_column_text(statement, 0) : NULL;
 	if (code != SQLITE_ROW)
-		status = cau_store_fault(database, code, "checking it", error);
+		status = cau_store_fault(database, code, "checking the store", error);
 	else if (!finding || strcmp(finding, "ok") != 0)
 		status = cau_fail(error, CAU_CORRUPT, NULL, "damaged: %s", finding ? finding : "unknown");
 	sqlite3_finalize(statement);
@@ -102,8 +103,9 @@ static cau_status check_label(sqlite3 *database, const char *label, cau_error *e
 	if (code == SQLITE_ROW) {
 		const char *stored = (const char *)sqlite3_column_text(statement, 0);
 		if (stored && strcmp(stored, label) != 0)
-			status = cau_fail(error, CAU_BAD_STATE, NULL,
-			                  "belongs to the daemon labelled '%s', not '%s'", stored, label);
+			status =
+				cau_fail(error, CAU_BAD_STATE, NULL,
+			             "the store belongs to the daemon labelled '%s', not '%s'", stored, label);
 	} else if (code != SQLITE_DONE) {
 		status = cau_store_fault(database, code, "reading the label", error);
 	}
@@ -134,11 +136,13 @@ static cau_status check_path(sqlite3 *database, const char *path, cau_error *err
 		code = sqlite3_step(statement);
 	const char *noted = code == SQLITE_ROW ? (const char *)sqlite3_column_text(statement, 0) : NULL;
 	if (code != SQLITE_ROW && code != SQLITE_DONE)
-		status = cau_store_fault(database, code, "reading its path", error);
+		status = cau_store_fault(database, code, "reading the path of the store", error);
 	else if (noted && is_same_file(path, "", noted) && beside_bytes(noted, "-wal") > 0 &&
 	         !is_same_file(path, "-wal", noted))
-		status = cau_fail(error, CAU_BAD_STATE, NULL,
-		                  "its write-ahead log stands beside another name of it: open %s", noted);
+		status = cau_fail(
+			error, CAU_BAD_STATE, NULL,
+			"the store's write-ahead log is beside another name of this file: open the store as %s",
+			noted);
 	sqlite3_finalize(statement);
 	return status;
 }
@@ -200,7 +204,8 @@ cau_status cau_store_probe(const char *path, const char *label, enum cau_store_f
 		return cau_fail(error, CAU_BAD_VALUE, NULL, "the path is too long");
 	if (stat(path, &file)) {
 		if (errno != ENOENT)
-			return cau_fail(error, CAU_IO, NULL, "cannot look at it: %s", strerrordesc_np(errno));
+			return cau_fail(error, CAU_IO, NULL, "cannot examine the file: %s",
+			                strerrordesc_np(errno));
 		if (beside_bytes(path, "-wal") > 0)
 			return cau_fail(error, CAU_CORRUPT, NULL,
 			                "the database is missing, but its write-ahead log %s-wal is there",
@@ -209,7 +214,7 @@ cau_status cau_store_probe(const char *path, const char *label, enum cau_store_f
 		return CAU_OK;
 	}
 	if (!S_ISREG(file.st_mode))
-		return cau_fail(error, CAU_UNSUPPORTED, NULL, "not a regular file");
+		return cau_fail(error, CAU_UNSUPPORTED, NULL, "the store is not a regular file");
 	cau_status status = check_header(path, error);
 	if (!status && beside_bytes(path, "-journal") > 0)
 		status = cau_fail(error, CAU_CORRUPT, NULL,

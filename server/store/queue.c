@@ -23,7 +23,8 @@ static cau_status refuse(const struct cau_store_queue *queue, const cau_store_co
 	if (queue->metrics.queue_batches >= config->queue_batches)
 		return cau_fail(error, CAU_LIMIT, NULL, "%d batches wait already", config->queue_batches);
 	if (bytes > config->queue_bytes - queue->metrics.queue_bytes)
-		return cau_fail(error, CAU_LIMIT, NULL, "%zu bytes on top of %zu waiting; at most %zu",
+		return cau_fail(error, CAU_LIMIT, NULL,
+		                "the batch has %zu bytes and %zu bytes wait already; at most %zu may wait",
 		                bytes, queue->metrics.queue_bytes, config->queue_bytes);
 	return CAU_OK;
 }

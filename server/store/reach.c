@@ -60,7 +60,7 @@ cau_status cau_store_check_reach(cau_store *store, const char *session, int64_t 
 		if (!found || range.from_tick > wanted) {
 			list_ranges(&course, reached, sizeof reached);
 			status = cau_fail(error, CAU_BAD_VALUE, "params.tick",
-			                  "tick %lld is not kept; those that can be reached: %s",
+			                  "tick %lld cannot be reached any more; ticks that can be reached: %s",
 			                  (long long)wanted, reached);
 		}
 	}

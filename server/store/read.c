@@ -240,7 +240,7 @@ cau_status cau_store_find_line(struct cau_store_reader *reader, int64_t key, int
 	*count = 0;
 	for (; branch >= 0; branch = parent) {
 		if (*count == MAX_DEPTH)
-			return cau_fail(error, CAU_CORRUPT, NULL, "branches form a circle");
+			return cau_fail(error, CAU_CORRUPT, NULL, "the branches form a cycle");
 		if (*count == capacity) {
 			capacity = capacity ? 2 * capacity : 16;
 			struct cau_store_stretch *grown = realloc(*line, (size_t)capacity * sizeof **line);
@@ -444,7 +444,7 @@ static cau_status look_for_forgotten(struct cau_store_reader *reader, const char
 	}
 	sqlite3_finalize(statement);
 	if (status == CAU_NOT_FOUND)
-		return cau_fail(error, status, "sequence", "no answer to request %llu of '%s'",
+		return cau_fail(error, status, "sequence", "there is no answer to request %llu of '%s'",
 		                (unsigned long long)sequence, client);
 	if (status)
 		return status;

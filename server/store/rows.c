@@ -51,7 +51,7 @@ cau_status cau_rows_open(cau_rows_reader *reader, const void *bytes, size_t byte
 {
 	const unsigned char *at = bytes;
 	if (byte_count < CAU_ROWS_HEAD_BYTES || memcmp(at, magic, sizeof magic) != 0)
-		return corrupt(error, "it does not begin like one");
+		return corrupt(error, "the bytes do not begin with CAUM");
 	if (get32(at + 4) != CAU_ROWS_VERSION)
 		return cau_fail(error, CAU_UNSUPPORTED, NULL,
 		                "the piece is of version %u and this build reads version %d: move between "
@@ -62,18 +62,18 @@ cau_status cau_rows_open(cau_rows_reader *reader, const void *bytes, size_t byte
 	                            .index = get32(at + 8),
 	                            .flags = get32(at + 12)};
 	if (reader->flags & ~(uint32_t)(CAU_ROWS_PART_ENDS | CAU_ROWS_ENDS))
-		return corrupt(error, "it has unknown flags");
+		return corrupt(error, "the piece has unknown flags");
 	return CAU_OK;
 }
 
 static cau_status read_bytes(cau_rows_reader *reader, cau_column *column, cau_error *error)
 {
 	if (reader->end - reader->at < 4)
-		return corrupt(error, "it ends within a length");
+		return corrupt(error, "the piece ends within a length");
 	size_t bytes = get32(reader->at);
 	reader->at += 4;
 	if (bytes > (size_t)(reader->end - reader->at))
-		return corrupt(error, "it ends within a column");
+		return corrupt(error, "the piece ends within a column");
 	column->bytes = (const char *)reader->at;
 	column->byte_count = bytes;
 	reader->at += bytes;
@@ -84,13 +84,13 @@ static cau_status read_column(cau_rows_reader *reader, cau_column *column, cau_e
 {
 	*column = (cau_column){CAU_COLUMN_NULL, 0, NULL, 0};
 	if (reader->at == reader->end)
-		return corrupt(error, "it ends within a record");
+		return corrupt(error, "the piece ends within a record");
 	switch (*reader->at++) {
 	case CAU_COLUMN_NULL:
 		return CAU_OK;
 	case CAU_COLUMN_INTEGER:
 		if (reader->end - reader->at < 8)
-			return corrupt(error, "it ends within a number");
+			return corrupt(error, "the piece ends within a number");
 		column->type = CAU_COLUMN_INTEGER;
 		column->integer = (int64_t)get64(reader->at);
 		reader->at += 8;
@@ -137,7 +137,7 @@ cau_status cau_rows_next(cau_rows_reader *reader, cau_row *row, cau_error *error
 	if (reader->at == reader->end)
 		return CAU_NOT_FOUND;
 	if (reader->end - reader->at < 2)
-		return corrupt(error, "it ends within a record");
+		return corrupt(error, "the piece ends within a record");
 	unsigned table = reader->at[0], count = reader->at[1];
 	reader->at += 2;
 	if (table >= CAU_ROWS_COUNT || count != strlen(columns_of[table]))
@@ -149,7 +149,7 @@ cau_status cau_rows_next(cau_rows_reader *reader, cau_row *row, cau_error *error
 		if (status)
 			return status;
 		if (!fits(&row->column[i], columns_of[table][i]))
-			return corrupt(error, "a column is not as its table wants it");
+			return corrupt(error, "a column has the wrong type for its table");
 	}
 	return CAU_OK;
 }

@@ -54,8 +54,8 @@ static cau_status check_range(const char *path, int64_t value, int64_t least, in
                               cau_error *error)
 {
 	if (value < least || value > most)
-		return cau_fail(error, CAU_BAD_VALUE, path, "%lld; %lld to %lld", (long long)value,
-		                (long long)least, (long long)most);
+		return cau_fail(error, CAU_BAD_VALUE, path, "%lld is not within %lld to %lld",
+		                (long long)value, (long long)least, (long long)most);
 	return CAU_OK;
 }
 
@@ -293,7 +293,7 @@ static cau_status start_threads(struct cau_store *store, cau_error *error)
 {
 	bool folds = !store->config.memory;
 	if (folds && cau_store_folder_start(&store->folder, store->folding))
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to fold the log");
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to checkpoint the write-ahead log");
 	if (pthread_create(&store->thread, NULL, cau_store_commit_run, store)) {
 		if (folds)
 			cau_store_folder_stop(&store->folder);

@@ -299,7 +299,7 @@ static cau_status apply_answer(struct cau_store_writer *writer, const cau_store_
 	bind_blob(statement, 5, answer->result);
 	cau_status status = run(writer, ADD_ANSWER, "an answer", error);
 	if (status == CAU_ALREADY_EXISTS)
-		return cau_fail(error, status, "sequence", "request %llu of '%s' has been answered",
+		return cau_fail(error, status, "sequence", "request %llu of '%s' has already been answered",
 		                (unsigned long long)answer->sequence, answer->client);
 	return status;
 }

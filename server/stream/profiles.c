@@ -255,14 +255,15 @@ cau_status cau_streams_join(cau_streams *streams, const cau_stream_wish *wish,
 			cau_streams_leave(streams,
 			                  &(cau_subscriber){.stream = (int32_t)(stream - streams->stream)});
 		return cau_fail(error, CAU_LIMIT, "",
-		                "the session has as many streams as it may (setting max_subscribers)");
+		                "the session has the largest number of streams (setting max_subscribers)");
 	}
 	*joined = stream;
 	if (stream)
 		return CAU_OK;
 	if (slot == CAU_STREAM_PROFILES_MAX)
-		return cau_fail(error, CAU_LIMIT, "params.plain",
-		                "all %d profiles of the session are in use, and none is plain", slot);
+		return cau_fail(
+			error, CAU_LIMIT, "params.plain",
+			"all %d stream profiles of the session are in use, and none of them is plain", slot);
 	cau_status status = open_stream(streams, slot, wish, shape, error);
 	*joined = &streams->stream[slot];
 	if (!status) {

@@ -11,21 +11,23 @@ cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence
 {
 	bool anew = now_s - past->pose_s > limit_s;
 	if (anew && sequence == 0)
-		return cau_fail(error, CAU_BAD_VALUE, "sequence_number", "0 is none: it counts from 1");
+		return cau_fail(error, CAU_BAD_VALUE, "sequence_number",
+		                "0 is not allowed: sequence numbers begin with 1");
 	if (!anew && sequence <= past->sequence)
 		return cau_fail(error, CAU_BAD_VALUE, "sequence_number",
-		                "%llu does not go up: the last was %llu", (unsigned long long)sequence,
-		                (unsigned long long)past->sequence);
+		                "%llu is not larger than the last sequence number, %llu",
+		                (unsigned long long)sequence, (unsigned long long)past->sequence);
 	if (sequence > CAU_MOTION_SEQUENCE_MOST)
 		return cau_fail(error, CAU_BAD_VALUE, "sequence_number", "%llu is beyond 2^53",
 		                (unsigned long long)sequence);
 	if (!anew && source_time_ns < past->source_time_ns)
-		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns", "is earlier by %.6f s",
+		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns",
+		                "is earlier than the previous sample by %.6f s",
 		                1e-9 * ((double)past->source_time_ns - (double)source_time_ns));
 	double age_s = 1e-9 * ((double)now_ns - (double)source_time_ns);
 	if (fabs(age_s) > limit_s)
-		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns", "is %.3f s old; the limit is %.3f",
-		                age_s, limit_s);
+		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns",
+		                "is %.3f s old; the limit is %.3f s", age_s, limit_s);
 	return CAU_OK;
 }
 
@@ -41,8 +43,8 @@ cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error)
 		squared += pose->rotation[i] * pose->rotation[i];
 	double length = sqrt(squared);
 	if (!(fabs(length - 1) <= CAU_UNIT_TOLERANCE))
-		return cau_fail(error, CAU_BAD_VALUE, "rotation", "is no unit quaternion: length %g",
-		                length);
+		return cau_fail(error, CAU_BAD_VALUE, "rotation",
+		                "is not a unit quaternion: its length is %g", length);
 	if (!(jaw >= 0 && jaw <= 1))
 		return cau_fail(error, CAU_BAD_VALUE, "jaw", "%g is not within 0 to 1", jaw);
 	for (int i = 0; i < 4; i++)
@@ -69,10 +71,12 @@ cau_status cau_motion_check_leap(const cau_motion_past *past, const cau_pose *po
 	                        pose->position_m[2] - past->pose.position_m[2]);
 	if (distance > tool->max_speed_m_s * time_s)
 		return cau_fail(error, CAU_BAD_VALUE, "position_m",
-		                "leaps by %.4f m; the limit is %.3g m/s", distance, tool->max_speed_m_s);
+		                "moves %.4f m in %.3f s, faster than max_speed_m_s %.3g", distance, time_s,
+		                tool->max_speed_m_s);
 	double turn = turn_rad(&past->pose, pose);
 	if (turn > tool->max_turn_rad_s * time_s)
 		return cau_fail(error, CAU_BAD_VALUE, "rotation",
-		                "leaps by %.3f rad; the limit is %.3g rad/s", turn, tool->max_turn_rad_s);
+		                "turns %.3f rad in %.3f s, faster than max_turn_rad_s %.3g", turn, time_s,
+		                tool->max_turn_rad_s);
 	return CAU_OK;
 }

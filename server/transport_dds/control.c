@@ -64,7 +64,8 @@ static cau_status read_rewind(asked *a, cau_order *order, cau_error *error)
 	                                  .tick = (int64_t)a->sample->tick};
 	order->as.tick = a->sample->tick;
 	if (!a->sample->has_tick)
-		return cau_fail(error, CAU_BAD_VALUE, "has_tick", "must be true: to which tick?");
+		return cau_fail(error, CAU_BAD_VALUE, "has_tick",
+		                "must be true for REWIND: `tick` is the tick to rewind to");
 	return check_params(order->reply.method, &params, error);
 }
 
@@ -304,10 +305,12 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	cau_status status = CAU_OK;
 	if (!request) {
 		unkept = cau_dds_describe_request(writer, sample);
-		status = cau_fail(&error, CAU_LIMIT, "", "too many requests wait for their answer");
+		status = cau_fail(&error, CAU_LIMIT, "",
+		                  "too many requests of this participant wait for an answer");
 	} else if (cau_dds_is_too_fast(dds->config, writer)) {
 		code = CAU_RPC_RATE;
-		status = cau_fail(&error, CAU_LIMIT, "", "too many requests a second");
+		status =
+			cau_fail(&error, CAU_LIMIT, "", "the participant sends too many requests a second");
 	} else {
 		status = serve(&a, &code, &error);
 	}

@@ -211,8 +211,10 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	open_writers(dds, session);
 	dds_delete_qos(partition);
 	if (!session->has_ros_name)
-		cau_log(CAU_LOG_WARNING, id, "dds_name_taken",
-		        "name=%s reason=\"another session has it: no ROS 2 topics\"", session->ros_name);
+		cau_log(
+			CAU_LOG_WARNING, id, "dds_name_taken",
+			"name=%s reason=\"another session has this name, so this session has no ROS 2 topics\"",
+			session->ros_name);
 	cau_log(CAU_LOG_INFO, id, "dds_session", "partition=%s ros_name=%s", id, session->ros_name);
 	return done ? CAU_OK : CAU_IO;
 }
@@ -344,8 +346,10 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 	if (!session->has_ros_name)
 		return;
 	if (!ros_prefix(session, tool, prefix)) {
-		cau_log(CAU_LOG_WARNING, cau_hosted_id(session->hosted), "dds_name_taken",
-		        "tool=%s reason=\"another tool has its ROS 2 name: no ROS 2 topics\"", tool->name);
+		cau_log(
+			CAU_LOG_WARNING, cau_hosted_id(session->hosted), "dds_name_taken",
+			"tool=%s reason=\"another tool has this ROS 2 name, so this tool has no ROS 2 topics\"",
+			tool->name);
 		return;
 	}
 	const ros_door doors[] = {

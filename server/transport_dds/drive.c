@@ -61,10 +61,10 @@ static cau_status claim(cau_dds_hand *hand, const cau_hosted_tool *tool, double 
 		return CAU_OK;
 	hand->claim_until_s = 0;
 	if (!would_drive(hand->tool, hand->client, driver, now_s))
-		return cau_fail(error, CAU_BAD_STATE, "tool", "%s drives it",
+		return cau_fail(error, CAU_BAD_STATE, "tool", "%s drives the tool",
 		                driver ? tool->driver.name : "another client");
 	if (!ask_for_tool(hand, driver ? silent_driver(hand->tool, driver, now_s) : NULL))
-		return cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders now");
+		return cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders at the moment");
 	hand->claim_until_s = now_s + CLAIM_S;
 	hand->past.has_pose = hand->energy_ready = hand->energy_asked = false;
 	hand->grasp_asked = tool->state.grasping;
@@ -151,7 +151,7 @@ void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level
 	cau_status status = cau_dds_check_ready(hand->session, hand->tool->name, &error);
 	if (!status && !may_drive(hand))
 		status =
-			cau_fail(&error, CAU_BAD_STATE, "tool", "only the tool's driver may switch energy on");
+			cau_fail(&error, CAU_BAD_STATE, "tool", "only the driver of a tool may turn energy on");
 	if (status) {
 		hand->energy_ready = false;
 		cau_dds_refuse(hand->session, hand->tool->name, writer, hand->past.sequence, &error);

@@ -41,7 +41,7 @@ cau_status cau_dds_explain_domain(const cau_config *config, const char *word, ca
 	if (*config->dds_config)
 		return cau_fail(
 			error, CAU_IO, "dds",
-			"Cyclone DDS opens no domain %d with %.120s (%s): is its interface up, and a "
+			"Cyclone DDS cannot open domain %d with %.120s (%s): is its interface up, and a "
 			"participant index free (MaxAutoParticipantIndex)?",
 			domain, config->dds_config, word);
 	if (are_taken(domain))
@@ -49,6 +49,6 @@ cau_status cau_dds_explain_domain(const cau_config *config, const char *word, ca
 		                "%d DDS programs run in domain %d on this machine, the most that can: end "
 		                "some, take another dds_domain, or set dds_optional to go without DDS",
 		                INDICES, domain);
-	return cau_fail(error, CAU_IO, "dds", "Cyclone DDS opens no domain %d on loopback: %s", domain,
-	                word);
+	return cau_fail(error, CAU_IO, "dds", "Cyclone DDS cannot open domain %d on loopback: %s",
+	                domain, word);
 }

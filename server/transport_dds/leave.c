@@ -36,6 +36,7 @@ void cau_dds_leave(dds_entity_t domain)
 	} else if (pthread_clockjoin_np(thread, NULL, CLOCK_MONOTONIC, &until) != 0) {
 		pthread_detach(thread);
 		on_exit(end_at_once, NULL);
-		cau_log(CAU_LOG_WARNING, NULL, "dds_not_left", "reason=\"its interface is gone\"");
+		cau_log(CAU_LOG_WARNING, NULL, "dds_not_left",
+		        "reason=\"the network interface of DDS is gone\"");
 	}
 }

@@ -10,7 +10,7 @@ static cau_status check(const cau_door *door, const cau_dds_writer *writer, cau_
 {
 	static const cau_motion_past none;
 	if (strcmp(sample->session, cau_hosted_id(door->session->hosted)) != 0)
-		return cau_fail(error, CAU_BAD_VALUE, "session", "is not that of the partition");
+		return cau_fail(error, CAU_BAD_VALUE, "session", "is not the session of the partition");
 	if (!tool)
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no such tool");
 	const cau_dds_hand *hand = cau_dds_find_hand(writer->client, tool);

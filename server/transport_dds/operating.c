@@ -20,10 +20,11 @@ cau_status cau_dds_check_ready(const cau_dds_session *session, const char *name,
 	if (!tool)
 		return CAU_OK; // no operating state was ever published for the tool
 	if (tool->operating.state != OPERATING_ENABLED)
-		return cau_fail(error, CAU_BAD_STATE, "tool", "its operating state is %s",
+		return cau_fail(error, CAU_BAD_STATE, "tool",
+		                "the operating state of the tool is %s, not ENABLED",
 		                state_names[tool->operating.state]);
 	if (tool->operating.unhomed)
-		return cau_fail(error, CAU_BAD_STATE, "tool", "it is not homed");
+		return cau_fail(error, CAU_BAD_STATE, "tool", "the tool is not homed");
 	return CAU_OK;
 }
 

@@ -141,7 +141,7 @@ void cau_dds_give_up(cau_dds_client *client)
 {
 	while (client->hands) {
 		cau_hosted_cut(client->hands->session->hosted, client->asker.client,
-		               "its writer is not alive");
+		               "the DDS writer is not alive");
 		drop_hand(client->hands);
 	}
 }
@@ -163,9 +163,10 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 	int idle = 0;
 	for (const cau_dds_client *client = dds->places.clients; client; client = client->next)
 		if (is_same(client, writer) && is_idle(client) && ++idle == IDLE_OF_ONE_MOST)
-			return cau_fail(error, CAU_LIMIT, "",
-			                "its participant or identity has %d clients without a tool, the most",
-			                idle);
+			return cau_fail(
+				error, CAU_LIMIT, "",
+				"the participant or identity has %d clients without a tool, which is the limit",
+				idle);
 	if (dds->counts.clients >= cau_dds_places_most(dds->config))
 		return cau_fail(error, CAU_LIMIT, "", "the daemon has too many DDS clients");
 	return CAU_OK;
@@ -227,7 +228,7 @@ cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_
 	if (writer->client)
 		return writer->client;
 	if (!drives_now && cau_monotonic_s() < writer->retry_s) {
-		cau_fail(error, CAU_LIMIT, "", "too many writers stand by for the tool");
+		cau_fail(error, CAU_LIMIT, "", "too many DDS writers wait for the tool");
 		return NULL;
 	}
 	if (check_quota(dds, writer, error)) {
@@ -273,7 +274,8 @@ cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_se
 	bool room = tool->hand_count < HANDS_OF_TOOL_MOST || (drives_now && evict_hand(tool));
 	hand = room ? calloc(1, sizeof *hand) : NULL;
 	if (!hand) {
-		cau_fail(error, CAU_LIMIT, "tool", "%d writers stand by for it", HANDS_OF_TOOL_MOST);
+		cau_fail(error, CAU_LIMIT, "tool", "%d DDS writers wait for the tool, which is the limit",
+		         HANDS_OF_TOOL_MOST);
 		deny(dds, writer, error);
 		return NULL;
 	}

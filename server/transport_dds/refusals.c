@@ -40,7 +40,8 @@ void cau_dds_count_dropped(cau_dds_session *session)
 		session->drops_untold = false;
 		return;
 	}
-	cau_fail(&error, CAU_LIMIT, "tool", "too many keys that are no tool of the session");
+	cau_fail(&error, CAU_LIMIT, "tool",
+	         "too many samples name a tool that the session does not have");
 	tell_refused(session, "", "", &error);
 	session->drops_untold = session->refused > 0;
 }

@@ -45,7 +45,7 @@ static cau_status read_line(cau_dds_roles *roles, char *line, int number, cau_er
 		                "line %d: roles are view, operate, admin", number);
 	if (!strchr(subject, '=') || bytes >= CAU_DDS_SUBJECT_BYTES)
 		return cau_fail(error, CAU_BAD_SYNTAX, "dds_roles",
-		                "line %d is not `ROLE SUBJECT`, as `operate CN=knee-robot,O=Cautery`",
+		                "line %d must be `ROLE SUBJECT`, as in `operate CN=knee-robot,O=Cautery`",
 		                number);
 	return add(roles, role, subject, number, error);
 }
@@ -74,7 +74,8 @@ cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, ca
 {
 	*roles = (cau_dds_roles){.named = *config->dds_roles != 0};
 	if (!cau_role_read(config->dds_role, &roles->role_else))
-		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "is no role: view, operate or admin");
+		return cau_fail(error, CAU_BAD_VALUE, "dds_role",
+		                "is not a role: use view, operate or admin");
 	return roles->named ? read_file(roles, config->dds_roles, error) : CAU_OK;
 }
 

@@ -57,14 +57,14 @@ static cau_status order_setting(const cau_dds_hand *hand, const cau_tool_def *to
 {
 	cau_order *order = cau_dds_make_order(hand, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_CONFIGURE);
 	if (!order)
-		return cau_fail(error, CAU_NO_MEMORY, "tool", "no memory for its setting");
+		return cau_fail(error, CAU_NO_MEMORY, "tool", "no memory for the setting of the tool");
 	cau_default_command(&order->as.command, CAU_COMMAND_TOOL_CONFIGURE);
 	memcpy(order->as.command.tool, hand->tool->name, sizeof hand->tool->name);
 	order->as.command.sequence = hand->past.sequence;
 	order->as.command.as.definition = *tool;
 	return cau_dds_submit(hand, order)
 	           ? CAU_OK
-	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders now");
+	           : cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders at the moment");
 }
 
 // Finds the tool that a sample names, its present definition, and the hand of the writer's
@@ -82,9 +82,10 @@ static cau_status find(const cau_dds *dds, const cau_door *door, cau_dds_writer 
 	*hand = find_driving(tool, writer, state.driver.client);
 	if (!*hand)
 		return cau_fail(error, CAU_BAD_STATE, "tool",
-		                "only the participant that drives it sets its generator");
+		                "only the participant that drives the tool can set its generator");
 	if (cau_dds_is_too_fast(dds->config, writer))
-		return cau_fail(error, CAU_LIMIT, "tool", "too many settings a second");
+		return cau_fail(error, CAU_LIMIT, "tool",
+		                "the participant sends too many settings a second");
 	*definition = state.state.definition;
 	return CAU_OK;
 }

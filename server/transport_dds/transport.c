@@ -127,14 +127,14 @@ void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
 		cau_metric_family family;
 		double value;
 	} rows[] = {
-		{{"dds_clients", CAU_METRIC_GAUGE, "", "DDS clients that hold a place"},
-	     (double)dds->counts.clients},
-		{{"dds_clients_most", CAU_METRIC_GAUGE, "", "Capacity for DDS clients"},
+		{{"dds_clients", CAU_METRIC_GAUGE, "", "DDS clients"}, (double)dds->counts.clients},
+		{{"dds_clients_most", CAU_METRIC_GAUGE, "", "Largest number of DDS clients"},
 	     (double)cau_dds_places_most(dds->config)},
-		{{"dds_places_denied", CAU_METRIC_COUNTER, "", "Times a DDS writer was refused a place"},
+		{{"dds_places_denied", CAU_METRIC_COUNTER, "",
+	      "Number of times that a DDS writer was refused as a client"},
 	     (double)dds->counts.denied},
 		{{"dds_places_evicted", CAU_METRIC_COUNTER, "",
-	      "Idle DDS clients that lost their place to a driver"},
+	      "Idle DDS clients that were removed to accept a driver"},
 	     (double)dds->counts.evicted},
 		{{"dds_peers_incompatible", CAU_METRIC_COUNTER, "",
 	      "Readers and writers of other programs on Cautery's topics that DDS cannot match"},
@@ -186,10 +186,11 @@ static cau_status open_domain(cau_dds_entities *entities, const cau_config *conf
 			dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
 	dds_delete_qos(qos);
 	if (!status && entities->participant < 0 && *config->dds_security)
-		return cau_fail(error, CAU_IO, "dds_security", "no participant with this dds_security: %s",
+		return cau_fail(error, CAU_IO, "dds_security",
+		                "cannot create a DDS participant with this dds_security: %s",
 		                dds_strretcode(entities->participant));
 	if (!status && entities->participant < 0)
-		return fail(error, "no participant", entities->participant);
+		return fail(error, "cannot create a DDS participant", entities->participant);
 	return status;
 }
 
@@ -204,9 +205,9 @@ static cau_status open_entities(cau_dds *dds, cau_error *error)
 	                             dds->entities.waitset, dds->wakeup.guard};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] < 0)
-			return fail(error, "no entity", made[i]);
+			return fail(error, "cannot create a DDS entity", made[i]);
 	dds_return_t code = dds_waitset_attach(dds->entities.waitset, dds->wakeup.guard, 0);
-	return code ? fail(error, "no waitset", code) : CAU_OK;
+	return code ? fail(error, "cannot create a DDS waitset", code) : CAU_OK;
 }
 
 cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub, cau_error *error)
@@ -243,7 +244,7 @@ cau_status cau_dds_start(cau_dds *dds, cau_error *error)
 	cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
 	dds->started = pthread_create(&dds->thread, NULL, run, dds) == 0;
 	if (!dds->started)
-		return cau_fail(error, CAU_NO_MEMORY, "dds", "no thread");
+		return cau_fail(error, CAU_NO_MEMORY, "dds", "cannot start the DDS thread");
 	cau_log(CAU_LOG_NOTICE, NULL, "dds_open", "domain=%lld config=\"%s\" security=\"%s\"",
 	        (long long)dds->config->dds_domain,
 	        *dds->config->dds_config ? dds->config->dds_config : "loopback",

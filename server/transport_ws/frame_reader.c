@@ -90,7 +90,7 @@ static bool check_length(cau_frame_reader *r)
 	if (length >> 63)
 		return fail(r, CAU_CLOSE_PROTOCOL, "a length of more than 63 bits");
 	if ((bytes == 2 && length < LENGTH_16) || (bytes == 8 && length <= UINT16_MAX))
-		return fail(r, CAU_CLOSE_PROTOCOL, "a length in more bytes than it needs");
+		return fail(r, CAU_CLOSE_PROTOCOL, "a length is coded in more bytes than needed");
 	if (r->opcode < CONTROL && length > r->message_most - r->message_bytes)
 		return fail(r, CAU_CLOSE_TOO_BIG, "the message is larger than max_message_bytes");
 	r->payload_bytes = length;
@@ -215,7 +215,7 @@ static bool check_close(cau_frame_reader *r)
 	if (r->control_bytes == 0)
 		return true;
 	if (r->control_bytes == 1)
-		return fail(r, CAU_CLOSE_PROTOCOL, "a close frame with half a code");
+		return fail(r, CAU_CLOSE_PROTOCOL, "a close frame has only one byte of its code");
 	int code = r->control[0] << 8 | r->control[1];
 	if (!is_close_code(code))
 		return fail(r, CAU_CLOSE_PROTOCOL, "a close code that may not be sent");

@@ -111,7 +111,7 @@ cau_http_refusal cau_handshake_check(cau_network *network, struct lws *wsi)
 		{has_upgrade,
 	     {400, "bad_handshake", "Connection and Upgrade",
 	      "Connection must say upgrade, and Upgrade websocket",
-	      "let proxies between pass both headers on"}},
+	      "configure proxies in between to forward both headers"}},
 		{has_key,
 	     {400, "bad_handshake", "Sec-WebSocket-Key",
 	      "Sec-WebSocket-Key must be 16 bytes in base 64", "use a client that speaks RFC 6455"}},

@@ -87,10 +87,10 @@ static int serve_files(cau_network *network, struct lws *wsi, cau_http_body *bod
 {
 	static const char manual[] = "/manual";
 	static const cau_http_refusal not_found = {404, "not_found", "the path",
-	                                           "no page has this path", "see the page at /"};
-	static const cau_http_refusal no_manual = {404, "not_found", "the path",
-	                                           "no manual is installed here",
-	                                           "give its folder with the setting manual"};
+	                                           "no page has this path", "open the page /"};
+	static const cau_http_refusal no_manual = {
+		404, "not_found", "the path", "no manual is installed here",
+		"set the folder of the manual with the setting manual"};
 	size_t length = sizeof manual - 1;
 	const cau_static_files *files = network->def.files;
 	if (strcmp(path, manual) == 0) {
@@ -114,7 +114,7 @@ int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, c
 	static const cau_http_refusal bad_method = {405, "bad_method", "the method",
 	                                            "only GET and HEAD are served", "use GET"};
 	static const cau_http_refusal no_upgrade = {426, "bad_handshake", "the path",
-	                                            "this is for WebSocket",
+	                                            "this path is only for WebSocket",
 	                                            "connect with a WebSocket client"};
 	cau_http_refusal refusal = cau_request_check(network, wsi);
 	if (refusal.status)

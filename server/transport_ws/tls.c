@@ -65,7 +65,7 @@ static cau_status read_certificate(pair *p, const char *file, cau_error *error)
 	ERR_clear_error(); // OpenSSL reports the end of the file as an error
 	if (!p->certificate || !p->chain || next)
 		return fail_file(error, CAU_BAD_SYNTAX, "tls_certificate", file,
-		                 "it holds no certificate in PEM");
+		                 "the file has no certificate in PEM");
 	return CAU_OK;
 }
 
@@ -89,10 +89,10 @@ static cau_status read_key(pair *p, const char *file, cau_error *error)
 	fclose(stream);
 	if (open_to_all)
 		return fail_file(error, CAU_BAD_VALUE, "tls_key", file,
-		                 "other users can read it: chmod 600 or 640");
+		                 "other users can read the file: chmod 600 or 640");
 	if (!p->key)
 		return fail_file(error, CAU_BAD_SYNTAX, "tls_key", file,
-		                 "it holds no private key in PEM, or one behind a passphrase");
+		                 "the file has no private key in PEM, or the key has a passphrase");
 	return CAU_OK;
 }
 
@@ -100,10 +100,10 @@ static cau_status check_pair(const pair *p, const cau_config *config, cau_error 
 {
 	if (X509_check_private_key(p->certificate, p->key) != 1)
 		return fail_file(error, CAU_BAD_VALUE, "tls_key", config->tls_key,
-		                 "it is not the key of the certificate");
+		                 "the key does not belong to the certificate");
 	if (X509_cmp_current_time(X509_get0_notAfter(p->certificate)) < 0)
 		return fail_file(error, CAU_BAD_VALUE, "tls_certificate", config->tls_certificate,
-		                 "it has expired");
+		                 "the certificate has expired");
 	return CAU_OK;
 }
 

@@ -12,9 +12,9 @@
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
 
-static const cau_http_refusal bad_request = {
-	400, "bad_request", "the request", "the request is not HTTP/1.1 with a path",
-	"speak HTTP/1.1, and name the path alone, beginning with /"};
+static const cau_http_refusal bad_request = {400, "bad_request", "the request",
+                                             "the request is not HTTP/1.1 with a path",
+                                             "use HTTP/1.1 and a path that begins with /"};
 static const cau_http_refusal too_large = {
 	431, "too_large", "the headers",
 	"the request and its headers are longer than this daemon reads",

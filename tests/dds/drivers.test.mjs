@@ -91,7 +91,7 @@ test('a writer does not move a tool that a browser drives, until it is given up'
 	const refused = await daemon.metric('session_refused_total', session);
 	robot.tell('aim 0.02 0.02 0.02');
 	robot.tell('write on');
-	await daemon.log(new RegExp(`session=${session} event=dds_refused .*admin drives it`));
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*admin drives the tool`));
 	assert.ok(await daemon.metric('session_refused_total', session) > refused);
 	assert.equal(stream.tools[0].driver, client.hello.client);
 	assert.deepEqual(stream.tools[0].position, place);
@@ -177,7 +177,7 @@ test('a standby gets the tool of a silent driver, energy off', async (t) => {
 	const standby = await controller(session);
 	standby.tell('energy 1');
 	standby.tell('write on');
-	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives it`));
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives the tool`));
 	assert.equal(stream.tools[0].driver, first);
 	lateness.reset();
 	const { last_us } = await robot.ask('write off', 'silent');

@@ -63,7 +63,7 @@ test('a standby holds the tool of a killed robot, energy off', async (t) => {
 	await client.until(() => stream.tools[0].energized, 'energy on');
 	const driver = stream.tools[0].driver;
 	const standby = robot(session, '--standby', '--energy');
-	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives it`));
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives the tool`));
 	assert.equal(stream.tools[0].driver, driver);
 	first.child.kill('SIGKILL');
 	await client.until(() => stream.tools[0].driver !== driver && stream.tools[0].driver !== 0, 'the standby drives');

@@ -168,7 +168,7 @@ const start = (...flags) => spawnSync(process.env.CAUTERYD,
 test('the daemon says what is wrong with its DDS settings, and does not start', () => {
 	const network = start('--dds-config', fileURLToPath(LOOPBACK));
 	assert.equal(network.status, 2);
-	assert.match(network.stderr, /path="dds_config" .*needs dds_security, or dds_network/);
+	assert.match(network.stderr, /path="dds_config" .*set dds_security, or dds_network/);
 
 	const nowhere = start('--dds-security', join(folder, 'nowhere'));
 	assert.equal(nowhere.status, 1);
@@ -178,7 +178,7 @@ test('the daemon says what is wrong with its DDS settings, and does not start', 
 	copyFileSync(join(enclave('stranger', 'others'), 'cert.pem'), join(enclave('mixed'), 'cert.pem'));
 	const mixed = start('--dds-security', enclave('mixed'));
 	assert.equal(mixed.status, 1);
-	assert.match(mixed.stderr, /no participant with this dds_security/);
+	assert.match(mixed.stderr, /cannot create a DDS participant with this dds_security/);
 });
 
 test('an identity that was taken back is let in no more', async (t) => {
@@ -244,14 +244,14 @@ test('the daemon says what is wrong with a file of roles, and does not start', (
 		assert.match(stderr, reason);
 	};
 	refuses('king CN=worker,O=Cautery\n', /path="dds_roles" .*line 1: roles are view, operate, admin/);
-	refuses('# theirs\n\noperate worker\n', /line 3 is not `ROLE SUBJECT`/);
+	refuses('# theirs\n\noperate worker\n', /line 3 must be `ROLE SUBJECT`/);
 	refuses('view CN=a\nadmin CN=a\n', /line 2: CN=a has a role already/);
 	const open = rolesFile('open', 'view CN=a\n');
 	chmodSync(open, 0o666);
 	assert.match(start('--dds-security', enclave('daemon'), '--dds-roles', open).stderr, /can be written by other users/);
 	const alone = start('--dds-roles', open);
 	assert.equal(alone.status, 2);
-	assert.match(alone.stderr, /path="dds_roles" .*needs dds_security/);
+	assert.match(alone.stderr, /path="dds_roles" .*only with dds_security/);
 });
 
 test('with an identity a configuration of the network is taken without further words', async () => {

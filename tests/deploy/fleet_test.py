@@ -414,8 +414,8 @@ class CommandLine(Fleet):
     def test_what_is_wrong_is_said(self):
         for arguments, code, said in ((("info", "d3-knee"), 3, "no daemon of this fleet has the label"),
                                       (("ls", "--label", "d1,d3"), 3, "no daemon of this fleet has the label"),
-                                      (("ls", "--label", "d1,,d2"), 2, '"" is no label'),
-                                      (("ls", "--label", "D 1"), 2, '"D 1" is no label'),
+                                      (("ls", "--label", "d1,,d2"), 2, '"" is not a label'),
+                                      (("ls", "--label", "D 1"), 2, '"D 1" is not a label'),
                                       (("create", "fascia", "--label", "d1,d2"), 2, "takes one label here")):
             with self.subTest(arguments=arguments):
                 self.assertIn(said, self.cautery(*arguments, code=code))

@@ -96,11 +96,11 @@ class Lease(WithStores):
         first.stop()
         shutil.copy(self.path("backups/copy.db"), self.path("b.db"))  # by cautery
         shutil.copy(self.path("a.db"), self.path("c.db"))  # by other means
-        self.assertIn("generation 0 and etcd knows 1", self.refusal("b.db"))
-        self.assertIn("file is a copy", self.refusal("c.db"))
+        self.assertIn("generation 0, etcd has 1", self.refusal("b.db"))
+        self.assertIn("file is a copy of the store", self.refusal("c.db"))
         self.start("b.db", take_label="true").stop()
         self.start("b.db").stop()
-        self.assertIn("generation 1 and etcd knows 3", self.refusal("a.db"))
+        self.assertIn("generation 1, etcd has 3", self.refusal("a.db"))
 
     def test_nobody_takes_a_label_that_is_held(self):
         first = self.start("a.db")

@@ -91,7 +91,7 @@ test('a store of a newer version is refused with what to do, and left as it is',
 	const ended = await Daemon.start({ settings: { store: newer } }).catch((error) => error);
 	assert.equal(ended.code, 1, String(ended));
 	assert.match(ended.message, new RegExp(`event=start_failed status=unsupported .*reason="written by a newer Cautery: schema ${schema + 1}, `
-		+ `this build knows ${schema}: run that one, or restore a copy from before the upgrade"`));
+		+ `this build reads ${schema}: run the newer Cautery, or restore a copy from before the upgrade"`));
 	assert.deepEqual(readFileSync(newer), bytes);
 	bytes.writeUInt32BE(schema, 60); // it was the version alone
 	writeFileSync(newer, bytes);

@@ -117,7 +117,7 @@ test('its quota is for all its connections together, and for nobody else', async
 	await one.call('session.fork', { session: 'd1-demo', name: 'sparse-1', paused: true });
 	await other.call('session.fork', { session: 'd1-demo', name: 'sparse-2', paused: true });
 	await assert.rejects(one.call('session.fork', { session: 'd1-demo', name: 'sparse-3', paused: true }),
-		(error) => error.code === RATE.code && /this token made 2 expensive requests.*the quota in its line/.test(error.data.reason));
+		(error) => error.code === RATE.code && /this token: 2 expensive requests.*quota= in the file of tokens/.test(error.data.reason));
 	await assert.rejects(other.call('session.log', { session: 'd1-demo' }), RATE);
 	await one.call('session.list', {}); // what is cheap is not counted
 	await anna.call('session.fork', { session: 'd1-demo', name: 'anna-5', paused: true });

@@ -127,7 +127,7 @@ test('a hidden page cuts energy at once', async () => {
 	client.notify('heartbeat', { visible: false });
 	await client.until(() => !stream.tools[0].energized, 'energy off, long before the deadline of ten seconds');
 	assert.equal(stream.tools[0].energyOff, 'watchdog');
-	await daemon.log(/session=d1-hidden event=watchdog .*its page is hidden/);
+	await daemon.log(/session=d1-hidden event=watchdog .*the driver's page is hidden/);
 	await client.close();
 });
 

@@ -83,7 +83,7 @@ test('more files than a connection may have under way are refused, not the conne
 	const refused = asked.filter(({ status }) => status === 'rejected');
 	assert.ok(asked.length - refused.length >= 4);
 	for (const { reason } of refused)
-		assert.match(reason.message, /files of this connection are under way.*try again/);
+		assert.match(reason.message, /files are being sent on this connection.*try again/);
 	await client.file('session.export', { session: 'd1-knee', format: 'obj' });
 	await daemon.end();
 });

@@ -91,7 +91,7 @@ test('steps that gain energy are reported, once in ten seconds', async () => {
 	await client.call('session.step', { session, ticks: 120 });
 	const [event, ...others] = await eventsOf(client, session, 'energy_gain');
 	assert.deepEqual(others, []);
-	const [gained, had] = event.detail.match(/^(.*) J in a tick that had (.*) J$/).slice(1).map(Number);
+	const [gained, had] = event.detail.match(/^(.*) J were gained in a tick that began with (.*) J$/).slice(1).map(Number);
 	assert.ok(gained > 0.01 * had, event.detail);
 	await client.close();
 	await daemon.end();

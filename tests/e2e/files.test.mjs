@@ -102,6 +102,6 @@ test('a token that stands in the file twice is refused, by its line, as itself o
 	for (const second of [`view ${ADMIN}`, `admin ${ADMIN}`, `operate ${hash}`]) {
 		const { paths, options } = world();
 		writeFileSync(paths.tokens, `# ours\nadmin ${ADMIN} name=a\n\n${second} name=b\n`, { mode: 0o600 });
-		await assert.rejects(within(Daemon.start(options), 'tokens'), /line 4 has the token of line 2/);
+		await assert.rejects(within(Daemon.start(options), 'tokens'), /lines 4 and 2 have the same token/);
 	}
 });

@@ -282,7 +282,7 @@ test('cautery move carries a running session, and the library goes after it', as
 	await one.until(() => one.notice('session.changed'), 'the session');
 	const mover = await run(['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)]);
 	assert.equal(mover.status, 0, mover.stderr);
-	assert.match(mover.stdout, /d1-knee is d2-knee now/);
+	assert.match(mover.stdout, /d1-knee is now d2-knee/);
 	const stood = Number(/was suspended for ([0-9.]+) s/.exec(mover.stderr)[1]);
 	if (process.env.E2E_SLOW !== '1')
 		assert.ok(stood < 1, `${stood} s`);

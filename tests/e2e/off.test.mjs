@@ -74,7 +74,7 @@ test('a client has 64 commands for later ticks; they are listed, cancelled, and 
 	const refusals = await flood(operator, session);
 	assert.equal(refusals.length, FLOOD - OF_CLIENT);
 	for (const { data } of refusals)
-		assert.match(data.reason, /64 of this client's commands wait for later ticks already/);
+		assert.match(data.reason, /64 commands of this client wait for later ticks/);
 	const { commands } = await watcher.call('session.waiting', { session });
 	assert.equal(commands.length, OF_CLIENT);
 	assert.deepEqual({ method: commands[0].method, tick: commands[0].tick, client: commands[0].client },

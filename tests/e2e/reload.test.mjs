@@ -134,8 +134,8 @@ test('a broken file changes nothing, and the log says what is wrong and where', 
 	const driver = await greet(DRIVER);
 	for (const [text, mode, reason] of [
 		[`admin ${ADMIN}\n\nking ${OTHER}\n`, 0o600, 'line 3: roles are'],
-		[`admin ${ADMIN}\noperate short\n`, 0o600, 'line 2: a token has'],
-		['', 0o600, 'has no token'],
+		[`admin ${ADMIN}\noperate short\n`, 0o600, 'line 2: a token must have'],
+		['', 0o600, 'contains no token'],
 		[`admin ${OTHER}\n`, 0o644, 'read by other users'],
 	]) {
 		const lines = await reload(text, mode);

@@ -142,7 +142,7 @@ static unsigned check_tool(const core_book *book, const cau_tool_state *tool, co
 		if (work->allowed[t] != ENERGY_ALLOWED)
 			sim_fail(promise_of(book->place, work->allowed[t]), "%s begins a tick with %s on; %s",
 			         book->id, tool->name,
-			         work->allowed[t] == ENERGY_SILENT ? "its driver is silent"
+			         work->allowed[t] == ENERGY_SILENT ? "the driver sent no heartbeat in time"
 			                                           : "no enable counts");
 		if (work->by_ticks[t] >= 0)
 			by_ticks |= 1u << work->by_ticks[t];

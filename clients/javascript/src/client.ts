@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection with its streams and files. It comes back by itself after a loss, and joins its streams again.
+// One connection with its streams and files. After a loss it reconnects by itself and joins its streams again.
 import { isChunk, readChunk, type Chunk } from '../../web/src/wire/chunk';
 import { Connection, RpcError, type LinkState } from '../../web/src/wire/connection';
 import { decoderReady } from '../../web/src/wire/elements';
@@ -8,13 +8,13 @@ import type { HelloResult, Notices, Pushes, Requests, SessionJoin, Transfer, Upl
 import { Stream } from './stream';
 
 export interface ClientOptions {
-  /** where the daemon asks for one */
+  /** access token, if the daemon needs one */
   token?: string;
-  /** how the daemon and other clients name this program */
+  /** name of this program for the daemon and other clients */
   name?: string;
-  /** notifications of the daemon */
+  /** called for each notification of the daemon */
   notice?: <M extends keyof Pushes>(method: M, params: Pushes[M]) => void;
-  /** how the connection is: lost and found again, or refused for good */
+  /** called when the connection is lost, restored, or refused for good */
   link?: (state: LinkState) => void;
 }
 
@@ -26,7 +26,7 @@ export class Client {
   private readonly streams = new Set<Stream>();
   private readonly downloads = new Downloads(() => undefined);
   private hello: HelloResult | null = null;
-  /** Chunks that came before download() went on with the answer that announces them. */
+  /** Chunks that came before download() handled the answer that announces them. */
   private early: Chunk[] = [];
   private announcing = 0;
 
@@ -54,7 +54,7 @@ export class Client {
     this.connection.start();
   }
 
-  /** `url`: such as ws://127.0.0.1:8740. Rejects where the first connection fails or is refused. */
+  /** `url`: such as ws://127.0.0.1:8740. Rejects if the first connection fails or is refused. */
   static async connect(url: string, options: ClientOptions = {}): Promise<Client> {
     await decoderReady;
     return new Promise((resolve, reject) => {
@@ -66,23 +66,23 @@ export class Client {
     });
   }
 
-  /** What the daemon said of itself: version, limits, role. */
+  /** The answer of the daemon to hello: version, limits, role. */
   get server(): HelloResult {
     if (!this.hello) throw new RpcError('lost', 'the daemon has not answered yet');
     return this.hello;
   }
 
-  /** A request. Rejects with RpcError where the daemon refuses it. */
+  /** Sends a request. Rejects with RpcError if the daemon refuses it. */
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
     return this.connection.request(method, params);
   }
 
-  /** A notification, which is never answered: tool.move, heartbeat. */
+  /** Sends a notification, which has no answer: tool.move, heartbeat. */
   notify<M extends keyof Notices>(method: M, params: Notices[M]): void {
     this.connection.notify(method, params);
   }
 
-  /** Joins a session. The stream is there with its first state. */
+  /** Joins a session. Resolves with the stream after its first state. */
   async join(session: string, options: Omit<SessionJoin, 'session'> = {}): Promise<Stream> {
     const stream = new Stream(this.connection, session, options);
     this.streams.add(stream);
@@ -91,7 +91,7 @@ export class Client {
     return stream;
   }
 
-  /** Leaves a session: no more frames come. */
+  /** Leaves a session; its stream ends. */
   leave(stream: Stream): void {
     this.streams.delete(stream);
     stream.stop();
@@ -111,12 +111,12 @@ export class Client {
     }
   }
 
-  /** `name`: of the upload, for session.create and mesh.read. */
+  /** Uploads a file. `name` is the name of the upload for session.create and mesh.read. */
   upload(name: string, fileName: string, bytes: Uint8Array<ArrayBuffer>): Promise<UploadResult> {
     return upload(this.connection, name, fileName, bytes, () => undefined);
   }
 
-  /** Ends the connection for good: energy of the tools that it drives goes off. */
+  /** Ends the connection for good. Energy of the tools that this client drives goes off. */
   close(): void {
     this.connection.stop();
     for (const stream of this.streams) stream.end(new RpcError('lost', 'the connection was closed'));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The package `cautery`: the viewer's wire module (clients/web/src/wire), and a client that ties its parts together.
+// The package `cautery`: the viewer's wire module (clients/web/src/wire), and a client that combines its parts.
 export { Client, type ClientOptions } from './client';
 export { Stream } from './stream';
 export type { ContactPlane, ContactState } from '../../web/src/wire/contacts';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A joined session: what never changes in it, and the newest state.
+// A joined session: its constant data, and the newest state.
 import { RpcError, type Connection } from '../../web/src/wire/connection';
 import type { StreamState } from '../../web/src/wire/decoder';
 import type { SessionDescription, SessionJoin, StreamDescription } from '../../web/src/wire/messages.gen';
@@ -18,12 +18,12 @@ export class Stream {
   topology: Topology | null = null;
   private newest: StreamState | null = null;
   private waiters: Waiter[] = [];
-  /** Frames that came before start() went on with the answer that they follow: Node delivers both in one task. */
+  /** Frames that came before start() handled the answer before them; Node delivers both in one task. */
   private early: Uint8Array[] = [];
   private starting = 0;
   private readonly subscription: Subscription;
 
-  /** Client.join makes it. */
+  /** Use Client.join to create a stream. */
   constructor(connection: Connection, session: string, options: Omit<SessionJoin, 'session'>) {
     this.subscription = new Subscription(connection, session, options, {
       joined: (description, stream, topology) => Object.assign(this, { session: description, description: stream, topology }),
@@ -38,7 +38,7 @@ export class Stream {
     return this.newest;
   }
 
-  /** x, y, z of a vertex, in metres. Of vertices that no drawn face uses they are old. */
+  /** Returns x, y, z of a vertex, in metres. The position is old if no drawn face uses the vertex. */
   position(vertex: number): [number, number, number] {
     const { quantised } = this.state;
     const { origin_m: origin, step_m: step } = this.description!;
@@ -46,18 +46,18 @@ export class Stream {
     return [at(0), at(1), at(2)];
   }
 
-  /** Whether a face is cut away, or otherwise not drawn. */
+  /** Returns whether a face is removed, or not drawn for another reason. */
   isRemoved(face: number): boolean {
     return ((this.state.mask[face >>> 5]! >>> (face & 31)) & 1) === 1;
   }
 
-  /** Resolves with the first state that fulfils the condition, looked at with each frame. */
+  /** Resolves with the first state that fulfils the condition, which is checked for each frame. */
   until(condition: (stream: Stream) => boolean): Promise<StreamState> {
     if (this.newest && condition(this)) return Promise.resolve(this.newest);
     return new Promise((resolve, reject) => this.waiters.push({ condition, resolve, reject }));
   }
 
-  // What follows is the client's.
+  // The following functions are for the client only.
 
   async start(): Promise<void> {
     this.starting++;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A connection to a daemon: requests, streams, files."""
+"""A connection to a daemon, with requests, streams and files."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from .stream import Stream, session_number
 from .websocket import WebSocket
 
 _ACK_S = 0.1
-_KEY_FRAME_S = 1.0  # between requests for key frames: the daemon gives no more
-_HEARTBEAT_S = 0.05  # five go into the silence after which the daemon cuts energy
+_KEY_FRAME_S = 1.0  # between requests for key frames; the daemon sends them at most this often
+_HEARTBEAT_S = 0.05  # five heartbeats in the silence after which the daemon turns energy off
 _ALIVE = {"visible": True}
 _CHUNK_HEAD = 16
 _NOTICES_MOST = 1000
-# These may take long. A join is answered once its session is built.
+# Methods that may take long. The answer to session.join comes when the session is built.
 _LONG = EXPENSIVE_METHODS | {"session.join"}
 # Methods whose result announces a file in chunks.
 _FILES = frozenset({"session.export", "session.log", "session.frame_at", "move.read"})
@@ -55,11 +55,12 @@ class Client(Calls):
         with Client("ws://127.0.0.1:8740") as client:
             made = client.session_create(name="lesson", scene="fascia", paused=True)
 
-    `token`: where the daemon asks for one. `role`: less than the token's. `timeout_s`: for connecting, and for each
-    answer; requests that may take long (building, going back, files, joining) go on while the daemon answers heartbeats.
-    `tls`: for wss, by default the system's authorities. All functions may be called from any thread. A thread
-    of the client receives; `on_notice` is called on it with method and params of each notification, and must not wait.
-    A lost connection stays lost: every function then raises ConnectionClosed.
+    `token` is the access token, if the daemon needs one. `role` may be lower than the role of the token. `timeout_s`
+    limits connecting and each answer. Requests that may take long (building, rewinding, files, joining) wait longer, as
+    long as the daemon answers heartbeats. `tls` is for wss (default: the system's authorities). All functions
+    may be called from any thread. A thread of the client receives messages. It calls `on_notice` with the method and
+    params of each notification; `on_notice` must not wait. A client does not reconnect: after the connection is lost,
+    every function raises ConnectionClosed.
     """
 
     def __init__(self, url: str = "ws://127.0.0.1:8740", *, token: str | None = None, role: str | None = None,
@@ -92,7 +93,7 @@ class Client(Calls):
         self.close()
 
     def close(self) -> None:
-        """Ends the connection: energy of the tools that it drives goes off."""
+        """Ends the connection. Energy of the tools that this client drives goes off."""
         self._socket.close()
         if threading.current_thread() is not self._thread:
             self._thread.join(self.timeout_s)
@@ -100,7 +101,7 @@ class Client(Calls):
 
     # ---- requests
     def call(self, method: str, params: Mapping[str, Any] | None = None) -> Any:
-        """Sends a request and waits for its result. Raises RequestError where the daemon refuses it."""
+        """Sends a request and waits for its result. Raises RequestError if the daemon refuses the request."""
         return self._wait_for(self._send_request(method, params or {}))
 
     def notify(self, method: str, params: Mapping[str, Any] | None = None) -> None:
@@ -110,7 +111,7 @@ class Client(Calls):
     # ---- streams
     def join(self, session: str, *, rate_hz: float | None = None, channels: Sequence[str] | None = None,
              step_m: float | None = None, plain: bool | None = None) -> Stream:
-        """Joins a session. The stream is there with its first frame: faces, rest and a state."""
+        """Joins a session. Returns the stream after its first frame: faces, rest and a state are known."""
         description = self.call("session.join", {"session": session, "rate_hz": rate_hz, "channels": channels,
                                                  "step_m": step_m, "plain": plain})
         stream = self._streams[description["session_number"]]
@@ -119,11 +120,11 @@ class Client(Calls):
 
     @contextlib.contextmanager
     def heartbeats(self) -> Iterator[None]:
-        """Tells the daemon every 50 ms that this program is alive, as long as the block lasts.
+        """Sends heartbeats to the daemon every 50 ms while the block runs.
 
         Without it energy goes off once a driver has been silent for `server["limits"]["heartbeat_s"]`. With it energy
-        stays on while this program computes, and also while it hangs. Use it where nothing but simulated tissue is at
-        stake.
+        stays on while this program computes, and also while it hangs. Use it only for
+        simulated tissue, where a tool whose energy stays on can do no harm.
         """
         over = threading.Event()
 
@@ -143,7 +144,7 @@ class Client(Calls):
 
     # ---- files
     def upload(self, name: str, file: str | os.PathLike[str], data: bytes | None = None) -> UploadResult:
-        """Uploads a mesh file under a name. `data`: its bytes, where `file` only says how it is called."""
+        """Uploads a mesh file under a name. With `data`, these bytes are sent and `file` only gives the file name."""
         if data is None:
             with open(file, "rb") as opened:
                 data = opened.read()
@@ -155,20 +156,20 @@ class Client(Calls):
         return self.upload_end(transfer=begun["transfer"], sha256=hashlib.sha256(data).hexdigest())
 
     def download(self, method: str, params: Mapping[str, Any]) -> bytes:
-        """The file that `session.export`, `session.log` or `session.frame_at` announces."""
+        """Calls `session.export`, `session.log`, `session.frame_at` or `move.read`. Returns the file that follows."""
         if method not in _FILES:
-            raise ValueError(f"{method} announces no file")
+            raise ValueError(f"{method} does not send a file")
         announced = self.call(method, params)
         with self._lock:
             download = self._downloads[announced["transfer"]]
         if not download.done.wait(self.timeout_s):
-            raise NoAnswer(f"{method}: the file did not come within {self.timeout_s:g} s")
+            raise NoAnswer(f"{method}: the file did not arrive within {self.timeout_s:g} s")
         with self._lock:
             del self._downloads[announced["transfer"]]
         if self._over:
             raise self._over
         if hashlib.sha256(download.bytes).hexdigest() != announced["sha256"]:
-            raise Error(f"{method}: the file that came has another hash")
+            raise Error(f"{method}: the received file does not have the announced hash")
         return bytes(download.bytes)
 
     # ---- sending
@@ -245,7 +246,7 @@ class Client(Calls):
         pending.done.set()
 
     def _prepare(self, method: str, result: Any) -> None:
-        """Frames or chunks follow this answer."""
+        """Prepares for the frames or chunks that follow this answer."""
         if method == "session.join":
             self._streams[result["session_number"]] = Stream(result)
         elif method in _FILES:
@@ -274,13 +275,13 @@ class Client(Calls):
         if download is None:
             return
         if int.from_bytes(message[8:16], "little") != len(download.bytes):
-            raise Error("a chunk came out of order")
+            raise Error("a chunk of a file came out of order")
         download.bytes += message[_CHUNK_HEAD:]
         if len(download.bytes) >= download.announced["byte_count"]:
             download.done.set()
 
     def _follow(self, stream: Stream, kind: str) -> None:
-        """Acknowledges frames, and asks for a key frame where the stream lost step."""
+        """Acknowledges frames. Asks for a key frame if the stream missed a delta."""
         now_s, session = time.monotonic(), stream.description["session"]
         place = stream.place()
         if kind == "skipped" and now_s - self._asked_s >= _KEY_FRAME_S:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What goes wrong."""
+"""The exceptions of this package."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ class Error(Exception):
 
 
 class ConnectionRefused(Error):
-    """The daemon, or what stands before it, does not open a connection. The text says why."""
+    """The daemon, or a proxy in front of it, refuses the connection. The text gives the reason."""
 
 
 class ConnectionClosed(Error):
-    """The connection has ended. `code` is a key of `messages.CLOSE_REASONS`, or 1006: it was lost."""
+    """The connection has ended. `code` is a key of `messages.CLOSE_REASONS`, or 1006 if the connection was lost."""
 
     def __init__(self, code: int, reason: str) -> None:
-        super().__init__(f"closed with {code}: {reason}" if reason else f"closed with {code}")
+        super().__init__(f"the connection was closed with {code}" + (f": {reason}" if reason else ""))
         self.code = code
         self.reason = reason
 
@@ -26,8 +26,8 @@ class ConnectionClosed(Error):
 class RequestError(Error):
     """The daemon has refused a request.
 
-    `method`; `code`, a number of JSON-RPC; `status`, a word of `messages.ERROR_CODES`; `path`, the place in the
-    request that is wrong (or ""); `reason`, a sentence.
+    `method` is the method of the request. `code` is the error number of JSON-RPC. `status` is a key of
+    `messages.ERROR_CODES`. `path` is the wrong member of the request, or "". `reason` is a sentence.
     """
 
     def __init__(self, method: str, error: Mapping[str, Any]) -> None:
@@ -42,8 +42,8 @@ class RequestError(Error):
 
 
 class NoAnswer(Error, TimeoutError):
-    """What was waited for has not come in time. A request may act all the same."""
+    """An answer, a frame or a file has not arrived in time. The request may still take effect."""
 
 
 class BadFrame(Error, ValueError):
-    """Bytes that are no frame of the wire."""
+    """Received bytes are not a valid frame."""

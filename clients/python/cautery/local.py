@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A daemon of one's own, for as long as a program wants it."""
+"""A daemon that a program starts for itself and ends."""
 
 from __future__ import annotations
 
@@ -16,32 +16,33 @@ _END_S = 30.0
 
 
 class LocalDaemon:
-    """Starts `cauteryd` on a free port of this machine, with a store that goes with it.
+    """Starts `cauteryd` on a free port of this machine, with a temporary store.
 
-    `program`: by default the environment's CAUTERYD, or `cauteryd` on the path. `settings`: further ones, such as
-    `scenes="deploy/scenes"`, `workers=2`; `cauteryd --help` lists them.
+    `program` is the path of cauteryd. By default it comes from the environment variable CAUTERYD, or `cauteryd` is
+    searched on the path. `settings` are settings of the daemon, such as `scenes="deploy/scenes"` or `workers=2`.
+    `cauteryd --help` lists all settings.
     """
 
     def __init__(self, program: str | None = None, **settings: object) -> None:
         found = program or os.environ.get("CAUTERYD") or shutil.which("cauteryd")
         if not found:
-            raise Error("there is no cauteryd: install it, or name it in the environment's CAUTERYD")
+            raise Error("cauteryd was not found: install it, or set the environment variable CAUTERYD to its path")
         self._folder = tempfile.mkdtemp(prefix="cautery-")
         command = [found, "--json", "--port", "0", "--store", os.path.join(self._folder, "store.db")]
         for name, value in {"log_level": "warning", **settings}.items():
             command.append(f"--{name.replace('_', '-')}={value}")
-        # A daemon takes every CAUTERY_ variable for a setting.
+        # A daemon reads every variable CAUTERY_... as a setting.
         environment = {name: value for name, value in os.environ.items() if not name.startswith("CAUTERY")}
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True)
-        atexit.register(self.close)  # an error of the program must not leave it behind
+        atexit.register(self.close)  # the daemon must also end if the program ends by an error
         line = self._process.stdout.readline() if self._process.stdout else ""
         if not line:
             self.close()
-            raise Error(f"{found} did not start: its log says why")
+            raise Error(f"{found} did not start: see the reason in its log")
         self.url = f"ws://127.0.0.1:{json.loads(line)['port']}"
 
     def close(self) -> None:
-        """Ends it. A second call does nothing."""
+        """Ends the daemon and removes its store. A second call does nothing."""
         atexit.unregister(self.close)
         self._process.terminate()
         try:

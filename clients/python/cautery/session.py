@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A session in lock-step: it makes ticks when this program asks for them, and answers with what came of them."""
+"""A session in lock-step: it computes ticks when this program asks, and returns what was observed."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from .messages import AdvanceCommand, Observe, ObservedEnergy, ObservedTool, Obs
 
 @dataclass(frozen=True)
 class Advanced:
-    """What `Session.advance` has observed; None and empty where it was not asked for.
+    """What `Session.advance` has observed. A member that was not requested is None or empty.
 
     `positions` (vertices x 3, metres), `removed` (faces; True: not drawn), `scalars` by channel, `tools`, `vessels`
-    and `regions` by name. `energy`: where that of the instruments went, J. `stored`: whether the ticks are on the disk.
+    and `regions` by name. `energy` is where the energy of the instruments went, J. `stored` is whether the ticks are on
+    the disk.
     """
 
     tick: int
@@ -41,8 +42,8 @@ def _bits(words: Sequence[int], count: int) -> npt.NDArray[np.bool_]:
 class Session:
     """A paused session that this client advances: `Session(client, made["summary"])`.
 
-    While it does so, silence is counted in ticks. So no heartbeats are needed, and energy stays on while the program
-    computes. A lost connection still turns it off.
+    Meanwhile the daemon counts the silence of the driver in ticks, not in seconds. So no heartbeats are needed, and
+    energy stays on while the program computes. A lost connection still turns energy off.
     """
 
     def __init__(self, client: Client, summary: Mapping[str, object]) -> None:
@@ -51,9 +52,11 @@ class Session:
         self._face_count = int(str(summary["face_count"]))
 
     def advance(self, ticks: int = 1, commands: Sequence[AdvanceCommand] = (), observe: Observe | None = None) -> Advanced:
-        """Does all of the commands, or none and raises RequestError; then makes the ticks.
+        """Applies all commands, then computes the ticks.
 
-        Raises Error where fewer ticks were made, because somebody has ended lock-step: energy is off then.
+        If a command is refused, none is applied: raises RequestError.
+
+        Raises Error if fewer ticks were computed because another client ended lock-step. Then energy is off.
         """
         result = self.client.session_advance(session=self.name, ticks=ticks, commands=list(commands), observe=observe)
         if result["ticks"] < ticks:

@@ -48,20 +48,20 @@ class Tool:
     rotation: Floats  # (4,)
     jaw: float  # 0 closed to 1 open
     force_n: Floats  # (3,), of the tissue on the tool, filtered, force_max_n at most
-    torque_nm: Floats  # (3,), about the tip, filtered likewise
+    torque_nm: Floats  # (3,), about the tip, filtered as force_n
     tip_temperature_c: float
-    energy_j: float  # taken up by tissue
+    energy_j: float  # estimate of the heat that tissue took up
     driver: int  # the client's number; 0: no driver
     energized: bool
     grasping: bool
     frozen: bool  # by the watchdog
     slipping: bool
-    energy_off: str  # why energy went off last
-    sequence: int  # of the last command that was applied
-    delivered_w: float = 0.0  # into tissue in the last step
-    load_ohm: float = 0.0  # that its generator finds; 0: no current flows
-    raw_force_n: Floats | None = None  # (3,), of the state's tick, without filter and bound; None: not sent
-    raw_torque_nm: Floats | None = None  # (3,), likewise
+    energy_off: str  # reason of the last time that energy went off
+    sequence: int  # number of the last command that was applied
+    delivered_w: float = 0.0  # power given to tissue in the last step
+    load_ohm: float = 0.0  # load of the generator; 0: no current flows
+    raw_force_n: Floats | None = None  # (3,), of the tick of the state, without filter and limit; None: not sent
+    raw_torque_nm: Floats | None = None  # (3,), about the tip, without filter and limit; None: not sent
     force_filter_s: float | None = None  # time constant of the filter; 0: no filter; None: not sent
 
 
@@ -71,21 +71,21 @@ class Vessel:
 
     name: str
     parted: bool
-    pierced: bool  # its wall has a hole
-    shut: bool  # pressed so flat that nothing flows
+    pierced: bool  # the wall has a hole
+    shut: bool  # pressed so flat that no blood flows
     sealed: bool  # a seal withstands the pressure of the blood
     bleeds: bool
     radius_m: float
     bleeding_m3_s: float
-    shed_m3: float  # blood that has left it
-    burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
-    points: Floats  # (P, 3), m: its middle line
+    shed_m3: float  # volume of blood that has left the vessel
+    burst_pa: float  # predicted pressure at which the best seal opens; 0: no seal
+    points: Floats  # (P, 3), m: points of the middle line
     open: Floats  # (P,): open share of the lumen's area, 0 where a seal holds; below 0: parted there
 
 
 @dataclass(frozen=True)
 class Contact:
-    """The contact of a tool, linear about the frame's tick (channel `tool_contact`). P planes."""
+    """A linear model of the contact of a tool at the tick of the frame (channel `tool_contact`). P planes."""
 
     name: str
     valid: bool
@@ -94,25 +94,25 @@ class Contact:
     position_m: Floats  # (3,): actual
     rotation: Floats  # (4,)
     force_n: Floats  # (3,): raw, of the tissue on the tool
-    compliance_m_n: Floats  # (3, 3): at the commanded place
+    compliance_m_n: Floats  # (3, 3): at the commanded position
     friction: float
     damping_ns_m: float
     grasp_n_m: float  # stiffness of what the jaws hold; 0: nothing
-    grasp_anchor_m: Floats  # (3,): commanded place at which that pulls with 0 N
+    grasp_anchor_m: Floats  # (3,): commanded position at which the grasped tissue pulls with 0 N
     normals: Floats  # (P, 3): of the planes, out of the tissue
-    offsets_m: Floats  # (P,): a plane touches where normal . place is less
+    offsets_m: Floats  # (P,): a plane is in contact if normal . position is less
     velocities_m_s: Floats  # (P,): of the tissue along the normal
 
 
 @dataclass(frozen=True)
 class State:
-    """What a frame showed. The arrays are copies; V vertices, F faces."""
+    """The state in a frame. The arrays are copies. V vertices, F faces."""
 
     tick: int
     time_s: float
     paused: bool
     faulted: bool
-    positions: Floats  # (V, 3), m; of vertices that no drawn face uses they are old
+    positions: Floats  # (V, 3), m; old for vertices that no drawn face uses
     removed: npt.NDArray[np.bool_]  # (F,): faces that are not drawn
     scalars: Mapping[str, Floats]  # (V,) for each channel of the stream, as in `messages.SCALARS`
     tools: Mapping[str, Tool]
@@ -135,17 +135,17 @@ class _Header:
 
 
 def session_number(frame: bytes) -> int:
-    """Which stream of the connection a frame is of."""
+    """Returns the session number in the header of a frame, which identifies its stream."""
     return int.from_bytes(frame[12:16], "little")
 
 
 def _sections(frame: bytes) -> tuple[_Header, Iterator[tuple[int, bytes]]]:
     if len(frame) < _HEAD.size:
-        raise BadFrame("shorter than a frame's header")
+        raise BadFrame("the bytes are shorter than the header of a frame")
     (magic, version, kind, flags, count, session, epoch, sequence, base, tick, time_s, _published, profile, sections,
      _reserved) = _HEAD.unpack_from(frame)
     if magic != b"CAUF" or version != WIRE_VERSION or count != len(frame):
-        raise BadFrame("no frame of this version")
+        raise BadFrame("the bytes are not a frame of this version")
 
     def each() -> Iterator[tuple[int, bytes]]:
         at = _HEAD.size
@@ -160,7 +160,7 @@ def _sections(frame: bytes) -> tuple[_Header, Iterator[tuple[int, bytes]]]:
 
 
 def _indices(runs: bytes, count: int, most: int) -> npt.NDArray[np.int64]:
-    """The elements of a run list, (count,)."""
+    """Returns the indices of the elements in a run list, (count,)."""
     numbers, value, shift = [], 0, 0
     for byte in runs:
         value |= (byte & 127) << shift
@@ -170,12 +170,12 @@ def _indices(runs: bytes, count: int, most: int) -> npt.NDArray[np.int64]:
             value = shift = 0
     skips, lengths = np.array(numbers[0::2], np.int64), np.array(numbers[1::2], np.int64)
     if len(skips) != len(lengths) or lengths.sum() != count or skips.sum() + count > most:
-        raise BadFrame("runs and count differ")
+        raise BadFrame("the runs of a section do not add up to its count")
     return np.repeat(np.cumsum(skips), lengths) + np.arange(count)
 
 
 def _numbers(data: bytes, count: int, width: int, components: int, coding: int) -> npt.NDArray[np.int64]:
-    """The numbers of a section, (count, components)."""
+    """Returns the numbers of a section, (count, components)."""
     kind = {1: "u1", 2: "<u2", 4: "<u4"}[width]
     if coding != _MESHOPT:
         return np.frombuffer(data, kind, count * components).reshape(count, components).astype(np.int64)
@@ -188,7 +188,7 @@ def _numbers(data: bytes, count: int, width: int, components: int, coding: int) 
 
 
 def _wrap(values: npt.NDArray[np.int64]) -> npt.NDArray[np.int32]:
-    """Modulo 2^32."""
+    """Wraps integers modulo 2^32."""
     return (values & 0xFFFFFFFF).astype(np.uint32).view(np.int32)
 
 
@@ -197,7 +197,7 @@ def _take_elements(payload: bytes, held: npt.NDArray[np.int32]) -> None:
     width, components, coding, reference = payload[:4]
     count, run_bytes = struct.unpack_from("<II", payload, 4)
     if components != held.shape[1] or width not in (1, 2, 4):
-        raise BadFrame("elements of another kind")
+        raise BadFrame("a section has the wrong number of components, or an unknown width")
     if count == 0:
         return
     indices = _indices(payload[12:12 + run_bytes], count, len(held))
@@ -213,19 +213,19 @@ def _take_elements(payload: bytes, held: npt.NDArray[np.int32]) -> None:
 
 
 class Stream:
-    """One joined session. `wait` gives what a frame showed; `faces`, `layers` and `rest` stay as they are.
+    """The stream of a joined session. `wait` returns the state in a frame. `faces` and `rest` are constant.
 
-    Its state is filled by the client's thread; all functions may be called from any thread.
+    The thread of the client updates the state. All functions may be called from any thread.
     """
 
     def __init__(self, description: StreamDescription) -> None:
         self.description = description
         vertices, faces = description["vertex_count"], description["face_count"]
         self.faces = np.zeros((faces, 3), np.int32)  # vertices of each face
-        self.face_layers = np.zeros(faces, np.int32)  # of each face: which layer of the scene
+        self.face_layers = np.zeros(faces, np.int32)  # index of the layer of each face
         self.rest = np.zeros((vertices, 3))  # m
         self.texture: npt.NDArray[np.float32] | None = None  # (F, 3, 2): u, v of each corner
-        self.skipped = 0  # deltas that did not apply
+        self.skipped = 0  # number of deltas that did not continue the held state
         self._held = {
             SECTION["positions"]: np.zeros((vertices, 3), np.int32),
             SECTION["mask"]: np.zeros((-(-faces // 32), 1), np.int32),
@@ -241,25 +241,25 @@ class Stream:
 
     # ---- for users
     def wait(self, tick: int = 0, timeout_s: float = 30.0) -> State:
-        """The state of the first frame at `tick` or later. Raises NoAnswer, or what ended the connection."""
+        """Returns the state of the first frame at `tick` or later. Raises NoAnswer, or what ended the connection."""
         end_s = time.monotonic() + timeout_s
         with self._changed:
             while self._header is None or self._header.tick < tick:
                 if self._over:
                     raise self._over
                 if not self._changed.wait(end_s - time.monotonic()) and time.monotonic() >= end_s:
-                    raise NoAnswer(f"no frame of tick {tick} came within {timeout_s:g} s")
+                    raise NoAnswer(f"no frame of tick {tick} or later arrived within {timeout_s:g} s")
             return self._state(self._header)
 
     def next(self, after: int, timeout_s: float = 30.0) -> State:
-        """The state of the first frame after a tick."""
+        """Returns the state of the first frame after a tick."""
         return self.wait(after + 1, timeout_s)
 
     # ---- for the client
     def take(self, frame: bytes) -> str:
-        """Decodes a frame. "key", "delta", "topology", or "skipped" where it does not continue the held state.
+        """Decodes a frame. Returns "key", "delta" or "topology", or "skipped" if it does not continue the held state.
 
-        Raises BadFrame; then nothing is held until the next key frame.
+        After BadFrame no state is held until the next key frame.
         """
         with self._changed:
             try:
@@ -268,7 +268,7 @@ class Stream:
                 raise BadFrame(str(error)) from error
 
     def end(self, reason: Exception) -> None:
-        """There are no more frames."""
+        """Ends the stream: `wait` raises `reason` from now on."""
         with self._changed:
             self._over = reason
             self._changed.notify_all()
@@ -391,7 +391,7 @@ def _contacts(payload: bytes) -> dict[str, Contact]:
             np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), float(numbers[23]), float(numbers[24]),
             float(numbers[25]), numbers[26:29], planes[:, :3], planes[:, 3], planes[:, 4])
     if at != len(payload):
-        raise BadFrame("contacts of another length")
+        raise BadFrame("the section of contacts has the wrong length")
     return contacts
 
 
@@ -434,6 +434,6 @@ def _with_raw_force(payload: bytes, tools: dict[str, Tool]) -> dict[str, Tool]:
 
 
 def _statistics(payload: bytes) -> dict[str, float]:
-    """Fields that an older daemon does not send are 0."""
+    """Reads the statistics. Members that an older daemon does not send are 0."""
     record = np.frombuffer(payload[:_STATISTICS.itemsize].ljust(_STATISTICS.itemsize, b"\0"), _STATISTICS)[0]
     return {name: float(record[name]) for name in _STATISTICS.names or () if name != "stage_s"}

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Decodes meshoptimizer's vertex codec, version 0, with numpy alone.
 
-Every byte of a vertex is a series of its own. A series has differences to the vertex before, as zigzag numbers, in
-groups of 16. A group has 0, 2, 4 or 8 bits for each. Where all bits of one are set, its whole byte follows the group.
+Each byte of a vertex forms a series over the vertices. A series has the differences from vertex to vertex, as zigzag
+numbers, in groups of 16. A group has 0, 2, 4 or 8 bits for each number. If all bits of a number are set, the
+number follows the group as a whole byte.
 """
 
 from __future__ import annotations
@@ -19,17 +20,17 @@ _TAIL_BYTES_LEAST = 32
 
 
 def _table(bits: int) -> npt.NDArray[np.uint8]:
-    """The numbers of `bits` bits in each byte, the highest first: (256, 8 / bits)."""
+    """For each byte, its numbers of `bits` bits each, the highest first: (256, 8 / bits)."""
     shifts = np.arange(8 - bits, -1, -bits)
     return (np.arange(256)[:, None] >> shifts & (1 << bits) - 1).astype(np.uint8)
 
 
-_TABLES = {1: _table(2), 2: _table(4)}  # by a group's kind; kind 0: all zero, 3: whole bytes
+_TABLES = {1: _table(2), 2: _table(4)}  # by the kind of a group; kind 0: all zero, 3: whole bytes
 _ESCAPES = {kind: [int(n) for n in (table == table.max()).sum(axis=1)] for kind, table in _TABLES.items()}
 
 
 def _find_groups(data: bytes, count: int, stride: int, end: int) -> dict[int, list[tuple[int, int]]]:
-    """Where groups are, by kind: (place among all differences, place in the data)."""
+    """Finds the groups, by kind: (index among all differences, offset in the data)."""
     found: dict[int, list[tuple[int, int]]] = {1: [], 2: [], 3: []}
     columns = -(-count // _GROUP) * _GROUP
     block = min(_BLOCK_VERTICES_MOST, _BLOCK_BYTES // stride & ~(_GROUP - 1))
@@ -77,7 +78,7 @@ def decode_vertices(data: bytes, count: int, stride: int) -> npt.NDArray[np.uint
     """The bytes of `count` vertices of `stride` bytes each: (count, stride)."""
     tail = max(stride, _TAIL_BYTES_LEAST)
     if len(data) < 1 + tail or data[0] != _HEADER:
-        raise BadFrame("no vertices of meshoptimizer's codec, version 0")
+        raise BadFrame("the bytes are not vertices of meshoptimizer's codec, version 0")
     try:
         groups = _find_groups(data, count, stride, len(data) - tail)
     except IndexError as error:

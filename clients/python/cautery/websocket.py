@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The part of WebSocket (RFC 6455) that the wire uses, over a socket of Python's own library.
+"""The part of WebSocket (RFC 6455) that the protocol uses, over a socket of the standard library.
 
 No extensions. One thread may receive while others send.
 """
@@ -20,26 +20,27 @@ from .errors import ConnectionClosed, ConnectionRefused
 _GUID = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
 _CONTINUATION, _TEXT, _BINARY, _CLOSE, _PING, _PONG = 0, 1, 2, 8, 9, 10
 _RESPONSE_BYTES_MOST = 65536
-_CLOSE_S = 2.0  # how long an ending connection waits for the peer's close frame
+_CLOSE_S = 2.0  # time that a closing connection waits for the close frame of the peer
 
 
 def _masked(payload: bytes, mask: bytes) -> bytes:
-    """`payload` XOR the mask, over and over."""
+    """Returns `payload` XOR the repeated mask."""
     count = len(payload)
     key = int.from_bytes((mask * (count // 4 + 1))[:count], "little")
     return (int.from_bytes(payload, "little") ^ key).to_bytes(count, "little")
 
 
 class WebSocket:
-    """A connection. What its functions raise is in `errors`.
+    """A WebSocket connection. Its functions raise exceptions of `errors`.
 
-    `url`: ws:// or wss://. `timeout_s`: for connecting. `tls`: for wss, by default the system's authorities.
+    `url` begins with ws:// or wss://. `timeout_s` limits connecting. `tls` is for wss (default: the
+    system's authorities).
     """
 
     def __init__(self, url: str, subprotocol: str, timeout_s: float, tls: ssl.SSLContext | None = None) -> None:
         parts = urlsplit(url)
         if parts.scheme not in ("ws", "wss") or not parts.hostname:
-            raise ValueError(f"{url!r} is no address such as ws://127.0.0.1:8740")
+            raise ValueError(f"{url!r} is not an address such as ws://127.0.0.1:8740")
         secured = parts.scheme == "wss"
         port = parts.port or (443 if secured else 80)
         self._socket = socket.create_connection((parts.hostname, port), timeout=timeout_s)
@@ -81,7 +82,7 @@ class WebSocket:
 
     # ---- receiving
     def receive(self) -> str | bytes:
-        """The next message: a text, or bytes. Answers pings. Raises ConnectionClosed at the end."""
+        """Returns the next message, text or bytes. Answers pings. Raises ConnectionClosed at the end."""
         parts: list[bytes] = []
         first = _CONTINUATION
         while True:
@@ -98,7 +99,7 @@ class WebSocket:
                     return whole.decode() if first == _TEXT else whole
 
     def close(self, code: int = 1000) -> None:
-        """Ends the connection; who receives gets ConnectionClosed. A second call does nothing."""
+        """Ends the connection; `receive` raises ConnectionClosed. A second call does nothing."""
         if self._closing:
             return
         self._closing = True
@@ -152,23 +153,23 @@ class WebSocket:
             f"Sec-WebSocket-Protocol: {subprotocol}\r\n\r\n".encode())
         status, headers = self._read_response()
         if status != 101:
-            reason = headers.get("cautery-reason", "it is no cauteryd, or a proxy refuses WebSocket")
+            reason = headers.get("cautery-reason", "the server is not a cauteryd, or a proxy refuses WebSocket")
             raise ConnectionRefused(f"HTTP status {status}: {reason}")
         wanted = base64.b64encode(hashlib.sha1(key + _GUID).digest()).decode()
         if headers.get("sec-websocket-accept") != wanted or headers.get("sec-websocket-protocol") != subprotocol:
-            raise ConnectionRefused("the peer does not speak this protocol")
+            raise ConnectionRefused("the server does not support this protocol")
 
     def _read_response(self) -> tuple[int, dict[str, str]]:
         held = b""
         while b"\r\n\r\n" not in held:
             got = self._socket.recv(4096)
             if not got or len(held) > _RESPONSE_BYTES_MOST:
-                raise ConnectionRefused("the peer does not speak HTTP")
+                raise ConnectionRefused("the server does not answer with HTTP")
             held += got
         text, _, self._held = held.partition(b"\r\n\r\n")
         first, *lines = text.decode("latin-1").split("\r\n")
         words = first.split()
         if len(words) < 2 or not words[0].startswith("HTTP/1.") or not words[1].isdigit():
-            raise ConnectionRefused("the peer does not speak HTTP")
+            raise ConnectionRefused("the server does not answer with HTTP")
         pairs = (line.partition(":") for line in lines)
         return int(words[1]), {name.strip().lower(): value.strip() for name, _, value in pairs}

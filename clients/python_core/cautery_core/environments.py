@@ -30,14 +30,14 @@ def _seen_vessel(vessel: Vessel) -> SeenVessel:
 
 
 class CoreTissue:
-    """A session in this process. `kept`: of so many scenes, the last ones, a session and its beginning are kept.
+    """A session in this process. The sessions of the last `kept` scenes are kept, each with a snapshot of its beginning.
 
-    To begin again with such a scene is to restore a snapshot, which is faster than to build the session.
+    Beginning again with a kept scene restores the snapshot, which is faster than building a session.
     """
 
     def __init__(self, kept: int = 4, *, instruction_set: str | None = None) -> None:
         if kept < 1:
-            raise ValueError("one scene is kept at least")
+            raise ValueError("kept must be at least 1")
         self._kept, self._instruction_set = kept, instruction_set
         self._sessions: OrderedDict[str, tuple[Session, bytes]] = OrderedDict()
         self._session: Session | None = None
@@ -48,11 +48,11 @@ class CoreTissue:
     def session(self) -> Session:
         """The session of the present episode."""
         if self._session is None:
-            raise ValueError("there is no session: call begin")
+            raise ValueError("there is no session: call begin first")
         return self._session
 
     def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
-        """Builds the scene, or restores its beginning."""
+        """Builds the scene, or restores the snapshot of its beginning."""
         text = json.dumps(scene, sort_keys=True)
         if text in self._sessions:
             session, beginning = self._sessions[text]
@@ -67,7 +67,7 @@ class CoreTissue:
         self.faces, self.face_layers, self.rest = session.faces, session.face_layers, session.rest
 
     def step(self, commands: Sequence[ToolCommand], ticks: int) -> Seen:
-        """The commands act at the first of the ticks."""
+        """Computes `ticks` steps. The commands take effect at the first tick."""
         now = self.session
         for wanted in commands:
             self._command(now, wanted)
@@ -94,7 +94,7 @@ class CoreTissue:
 
 
 class _InProcess:
-    """A task without a daemon. With `tissue_count` of at most `kept`, a reset restores a snapshot of a tissue."""
+    """A task without a daemon. If `tissue_count` is at most `kept`, each reset restores a snapshot of a tissue."""
 
     def __init__(self, *, render_mode: str | None = None, tissue_count: int | None = None, kept: int = 4,
                  instruction_set: str | None = None, **how: Any) -> None:

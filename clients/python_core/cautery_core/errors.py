@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes wrong, in the core's words."""
+"""The exceptions of this package, with the reasons of the core."""
 
 from __future__ import annotations
 
 
 class CoreError(Exception):
-    """The core has refused something.
+    """The core has refused a call.
 
-    `status`, a word such as "bad_value" or "numerical"; `file` and `path`, the place that is wrong (or ""); `reason`, a
-    sentence.
+    `status` is a word such as "bad_value" or "numerical". `file` and `path` name the wrong file and member, or are "".
+    `reason` is a sentence.
     """
 
     def __init__(self, status: str, file: str, path: str, reason: str) -> None:
@@ -18,4 +18,4 @@ class CoreError(Exception):
 
 
 class CommandRefused(CoreError):
-    """A command was refused at its tick. The tick has passed, and the session goes on."""
+    """A command was refused at its tick. The tick is done, and the session continues."""

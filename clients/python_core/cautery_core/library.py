@@ -14,7 +14,7 @@ _NAME = f"libcautery-core.so.{ABI}"
 
 
 def _place() -> str:
-    """The environment's LIBCAUTERY_CORE, the folder of this package, or wherever the system's loader looks."""
+    """Path of the library: LIBCAUTERY_CORE, else in the folder of this package, else its name for the loader."""
     named = os.environ.get("LIBCAUTERY_CORE")
     beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), _NAME)
     return named or (beside if os.path.exists(beside) else _NAME)
@@ -22,20 +22,20 @@ def _place() -> str:
 
 @functools.cache
 def core() -> ctypes.CDLL:
-    """The library, with the types of its functions set."""
+    """Returns the library, with the types of its functions set."""
     place = _place()
     try:
         library = ctypes.CDLL(place)
     except OSError as error:
-        raise ImportError(f"libcautery-core does not load ({error}): install it (Debian's package libcautery-core{ABI}), "
-                          f"or name its file {_NAME} in the environment's LIBCAUTERY_CORE") from error
+        raise ImportError(f"libcautery-core cannot be loaded ({error}): install it (Debian's package libcautery-core{ABI}), "
+                          f"or set the environment variable LIBCAUTERY_CORE to the path of {_NAME}") from error
     for name, (result, parameters) in FUNCTIONS.items():
         try:
             function = getattr(library, name)
         except AttributeError as error:
-            raise ImportError(f"{place} has no function {name}: it is no libcautery-core {ABI}") from error
+            raise ImportError(f"{place} has no function {name}: it is not libcautery-core {ABI}") from error
         function.restype, function.argtypes = result, parameters
     version = library.cau_core_version().decode()
     if version.rsplit(".", 1)[0] != ABI:
-        raise ImportError(f"{place} is version {version}, and this package is for {ABI}")
+        raise ImportError(f"{place} has version {version}, but this package needs {ABI}")
     return library

@@ -41,7 +41,7 @@ class Tool:
 
     name: str
     shape: str
-    position_m: Floats  # (3,), of the tip: tissue can stop the tool
+    position_m: Floats  # (3,), of the tip; tissue can hold the tool back
     rotation: Floats  # (4,)
     jaw: float  # 0 closed to 1 open
     energized: bool
@@ -50,15 +50,15 @@ class Tool:
     grasped_vertices: int
     contact_vertices: int
     force_n: Floats  # (3,), of the tissue on the tool, filtered with sizes["force_filter_s"], at most force_max_n
-    torque_nm: Floats  # (3,), about the tip, filtered likewise
-    raw_force_n: Floats  # (3,), of the last step, without filter and bound
+    torque_nm: Floats  # (3,), about the tip, filtered as force_n
+    raw_force_n: Floats  # (3,), of the last step, without filter and limit
     raw_torque_nm: Floats  # (3,)
     tip_temperature_c: float
-    energy_j: float  # taken up by tissue
-    power_w: float  # with energy `tissue`: given to tissue in the last step
-    load_ohm: float  # that its generator finds; 0: no current flows
-    slips: int  # times that it fell too far behind its commanded pose
-    sizes: Mapping[str, float]  # the members of a scene's tool, temperature_c among them
+    energy_j: float  # estimate of the heat that tissue took up
+    power_w: float  # with energy `tissue`: power given to tissue in the last step
+    load_ohm: float  # load of the generator; 0: no current flows
+    slips: int  # number of times that the tool fell too far behind its commanded pose
+    sizes: Mapping[str, float]  # numbers of the tool as in a scene, for example temperature_c
 
 
 def _text(bytes_: bytes) -> str:
@@ -71,22 +71,22 @@ def _raised(error: layout.Error, kind: type[CoreError] = CoreError) -> CoreError
 
 
 def _json(value: Any) -> bytes:
-    """As JSON; arrays of numpy are lists."""
+    """Returns the value as JSON. numpy arrays become lists."""
     try:
         return json.dumps(value, allow_nan=False, default=lambda array: array.tolist()).encode()
     except (AttributeError, RecursionError) as error:
-        raise TypeError(f"this cannot be written as JSON: {error}") from error
+        raise TypeError(f"the value cannot be written as JSON: {error}") from error
 
 
 def _path(path: str | os.PathLike[str]) -> bytes:
     encoded = os.fsencode(path)
     if b"\0" in encoded:
-        raise ValueError("a path with a zero byte in it")
+        raise ValueError("the path contains a zero byte")
     return encoded
 
 
 def _array(kind: type, address: int | None, *shape: int) -> npt.NDArray[Any]:
-    """A copy of the numbers at an address of the core's."""
+    """Returns a copy of the numbers at an address in the core."""
     made = np.empty(shape, np.dtype(kind))
     if made.size:
         ctypes.memmove(made.ctypes.data, address, made.nbytes)
@@ -125,16 +125,17 @@ class Session:
             session.move_tool("hook", [0, 0, 0])
             session.step(60)
 
-    `directory`: where a dictionary's mesh files are looked up. `threads`: used by a step, 1 to 16; results do not depend
-    on it. `instruction_set`: the highest to use ("baseline", "avx2", "avx512"), for equal bits on different machines.
-    Arrays are copies. V vertices, F faces. Functions may be called from any thread; calls on one session wait for each
-    other, and sessions do not wait for other sessions. Errors are CoreError; after `close`, ValueError.
+    `directory` is the folder of the mesh files of a dictionary. `threads` is the number of threads of a step, 1 to 16;
+    results do not depend on it. `instruction_set` is the highest instruction set to use ("baseline", "avx2", "avx512"),
+    which gives equal bits on different machines. Arrays are copies. V vertices, F faces. Functions may be called from any
+    thread. Calls on one session wait for each other; calls on different sessions do not. Functions raise CoreError, and
+    ValueError after `close`.
     """
 
     def __init__(self, scene: str | os.PathLike[str] | Mapping[str, Any], *, directory: str | None = None,
                  threads: int = 1, command_capacity: int = 1024, instruction_set: str | None = None) -> None:
         if instruction_set not in (None, *layout.INSTRUCTION_SETS):
-            raise ValueError(f"{instruction_set!r} is none of {', '.join(layout.INSTRUCTION_SETS)}")
+            raise ValueError(f"{instruction_set!r} is not one of {', '.join(layout.INSTRUCTION_SETS)}")
         self._core = core()
         self._lock = threading.Lock()
         definition = self._core.cau_default_session_def()
@@ -156,7 +157,7 @@ class Session:
         self._describe()
 
     def _describe(self) -> None:
-        """What never changes."""
+        """Reads what never changes in a session."""
         info = layout.SessionInfo()
         self._core.cau_session_describe(self._pointer, info)
         self.name, self.description, self.step_s = _text(info.name), _text(info.description), info.step_s
@@ -177,29 +178,29 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Ends the session, once what another thread does with it has ended. A second call does nothing."""
+        """Ends the session, after any call of another thread has returned. A second call does nothing."""
         with self._lock:
             self._pointer = None
             self._end()
 
     def _opened(self) -> int:
-        """The session. The caller holds the lock."""
+        """Returns the session. The caller holds the lock."""
         if self._pointer is None:
             raise ValueError("the session is closed")
         return self._pointer
 
     def _frame(self) -> layout.Frame:
-        """A view of the present state. The caller holds the lock; nothing of it is kept beyond that."""
+        """Returns a view of the present state. The caller holds the lock, and uses the view only meanwhile."""
         frame = layout.Frame()
         self._core.cau_session_frame(self._opened(), frame)
         return frame
 
     # ---- commands
     def submit(self, command: str, *, tick: int = 0, **members: Any) -> None:
-        """Queues a command: `submit("tool.grasp", tool="grasper")`. It acts at the next tick, or at `tick`.
+        """Queues a command: `submit("tool.grasp", tool="grasper")`. It takes effect at the next tick, or at `tick`.
 
-        The members are those of `cautery/command_json.h` and of the wire. A command that is refused at its tick ends
-        `step` with CommandRefused.
+        The members are those of `cautery/command_json.h` and of the wire. If a command is refused at its tick,
+        `step` raises CommandRefused.
         """
         text, error = _json({"command": command, "tick": tick, **members}), layout.Error()
         with self._lock:
@@ -207,7 +208,7 @@ class Session:
                 raise _raised(error)
 
     def move_tool(self, tool: str, position_m: npt.ArrayLike, rotation: npt.ArrayLike = _REST, jaw: float = 0.0) -> None:
-        """Commands the tool's pose: tip (3,), rotation w, x, y, z (4,), jaw 0 closed to 1 open."""
+        """Sets the commanded pose: tip (3,), rotation w, x, y, z (4,), jaw 0 closed to 1 open."""
         self.submit("tool.move", tool=tool, position_m=np.asarray(position_m, float),
                     rotation=np.asarray(rotation, float), jaw=jaw)
 
@@ -216,7 +217,7 @@ class Session:
         self.submit("tool.energize", tool=tool, energized=bool(energized))
 
     def grasp(self, tool: str) -> None:
-        """Closes the tool's jaws on what lies between them."""
+        """Closes the jaws of the tool on the tissue between them."""
         self.submit("tool.grasp", tool=tool)
 
     def release(self, tool: str) -> None:
@@ -224,9 +225,10 @@ class Session:
         self.submit("tool.release", tool=tool)
 
     def configure_tool(self, tool: str, **changes: Any) -> None:
-        """Changes members of the tool, such as temperature_c or shape. The others stay as the last step left them.
+        """Changes members of the tool, such as temperature_c or shape. Other members keep their present values.
 
-        With `instrument` (and `mode`) the tool becomes that instrument: the others are the profile's, or the defaults.
+        With `instrument` (and `mode`) the tool becomes that instrument. Other members come from the profile, or are
+        defaults.
         """
         states = self.tools
         if tool not in states:
@@ -238,10 +240,10 @@ class Session:
 
     # ---- time
     def step(self, ticks: int = 1) -> int:
-        """Goes on by so many ticks, and returns the tick that is reached.
+        """Computes `ticks` steps, and returns the tick that is reached.
 
-        Raises CoreError ("numerical", "faulted") where the tissue's motion is no longer sound: `restore` ends that. Raises
-        CommandRefused after the tick at which a command was refused.
+        Raises CoreError ("numerical", "faulted") if the motion of the tissue is no longer sound: then call `restore`.
+        Raises CommandRefused after the tick at which a command was refused.
         """
         for _ in range(ticks):
             self._step_once()
@@ -265,10 +267,10 @@ class Session:
         with self._lock:
             self._core.cau_session_set_threads(self._opened(), threads)
 
-    # ---- what a step made
+    # ---- the present state
     @property
     def tick(self) -> int:
-        """Steps since the beginning."""
+        """Number of steps since the beginning."""
         with self._lock:
             return int(self._frame().tick)
 
@@ -280,11 +282,11 @@ class Session:
 
     @property
     def positions(self) -> Floats:
-        """(V, 3), m."""
+        """Positions of the vertices, (V, 3), m."""
         return self.read_positions(np.empty((self.vertex_count, 3)))
 
     def read_positions(self, out: Floats) -> Floats:
-        """Writes the positions into an array of the caller's, (V, 3) doubles in C's order, and returns it."""
+        """Writes the positions into the array `out`, (V, 3) doubles in C order, and returns `out`."""
         shape = (self.vertex_count, 3)
         if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != np.float64 \
                 or not out.flags.c_contiguous or not out.flags.writeable:
@@ -295,13 +297,13 @@ class Session:
 
     @property
     def velocities(self) -> Floats:
-        """(V, 3), m/s."""
+        """Velocities of the vertices, (V, 3), m/s."""
         with self._lock:
             return _array(layout.DOUBLES, self._frame().velocity, self.vertex_count, 3)
 
     @property
     def removed(self) -> npt.NDArray[np.bool_]:
-        """(F,): faces that are not drawn, because they are cut away or lie inside."""
+        """Whether each face is not drawn, because it is removed or lies inside, (F,)."""
         with self._lock:
             words = _array(layout.WORDS, self._frame().face_mask, -(-self.face_count // 32))
         bits = np.unpackbits(words.astype("<u4").view(np.uint8), bitorder="little")
@@ -309,17 +311,17 @@ class Session:
 
     @property
     def visible(self) -> npt.NDArray[np.bool_]:
-        """(V,): vertices of drawn faces."""
+        """Whether each vertex belongs to a drawn face, (V,)."""
         with self._lock:
             return _array(layout.BYTES, self._frame().vertex_visible, self.vertex_count).astype(bool)
 
     def scalar(self, name: str) -> npt.NDArray[np.float32]:
-        """(V,) of "exposure", "charring", "stress" (Pa), "temperature" (degC) or "blood" (m).
+        """Returns a value of each vertex, (V,): "exposure", "charring", "stress" (Pa), "temperature" (degC) or "blood" (m).
 
-        From the first call on, steps compute stress, temperature or blood too.
+        From the first call on, steps also compute stress, temperature or blood.
         """
         if name not in layout.SCALARS:
-            raise ValueError(f"{name!r} is none of {', '.join(layout.SCALARS)}")
+            raise ValueError(f"{name!r} is not one of {', '.join(layout.SCALARS)}")
         with self._lock:
             pointer = self._opened()
             if not self._watched & layout.SCALARS[name]:
@@ -345,7 +347,7 @@ class Session:
 
     @property
     def statistics(self) -> dict[str, float]:
-        """Cost and condition of the last step, as `cautery/session.h` has them.
+        """Times, counts and errors of the last step, as in `cautery/session.h`.
 
         `long_inverted` is the sum over all layers.
         """
@@ -357,7 +359,7 @@ class Session:
 
     # ---- snapshots
     def snapshot(self) -> bytes:
-        """The whole state with the queued commands."""
+        """Returns the whole state with the queued commands."""
         count, error = ctypes.c_size_t(), layout.Error()
         with self._lock:
             pointer = self._opened()
@@ -367,9 +369,10 @@ class Session:
             return held.raw[:count.value]
 
     def restore(self, snapshot: bytes) -> bool:
-        """Restores a snapshot of a session of the same scene. False: of another build or instruction set, so not exact.
+        """Restores a snapshot of a session of the same scene. Returns False if another build or instruction set wrote it:
+        later steps may then differ in the last digits.
 
-        Raises CoreError "corrupt", and the session stays as it was, where the bytes are none of this scene's.
+        Raises CoreError "corrupt" if the bytes are not a snapshot of this scene. Then the session does not change.
         """
         exact, error = ctypes.c_bool(), layout.Error()
         bytes_ = bytes(snapshot)
@@ -380,11 +383,11 @@ class Session:
         return bool(exact.value)
 
     def hash(self) -> int:
-        """Hash of the whole state: equal hashes, equal bits."""
+        """Returns the hash of the whole state. Equal hashes mean equal bits."""
         with self._lock:
             return int(self._core.cau_session_hash(self._opened()))
 
     def share(self) -> int:
-        """Shares memory with other sessions of equal tissue that called this; the bytes shared. Results stay the same."""
+        """Shares memory with other sessions of equal tissue that called this. Returns the shared bytes."""
         with self._lock:
             return int(self._core.cau_session_share(self._opened()))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page: makes the rooms and ties them together.
+// The page: creates all modules and connects them.
 import { Box3 } from 'three';
 
 import { Aim } from './hands/aim';
@@ -66,7 +66,7 @@ const link: Link = new Link({
   moved: (session, to, url) => {
     if (session === model.session) follow(to, url);
   },
-  notJoined: (session, message) => model.notice('error', `${session} cannot be watched: ${message}`),
+  notJoined: (session, message) => model.notice('error', `Session ${session} cannot be opened: ${message}`),
   frame: (frame) => {
     const buffers = viewport.takeFrame(frame);
     model.setFrame(frame);
@@ -74,7 +74,7 @@ const link: Link = new Link({
   },
   push: (method, params) => control.push(method, params),
   file: (name, mediaType, bytes, sound) => {
-    if (!sound) model.notice('error', `${name} was damaged in transfer. Try again.`);
+    if (!sound) model.notice('error', `The file ${name} was damaged during the download. Try again.`);
     else saveReceived(name, mediaType, bytes);
   },
 });
@@ -120,7 +120,7 @@ operatePanel(control, hand, viewport, { token: () => lastToken, rename: () => co
 const chooseMode = modeSwitch((mode) => {
   tabs.show(mode === 'research');
   if (mode === 'research') return;
-  // Trainees have none of the tools that look closely, so nothing of them may stay behind.
+  // Operate has no inspection tools, so their effects must end.
   clip.off();
   inspect.off();
   if (pointer.press !== 'measure' && pointer.press !== 'pin') return;
@@ -146,10 +146,11 @@ function socketAddress(session: string | null): string {
   return url.href;
 }
 
-/** A page may connect to its own address alone: a daemon that has another has its page there, too. */
+/** Follows a session to another daemon. A page may connect only to its own address, so for another address the page of
+ * that daemon is opened. */
 function follow(session: string, daemon: string): void {
   const there = daemon === '' ? null : new URL(daemon);
-  model.notice('info', `The session is ${session} now.`);
+  model.notice('info', `The session has moved to another server. Its name is now ${session}.`);
   if (there && there.host !== window.location.host) {
     there.protocol = there.protocol === 'wss:' || there.protocol === 'https:' ? 'https:' : 'http:';
     there.pathname = '/';
@@ -157,7 +158,7 @@ function follow(session: string, daemon: string): void {
     window.location.assign(there.href);
     return;
   }
-  // Behind a proxy, the page of one daemon is at its label: the other's is at its own.
+  // Behind a proxy, the page of each daemon is under its label.
   const [label, old] = [session, model.session ?? ''].map((id) => id.split('-')[0]);
   if (window.location.pathname === `/${old}/`) {
     window.location.assign(`/${label}/?session=${encodeURIComponent(session)}`);
@@ -198,14 +199,14 @@ function animate(): void {
 }
 requestAnimationFrame(animate);
 
-/** For tests and the curious: what the page holds. */
+/** The state of the page, for tests and for debugging. */
 export interface Inspection {
   session: string | null;
   link: string;
   tick: number;
   epoch: string;
   paused: boolean;
-  /** the past tick that the picture shows; null: the newest */
+  /** past tick that the picture shows; null: the present */
   past: number | null;
   drawnFaces: Readonly<Record<string, number>>;
   framesDecoded: number;
@@ -213,10 +214,10 @@ export interface Inspection {
   driving: boolean;
   energized: boolean;
   tip: readonly number[];
-  /** where the tool in hand is led to, and whether it is drawn there too */
+  /** commanded position of the tool in hand, and whether it is drawn there */
   asked: readonly number[];
   ghost: boolean;
-  /** of the tool in hand: 0 closed, 1 open; where it is led to; whether it holds tissue */
+  /** opening of the jaws of the tool in hand, 0 closed to 1 open; commanded opening; whether they hold tissue */
   jaw: number;
   askedJaw: number;
   grasping: boolean;
@@ -225,16 +226,16 @@ export interface Inspection {
   tool: Tool | null;
   pictureMs: number;
   picturesDrawn: number;
-  /** of smoke in the air */
+  /** number of smoke puffs */
   puffs: number;
-  /** Hz of the activation tone, 0 without; loudness of the sizzle, 0 to 1; alarms so far */
+  /** frequency of the activation tone, Hz, 0: off; loudness of the sizzle, 0 to 1; number of alarms */
   heard: { toneHz: number; sizzle: number };
   alarms: number;
-  /** nothing is left to draw */
+  /** whether the picture is up to date */
   idle: boolean;
-  /** of recent frames: published to decoded */
+  /** latencies of recent frames, from publishing to decoding, ms */
   latenciesMs(): number[];
-  /** definition of a layer as the daemon last told it */
+  /** newest definition of a layer from the daemon */
   layer(name: string): Layer | null;
   /** whether tissue of a layer is drawn over a point of the ground */
   drawnAt(layer: string, x: number, y: number): boolean;

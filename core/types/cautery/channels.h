@@ -48,18 +48,21 @@
 	OWN(X, POSITIONS, positions, 1, BY_DEFAULT, "vertex positions")                                \
 	OWN(X, MASK, mask, 2, BY_DEFAULT, "faces that are not drawn")                                  \
 	SCALAR(X, EXPOSURE, exposure, 3, BY_DEFAULT, 0.0, 1.0 / 255.0, 255, "1",                       \
-	       "the largest of the vertex's edges': heat taken up over what ignites it, 0 to 1")       \
+	       "largest heat exposure of the vertex's edges, over the exposure that parts the edge, "  \
+	       "0 to 1")                                                                               \
 	SCALAR(X, CHARRING, charring, 4, BY_DEFAULT, 0.0, 1.0 / 255.0, 255, "1",                       \
 	       "share of the vertex's edges that have parted, 0 to 1")                                 \
 	SCALAR(X, STRESS, stress, 5, ON_REQUEST, 0.0, 0.0, 65535, "Pa",                                \
 	       "von Mises stress of fat, volume weighted")                                             \
 	OWN(X, TOOLS, tools, 7, BY_DEFAULT, "pose, driver, force, temperature, energy of every tool")  \
-	OWN(X, STATISTICS, statistics, 8, ON_REQUEST, "cost and condition of the last step")           \
+	OWN(X, STATISTICS, statistics, 8, ON_REQUEST, "times, counts and errors of the last step")     \
 	SCALAR(X, TEMPERATURE, temperature, 9, ON_REQUEST, -20.0, 0.25, 65535, "degC",                 \
-	       "what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c")        \
+	       "temperature of the tools' heat grids at the vertex; outside of the grids ambient_c "   \
+	       "of the scene")                                                                         \
 	OWN(X, VESSELS, vessels, 10, ON_REQUEST, "flags, bleeding, seal and line of every vessel")     \
 	SCALAR(X, BLOOD, blood, 11, ON_REQUEST, 0.0, 2e-5, 255, "m", "depth of blood on the surface")  \
-	OWN(X, TOOL_CONTACT, tool_contact, 12, ON_REQUEST, "linear contact of every tool, to render")  \
+	OWN(X, TOOL_CONTACT, tool_contact, 12, ON_REQUEST,                                             \
+	    "linear model of the contact of every tool, for haptic rendering")                         \
 	/* a new row goes above this line */
 // clang-format on
 

@@ -72,14 +72,17 @@ enum {
 // ---- time and solver ------------------------------------------------------------------------
 #define CAU_TIME_TABLE(X)                                                                          \
 	X(step_s, 1.0 / 60.0, 1.0 / 1000.0, 1.0 / 30.0, "s", "time step; one tick")                    \
-	X(damping_per_s, 0.0, 0.0, 1000.0, "1/s", "v <- v exp(-c dt)")                                 \
+	X(damping_per_s, 0.0, 0.0, 1000.0, "1/s",                                                      \
+	  "damping rate c: each step multiplies velocities by exp(-c step_s)")                         \
 	X(ambient_c, 37.0, -20.0, 60.0, "degC", "temperature of the body around the tools")            \
-	X(tolerance, 0.0, 0.0, 1.0, "1", "stop a step at this relative residual; 0: never")            \
-	X(accuracy, 0.01, 0.0, 1.0, "1", "end a step at this error relative to its motion; 0: never")  \
+	X(tolerance, 0.0, 0.0, 1.0, "1", "relative residual at which a step ends; 0: not used")        \
+	X(accuracy, 0.01, 0.0, 1.0, "1",                                                               \
+	  "largest error of a step, relative to its motion; 0: all iterations")                        \
 	X(contact_thickness_m, 0.0, 0.0, 0.01, "m",                                                    \
-	  "tissue keeps this far from tissue; 0: it crosses")                                          \
-	X(contact_friction, 0.1, 0.0, 2.0, "1", "of tissue on tissue")                                 \
-	X(cell_m, 2.5e-4, 1e-4, 5e-3, "m", "side of the cells of heat, with energy `tissue`")
+	  "least distance between tissue surfaces; 0: no tissue contact")                              \
+	X(contact_friction, 0.1, 0.0, 2.0, "1", "Coulomb coefficient of tissue on tissue")             \
+	X(cell_m, 2.5e-4, 1e-4, 5e-3, "m",                                                             \
+	  "edge length of one cell of the heat computation; for energy tissue")
 
 #define CAU_SOLVER_TABLE(X) /* code, JSON name */                                                  \
 	X(CHOLESKY, "cholesky")                                                                        \
@@ -131,7 +134,7 @@ typedef struct cau_mesh_def {
 // computes the stress of the law `word`.
 #define CAU_MODEL_TABLE(X)                                                                         \
 	X(NEOHOOKEAN, neohookean, 0.45, true, false, 5.0 / 6.0, 4.0 / 3.0,                             \
-	  "stable neo-Hookean (Smith et al. 2018); tetrahedra that are inside out recover")            \
+	  "stable neo-Hookean (Smith et al. 2018); inverted tetrahedra recover")                       \
 	X(COROTATED, corotated, 0.45, true, true, 0.0, 1.0,                                            \
 	  "linear elasticity in the frame of the nearest rotation")                                    \
 	X(STVK, stvk, 0.45, true, false, 0.0, 1.0,                                                     \
@@ -148,34 +151,42 @@ typedef struct cau_mesh_def {
 
 // Properties of all tissue: how heat parts it (section 6.2, 6.3), and the energy of a tear.
 #define CAU_HEAT_TABLE(X)                                                                          \
-	X(ignition_c, 172.0, 1.0, 2000.0, "degC", "it parts when its exposure exceeds this")           \
-	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC", "standard deviation, drawn by seed")             \
-	X(ignition_bundle_m, 0.0, 0.0, 0.1, "m", "width of bundles that part alike; 0: none")          \
-	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s", "xi of eq. 20")                                   \
+	X(ignition_c, 172.0, 1.0, 2000.0, "degC",                                                      \
+	  "tissue parts when exposure times absorption_per_s exceeds this")                            \
+	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC",                                                  \
+	  "standard deviation of ignition_c in the tissue, drawn from the seed")                       \
+	X(ignition_bundle_m, 0.0, 0.0, 0.1, "m",                                                       \
+	  "width of fibre bundles that share one ignition temperature; 0: no bundles")                 \
+	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s",                                                   \
+	  "rate at which tissue takes up heat (xi of eq. 20)")                                         \
 	X(tear_energy_j_m2, 0.0, 0.0, 1e6, "J/m^2",                                                    \
-	  "energy that a tear takes by its area; 0: none does")
+	  "energy of a tear per area; 0: tissue does not tear")
 
 #define CAU_SHEET_TABLE(X)                                                                         \
 	X(thickness_m, 5e-4, 1e-6, 0.05, "m", "sheet thickness")                                       \
 	X(density_kg_m3, 1100.0, 1.0, 25000.0, "kg/m^3", "mass density")                               \
 	X(limit_stiffness_pa, 1e6, 1.0, 1e10, "Pa", "stiffness k of the strain limit")                 \
-	X(shear_max, 0.0, 0.0, 0.99, "1", "range: |k_12| / sqrt(k_11 k_22) stays below")               \
-	X(bending_stiffness_nm, 0.0, 0.0, 10.0, "N m", "bending; 0: no hinges")
+	X(shear_max, 0.0, 0.0, 0.99, "1",                                                              \
+	  "limit range: largest shear, the cosine of the angle between material axes")                 \
+	X(bending_stiffness_nm, 0.0, 0.0, 10.0, "N m", "bending stiffness; 0: bending is not resisted")
 
 #define CAU_FAT_TABLE(X)                                                                           \
 	X(density_kg_m3, 911.0, 1.0, 25000.0, "kg/m^3", "mass density")                                \
 	X(young_modulus_pa, 5000.0, 1.0, 1e10, "Pa", "Young's modulus")                                \
 	X(poisson_ratio, 0.4, 0.0, 0.45, "1", "Poisson's ratio; at most 1/3 for model energy")         \
 	X(limit_stiffness_pa, 1000.0, 1.0, 1e10, "Pa", "stiffness of the strain limit and shrinkage")  \
-	X(shear_max, 0.0, 0.0, 0.99, "1", "range: |k_ab| / sqrt(k_aa k_bb) stays below")               \
-	X(yield_strain, 0.0, 0.0, 10.0, "1", "gamma_1 (strain with the half); plastic if gamma_2 > 0") \
-	X(plastic_strain_max, 0.0, 0.0, 10.0, "1", "gamma_2; 0: no plasticity")
+	X(shear_max, 0.0, 0.0, 0.99, "1",                                                              \
+	  "limit range: largest shear, the cosine of the angle between material axes")                 \
+	X(yield_strain, 0.0, 0.0, 10.0, "1",                                                           \
+	  "deviatoric Green strain at which plastic flow begins (gamma_1)")                            \
+	X(plastic_strain_max, 0.0, 0.0, 10.0, "1",                                                     \
+	  "largest plastic strain (gamma_2); 0: no plastic flow")
 
 #define CAU_LINK_TABLE(X)                                                                          \
 	X(young_modulus_pa, 1e5, 1.0, 1e11, "Pa", "Young's modulus of a truss")                        \
 	X(area_m2, 1e-6, 1e-12, 1.0, "m^2", "cross section of a truss")                                \
-	X(reach_m, 5e-3, 1e-6, 1.0, "m", "longest truss")                                              \
-	X(per_vertex, 3.0, 1.0, 8.0, "1", "trusses from each vertex of the upper sheet")
+	X(reach_m, 5e-3, 1e-6, 1.0, "m", "length of the longest truss")                                \
+	X(per_vertex, 3.0, 1.0, 8.0, "1", "number of trusses from each vertex of the upper sheet")
 
 // How heat parts a tissue, and what tears it: the members of CAU_HEAT_TABLE.
 typedef struct cau_heat_material {
@@ -275,7 +286,7 @@ typedef struct cau_selection {
 // `word`, as its signed distances.
 #define CAU_TOOL_SHAPE_TABLE(X)                                                                    \
 	X(SPHERE, sphere, true, false, "hot ball at the tip, cold shaft")                              \
-	X(CAPSULE, capsule, true, false, "hot needle of tip_length_m, cold shaft")                     \
+	X(CAPSULE, capsule, true, false, "hot needle, cold shaft")                                     \
 	X(HOOK, hook, true, false, "monopolar L hook: hot foot and heel, cold shaft")                  \
 	X(SPATULA, spatula, true, false, "hot flat blade, cold shaft")                                 \
 	X(BIPOLAR, bipolar, true, true, "two jaws that close, hot inner faces")                        \
@@ -293,27 +304,33 @@ typedef struct cau_selection {
 	X(temperature_c, 170.0, 0.0, 1500.0, "degC", "temperature of the hot part while energized")    \
 	X(grid_cells, 16.0, 8.0, 64.0, "1", "nodes of the heat grid along each axis")                  \
 	X(grid_step_m, 1e-3, 5e-5, 0.01, "m",                                                          \
-	  "spacing dl of the heat grid; at most the thinnest hot radius")                              \
-	X(diffusivity_m2_s, 4.2e-6, 0.0, 1e-3, "m^2/s", "alpha of eq. 18")                             \
-	X(max_speed_m_s, 0.5, 1e-3, 5.0, "m/s", "faster commands are followed at this speed")          \
-	X(max_turn_rad_s, 12.0, 0.1, 100.0, "rad/s", "fastest turning of the tool")                    \
+	  "spacing of the heat grid; at most the smallest radius of the hot part")                     \
+	X(diffusivity_m2_s, 4.2e-6, 0.0, 1e-3, "m^2/s",                                                \
+	  "thermal diffusivity of the heat grid (alpha of eq. 18)")                                    \
+	X(max_speed_m_s, 0.5, 1e-3, 5.0, "m/s",                                                        \
+	  "largest speed of the tool; it follows faster commands at this speed")                       \
+	X(max_turn_rad_s, 12.0, 0.1, 100.0, "rad/s", "largest angular speed of the tool")              \
 	X(friction, 0.2, 0.0, 2.0, "1", "Coulomb coefficient of the cold parts")                       \
 	X(drag_ns_m, 0.05, 0.0, 100.0, "N s/m", "viscous drag of the hot part on each vertex in it")   \
-	X(grasp_stiffness_n_m, 200.0, 1.0, 1e6, "N/m", "of the attachment of one grasped vertex")      \
-	X(slip_force_n, 2.0, 0.0, 1000.0, "N", "an attached vertex slips above this force")            \
-	X(force_max_n, 20.0, 0.01, 1000.0, "N", "the tool pushes with this at most; drivers read it")  \
-	X(close_force_n, 8.0, 0.01, 1000.0, "N", "its jaws press what they hold with this at most")    \
-	X(power_w, 30.0, 0.0, 400.0, "W", "power that is set, with energy `tissue`")                   \
-	X(peak_v, 1150.0, 1.0, 10000.0, "V", "most voltage, peak; from 200 V on it sparks and cuts")   \
-	X(crest_factor, 1.4, 1.4, 20.0, "1", "of the voltage: its peak over its root mean square")     \
-	X(current_max_a, 2.0, 0.01, 10.0, "A", "most current, root mean square")                       \
-	X(force_filter_s, 0.02, 0.0, 1.0, "s", "time constant of its filtered force; 0: no filter")    \
+	X(grasp_stiffness_n_m, 200.0, 1.0, 1e6, "N/m",                                                 \
+	  "stiffness of the spring that attaches one grasped vertex")                                  \
+	X(slip_force_n, 2.0, 0.0, 1000.0, "N", "force above which a grasped vertex slips")             \
+	X(force_max_n, 20.0, 0.01, 1000.0, "N",                                                        \
+	  "largest force of the tool on tissue, and largest force sent to drivers")                    \
+	X(close_force_n, 8.0, 0.01, 1000.0, "N", "largest force of the jaws on what they hold")        \
+	X(power_w, 30.0, 0.0, 400.0, "W", "power to which the generator is set; for energy tissue")    \
+	X(peak_v, 1150.0, 1.0, 10000.0, "V",                                                           \
+	  "largest peak voltage; from 200 V the tool sparks and cuts")                                 \
+	X(crest_factor, 1.4, 1.4, 20.0, "1", "peak voltage over root mean square voltage")             \
+	X(current_max_a, 2.0, 0.01, 10.0, "A", "largest current, root mean square")                    \
+	X(force_filter_s, 0.02, 0.0, 1.0, "s", "time constant of the force filter; 0: no filter")      \
 	X(blade_heat_j_k, 0.0, 0.0, 100.0, "J/K",                                                      \
-	  "heat capacity of the hot part, with energy `tissue`; 0: that of its shape")                 \
+	  "heat capacity of the hot part, for energy tissue; 0: computed from its shape")              \
 	X(blade_cooling_w_k, 0.0, 0.0, 1.0, "W/K",                                                     \
-	  "heat that the hot part loses along the shaft; 0: that of its shape")                        \
+	  "heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape")       \
 	X(load_rise_off, 0.0, 0.0, 100.0, "1",                                                         \
-	  "power ends when the load is so many times its least; off and on begins again; 0: never")
+	  "power ends when the load reaches this multiple of its minimum, until energy is turned off " \
+	  "and on; 0: never")
 
 // The position and rotation of a tool.
 typedef struct cau_pose {
@@ -334,10 +351,12 @@ typedef struct cau_tool_def {
 // A tube of blood within a layer of fat, with energy `tissue` (core/vessel/README.md).
 #define CAU_VESSEL_TABLE(X)                                                                        \
 	X(radius_m, 1.5e-3, 1e-4, 0.01, "m", "outer radius of the tube")                               \
-	X(wall_m, 3e-4, 1e-5, 5e-3, "m", "thickness of its wall; less than the radius")                \
-	X(pressure_pa, 12000.0, 0.0, 40000.0, "Pa", "of the blood, at its first point")                \
-	X(end_pressure_pa, 0.0, 0.0, 40000.0, "Pa", "of the blood that comes back, at its last point") \
-	X(supply_m, 0.1, 1e-3, 10.0, "m", "length of such a tube that blood has come through")
+	X(wall_m, 3e-4, 1e-5, 5e-3, "m", "thickness of the wall of the vessel; less than the radius")  \
+	X(pressure_pa, 12000.0, 0.0, 40000.0, "Pa", "blood pressure at the first point of the vessel") \
+	X(end_pressure_pa, 0.0, 0.0, 40000.0, "Pa",                                                    \
+	  "pressure of blood that flows back from the last point of the vessel")                       \
+	X(supply_m, 0.1, 1e-3, 10.0, "m",                                                              \
+	  "length of a tube of this radius that leads the blood to the vessel")
 
 // One vessel: its middle line, and its sizes and pressures.
 typedef struct cau_vessel_def {

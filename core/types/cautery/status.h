@@ -32,7 +32,7 @@
 	X(UNSUPPORTED, "unsupported", "this build cannot do that")                                     \
 	X(NO_MEMORY, "no_memory", "memory ran out")                                                    \
 	X(IO, "io", "a file could not be read or written")                                             \
-	X(NUMERICAL, "numerical", "the simulation met numerical trouble")                              \
+	X(NUMERICAL, "numerical", "the simulation failed numerically")                                 \
 	X(FAULTED, "faulted", "the session is faulted: rewind or reset it")                            \
 	X(CORRUPT, "corrupt", "the data is damaged or of another version")
 

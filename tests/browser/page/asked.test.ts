@@ -80,7 +80,7 @@ describe('what tissue stops', () => {
   it('jaws stop at what they hold, with a ghost where they are led to, and the page says what they hold', async () => {
     const { page } = viewer;
     await page.getByRole('tab', { name: 'Tools' }).click();
-    await page.getByText('Another tool').click();
+    await page.getByText('Add a tool').click();
     await page.locator('#panel-tools details').getByRole('button', { name: 'Add', exact: true }).click();
     await viewer.until(() => window.cautery.tool?.name === 'grasper' && window.cautery.driving, null, 'a grasper is in hand');
     await page.locator('[data-press=work]').click();

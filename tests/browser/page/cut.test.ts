@@ -50,7 +50,7 @@ describe('a cut in the demo', () => {
   it('forks: the new session has the cut', async () => {
     const left = await viewer.faces();
     await viewer.page.getByRole('tab', { name: 'Sessions' }).click();
-    await viewer.page.getByLabel('Name of the fork').fill('twin');
+    await viewer.page.getByLabel('Name of the new session').fill('twin');
     await viewer.page.getByRole('button', { name: 'Fork this session' }).click();
     await viewer.live('d1-twin');
     expect(await viewer.faces()).toBe(left);

@@ -44,7 +44,7 @@ describe('devices beside mouse and keys', () => {
     await page.keyboard.press('w');
     expect(await page.locator('#pedal').textContent()).toContain('W is already used');
     await page.keyboard.press('F9');
-    expect(await page.locator('#pedal').textContent()).toContain('The pedal is F9');
+    expect(await page.locator('#pedal').textContent()).toContain('The pedal is the key F9');
     await page.reload();
     await viewer.live('d1-fascia');
     await page.locator('#devices > summary').click(); // which has the focus now
@@ -56,9 +56,9 @@ describe('devices beside mouse and keys', () => {
 
   it('a 3D mouse leads the tool with its cap and heats with its button, as long as it is plugged in', async () => {
     const { page } = viewer;
-    expect(await page.locator('#space-mouse').textContent()).toContain('only a person can answer that');
+    expect(await page.locator('#space-mouse').textContent()).toContain('Choose the mouse there');
     await page.getByRole('button', { name: 'Choose the 3D mouse' }).click();
-    await page.locator('#space-mouse').getByText('Test SpaceMouse leads the tool').waitFor();
+    await page.locator('#space-mouse').getByText('Test SpaceMouse moves the tool').waitFor();
     const [x] = (await viewer.state()).tip;
     await report(1, [350, 0, 0]);
     await viewer.until((from) => window.cautery.driving && window.cautery.tip[0] > from, x + 0.02, 'the cap leads it to the right');
@@ -67,9 +67,9 @@ describe('devices beside mouse and keys', () => {
     await viewer.until(() => window.cautery.energized, null, 'energy is on');
     await page.evaluate(() => (window as unknown as { unplug(): void }).unplug());
     await viewer.until(() => !window.cautery.energized, null, 'energy is off without it');
-    expect(await page.locator('#space-mouse').textContent()).toContain('A 3D mouse leads');
+    expect(await page.locator('#space-mouse').textContent()).toContain('The cap of a 3D mouse moves');
     await page.evaluate(() => (window as unknown as { plugIn(): void }).plugIn()); // nobody has to choose it again
-    await page.locator('#space-mouse').getByText('Test SpaceMouse leads the tool').waitFor();
+    await page.locator('#space-mouse').getByText('Test SpaceMouse moves the tool').waitFor();
     await report(3, [1]); // still down from before: no press
     const { tick } = await viewer.state();
     await viewer.until((from) => window.cautery.tick > from + 30, tick, 'half a second passes');

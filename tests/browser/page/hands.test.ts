@@ -118,7 +118,7 @@ describe('hands that need a page in front', () => {
 
   it('a gamepad closes and opens a grasper', async () => {
     const { page } = viewer;
-    await page.getByText('Another tool').click();
+    await page.getByText('Add a tool').click();
     await page.locator('#panel-tools details').getByRole('button', { name: 'Add', exact: true }).click();
     await viewer.until(() => window.cautery.tool?.name === 'grasper' && window.cautery.driving, null, 'a grasper is in hand');
     const { jaw: open } = await viewer.state();

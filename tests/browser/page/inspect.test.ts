@@ -33,8 +33,8 @@ describe('looking closely', () => {
     const at = where.replace(' mm', '').split(', ').map(Number);
     expect(Math.hypot(at[0] - 30, at[1] - 20)).toBeLessThan(2);
     expect(temperature).toBe('37.0 °C');
-    expect(stress).toBe('stress: only of fat');
-    expect(heat).toBe('0 % of the heat that parts it');
+    expect(stress).toBe('stress is shown for fat only');
+    expect(heat).toBe('0 % of the heat exposure at which this tissue parts');
     const answered = await page.evaluate(() => {
       const canvas = document.querySelector('#picture')!;
       canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: 400, clientY: 300 })); // asks
@@ -56,7 +56,7 @@ describe('looking closely', () => {
     const forces = other.page.locator('#forces');
     await forces.locator('summary').click();
     await forces.locator('select[name=selection]').selectOption('nearest');
-    await forces.getByLabel('Force on each z').fill('1');
+    await forces.getByLabel('Force on each vertex z').fill('1');
     await forces.getByRole('button', { name: 'Apply the force' }).click();
     await other.page.getByRole('tab', { name: 'View' }).click();
     await other.page.getByLabel('Show what is under the pointer').check();
@@ -92,7 +92,7 @@ describe('looking closely', () => {
     const { page } = viewer;
     const places: [number, number, number][] = [[0.03, 0.035, 0], [0.03, -0.035, 0]];
     const whole = await viewer.coloursAt(places);
-    await page.getByLabel('Cut away').selectOption('from behind');
+    await page.getByLabel('Hide tissue').selectOption('from behind');
     await viewer.drawn();
     await viewer.until(() => window.cautery.idle, null, 'the picture of it');
     const half = await viewer.coloursAt(places);
@@ -112,7 +112,7 @@ describe('looking closely', () => {
     const turned = await viewer.project(places[1]);
     expect(Math.hypot(turned.x - corner.x, turned.y - corner.y)).toBeGreaterThan(5);
     expect((await viewer.state()).driving).toBe(false);
-    await page.locator('#panel-view').getByRole('button', { name: 'Home' }).click();
+    await page.locator('#panel-view').getByRole('button', { name: 'First view' }).click();
   });
 
   it('is for researchers: Operate shows the whole tissue again, without a message', async () => {
@@ -128,7 +128,7 @@ describe('looking closely', () => {
     expect(await page.locator('#inspected').isVisible()).toBe(false);
     await page.getByRole('button', { name: 'Research' }).click();
     expect(await page.getByLabel('Show what is under the pointer').isChecked()).toBe(false);
-    expect(await page.getByLabel('Cut away').inputValue()).toBe('');
+    expect(await page.getByLabel('Hide tissue').inputValue()).toBe('');
   });
 
   it('keeps views under a name, beside the standard ones', async () => {
@@ -143,15 +143,15 @@ describe('looking closely', () => {
     await views.getByRole('button', { name: 'From the left' }).click();
     const fromLeft = await viewer.project(corner);
     await page.getByLabel('Name of the view').fill('my corner');
-    await views.getByRole('button', { name: 'Keep this view' }).click();
-    await views.getByRole('button', { name: 'Home' }).click();
+    await views.getByRole('button', { name: 'Save this view' }).click();
+    await views.getByRole('button', { name: 'First view' }).click();
     expect(await apart(fromLeft)).toBeGreaterThan(50);
     await page.reload();
     await viewer.live('d1-fascia');
     await page.getByRole('tab', { name: 'View' }).click();
     await views.getByRole('button', { name: 'my corner', exact: true }).click();
     expect(await apart(fromLeft)).toBeLessThan(3);
-    await views.getByRole('button', { name: 'Forget the view my corner' }).click();
+    await views.getByRole('button', { name: 'Delete the view my corner' }).click();
     expect(await views.getByRole('button', { name: 'my corner', exact: true }).count()).toBe(0);
     expect(viewer.complaints).toEqual([]);
   });

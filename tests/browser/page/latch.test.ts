@@ -30,7 +30,7 @@ describe('latched energy', () => {
     await page.keyboard.press('KeyL');
     await lit();
     const { tick } = await viewer.state();
-    await viewer.until(() => document.querySelector('#said')?.textContent?.includes('it stays on for 15 s at most') === true, null, 'its time is up');
+    await viewer.until(() => document.querySelector('#said')?.textContent?.includes('Keep on lasts 15 s at most') === true, null, 'its time is up');
     expect((await viewer.state()).energized).toBe(false);
     expect((await viewer.state()).tick - tick).toBeLessThanOrEqual(60 * 15 + 60); // and what the page needs to notice
     expect(await sign()).toBe(false);
@@ -43,7 +43,7 @@ describe('latched energy', () => {
     const to = await viewer.project([0.01, 0.005, 0]);
     await page.getByRole('button', { name: 'Keep on' }).click();
     await lit();
-    expect(await page.locator('#latched').textContent()).toMatch(/^Energy stays on for \d+ s\. Keep on, L or Escape ends it\.$/);
+    expect(await page.locator('#latched').textContent()).toMatch(/^Energy stays on for \d+ s\. Press Keep on, L or Escape to turn energy off\.$/);
     expect(await page.locator('#latch').getAttribute('aria-pressed')).toBe('true');
     await page.mouse.move(from.x, from.y);
     await page.mouse.move(to.x, to.y, { steps: 10 });

@@ -23,14 +23,14 @@ describe('panels', () => {
   it('speaks in millimetres, degrees and sentences', async () => {
     const { page } = viewer;
     expect(await page.locator('#panel-sessions').textContent()).not.toMatch(/avx|sse|neon|scalar/i);
-    await page.getByLabel('Name of the fork').fill('My knee');
+    await page.getByLabel('Name of the new session').fill('My knee');
     await page.getByRole('button', { name: 'Fork this session' }).click();
     const problem = page.locator('#panel-sessions > .problem');
     await problem.waitFor({ state: 'visible' });
     expect(await problem.textContent()).toMatch(/^A name begins with a small letter[^[\]*()]*\.$/);
     await page.waitForTimeout(LIST_READ_AGAIN_MS);
     expect(await problem.isVisible()).toBe(true);
-    await page.getByLabel('Name of the fork').fill('');
+    await page.getByLabel('Name of the new session').fill('');
     await page.getByRole('tab', { name: 'Tools' }).click();
     expect(await page.getByLabel('Hot radius').inputValue()).toBe('3');
     await page.locator('#panel-tools form select[name=shape]').first().selectOption('grasper');
@@ -54,7 +54,7 @@ describe('panels', () => {
     await page.locator('#snapshot > summary').click();
     await page.locator('#snapshot input').fill('flat');
     await page.getByRole('button', { name: 'Take a snapshot' }).click();
-    await page.locator('#snapshot [role=status]').getByText(/^flat holds \d+\.\d\d s\.$/).waitFor();
+    await page.locator('#snapshot [role=status]').getByText(/^flat was saved at \d+\.\d\d s\.$/).waitFor();
   });
 
   it('applies a force to the vertex nearest to a place', async () => {
@@ -62,7 +62,7 @@ describe('panels', () => {
     await page.getByRole('tab', { name: 'Materials' }).click();
     await forces.locator('summary').click();
     await forces.locator('select[name=selection]').selectOption('nearest');
-    await forces.getByLabel('Force on each z').fill('5');
+    await forces.getByLabel('Force on each vertex z').fill('5');
     await forces.getByRole('button', { name: 'Apply the force' }).click();
     await viewer.until((high) => window.cautery.extent().most[2] > high, LIFTED_M, 'the sheet is lifted');
     await forces.getByRole('button', { name: 'No force' }).click();
@@ -73,7 +73,7 @@ describe('panels', () => {
     const { least } = await viewer.page.evaluate(() => window.cautery.extent());
     await forces.locator('select[name=selection]').selectOption('rim');
     await forces.getByRole('button', { name: 'Unpin' }).click();
-    await forces.locator('.problem').getByText('a rim needs its layer').waitFor();
+    await forces.locator('.problem').getByText('Choose the layer for the rim').waitFor();
     await forces.locator('select[name=selection-layer]').selectOption('fascia');
     await forces.getByRole('button', { name: 'Unpin' }).click();
     await viewer.until((edge) => window.cautery.extent().least[0] > edge, least[0] + LIFTED_M, 'the taut sheet shrinks');

@@ -38,12 +38,12 @@ describe('looking back', () => {
     expect(left).toBeLessThan(FACES);
     await page.locator('#tick').focus();
     await page.keyboard.press('Home');
-    await page.locator('#past').getByText(/^Fetching t = 0\.00 s/).waitFor();
+    await page.locator('#past').getByText(/^Loading t = 0\.00 s/).waitFor();
     await showsPast(0);
     await viewer.drawn();
     await viewer.screenshot('looking-back');
     expect(await viewer.faces()).toBe(FACES);
-    expect(await sign()).toBe('Viewing t = 0.00 s. The session goes on.');
+    expect(await sign()).toBe('You see the past at t = 0.00 s. The session continues.');
     expect(await page.locator('#past progress').isVisible()).toBe(false);
     await viewer.until((before) => window.cautery.tick > before + 30, tick, 'the session goes on meanwhile');
     expect((await viewer.state()).epoch).toBe(epoch);
@@ -62,7 +62,7 @@ describe('looking back', () => {
     const { x, y } = await viewer.project([0.01, 0.005, 0]);
     await page.mouse.move(x, y);
     await page.mouse.down();
-    const words = page.locator('#said').getByText('This is a past view. Return to live to work.');
+    const words = page.locator('#said').getByText('This is a past view. Press Return to live to use the tools.');
     await words.waitFor();
     await page.mouse.up();
     const box = (await words.boundingBox())!;
@@ -81,7 +81,7 @@ describe('looking back', () => {
     const cut = (await moments.locator('option').allTextContents()).find((words) => / s: cut, hook$/.test(words))!;
     await moments.selectOption({ label: cut });
     const [seconds] = cut.split(' ');
-    await viewer.until((words) => document.querySelector('#past p')?.textContent === words, `Viewing t = ${seconds} s. The session goes on.`, 'the cut is shown');
+    await viewer.until((words) => document.querySelector('#past p')?.textContent === words, `You see the past at t = ${seconds} s. The session continues.`, 'the cut is shown');
     const faces = await viewer.faces();
     expect(faces).toBeLessThanOrEqual(FACES);
     expect(faces).toBeGreaterThanOrEqual(left);
@@ -108,7 +108,7 @@ describe('looking back', () => {
       list.dispatchEvent(new Event('change'));
     });
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');
-    await page.locator('#said').getByText('Energy is off: this is a past view.').waitFor();
+    await page.locator('#said').getByText('Energy is off: the picture shows a past view.').waitFor();
     await page.keyboard.up('Space');
     await page.mouse.up();
     await page.getByRole('button', { name: 'Return to live' }).click();

@@ -42,7 +42,7 @@ describe('plots over the session', () => {
   };
   /** How far right each plot has drawn the cursor, pixels. */
   const cursors = (): Promise<number[]> =>
-    viewer.page.evaluate(() => [...document.querySelectorAll<HTMLElement>('[aria-label="Over the session"] .u-cursor-x')].map(({ style }) => new DOMMatrix(style.transform).e));
+    viewer.page.evaluate(() => [...document.querySelectorAll<HTMLElement>('[aria-label="Tools over the session"] .u-cursor-x')].map(({ style }) => new DOMMatrix(style.transform).e));
   const spread = (places: readonly number[]): number => Math.max(...places) - Math.min(...places);
 
   beforeAll(async () => {
@@ -58,7 +58,7 @@ describe('plots over the session', () => {
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');
     await viewer.pause();
     await viewer.page.getByRole('tab', { name: 'Plots' }).click();
-    await viewer.until(() => document.querySelectorAll('[aria-label="Over the session"] canvas').length === 3, null, 'three plots');
+    await viewer.until(() => document.querySelectorAll('[aria-label="Tools over the session"] canvas').length === 3, null, 'three plots');
   });
 
   it('tell the newest values of each tool', async () => {
@@ -72,7 +72,7 @@ describe('plots over the session', () => {
   it('share a cursor that shows the values where it points, and holds the timeline there', async () => {
     const { page } = viewer;
     const newest = await told();
-    const box = (await page.locator('[aria-label="Over the session"] .u-over').nth(1).boundingBox())!;
+    const box = (await page.locator('[aria-label="Tools over the session"] .u-over').nth(1).boundingBox())!;
     await page.mouse.move(box.x + 0.2 * box.width, box.y + box.height / 2);
     await viewer.until((before) => !document.querySelector('#at-cursor')!.textContent.startsWith(before), newest.seconds.toFixed(2), 'the time that is pointed at');
     const before = await told();

@@ -36,7 +36,7 @@ describe('while something is under way', () => {
     await page.getByLabel('Scene').selectOption('fascia');
     await page.getByRole('textbox', { name: 'Name', exact: true }).fill('second');
     await page.getByRole('button', { name: 'Create', exact: true }).click();
-    await told(/^Making the session…$/);
+    await told(/^Creating the session…$/);
     door.letGo();
     door.hold('frames');
     await told(/^(Opening d1-second…|d1-second is being made: .*)$/);
@@ -62,7 +62,7 @@ describe('while something is under way', () => {
     const { page } = viewer;
     const faces = await viewer.faces();
     door.hold('session.fork');
-    await page.getByLabel('Name of the fork').fill('twin');
+    await page.getByLabel('Name of the new session').fill('twin');
     await page.getByRole('button', { name: 'Fork this session' }).click();
     await told(/^Copying the session…$/);
     expect((await viewer.state()).session).toBe('d1-second'); // under the veil nothing has changed

@@ -26,7 +26,7 @@ describe('energy that a busy machine cuts', () => {
     }, BUSY_MS);
     await viewer.until(() => document.querySelector('#said')?.textContent?.includes('Energy is off') === true, null, 'it is said');
     const said = await page.locator('#said').textContent();
-    expect(said).toContain('this page sent no heartbeat in time');
+    expect(said).toContain('the server did not hear from this page in time');
     expect(said).toContain('Release Space and press it again.');
     expect((await viewer.state()).energized).toBe(false);
     const { tick } = await viewer.state();

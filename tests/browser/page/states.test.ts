@@ -51,7 +51,7 @@ describe('a picture that is not live, and its address', () => {
       Object.assign(window, { loser });
       loser.loseContext();
     });
-    await veil(viewer, 'has lost the picture');
+    await veil(viewer, 'lost the picture');
     await viewer.page.evaluate(() => (window as unknown as { loser: WEBGL_lose_context }).loser.restoreContext());
     await unveiled(viewer);
     await viewer.until(() => window.cautery.idle, null, 'drawn again');
@@ -91,7 +91,7 @@ describe('a picture that is not live, and its address', () => {
 
   it('without WebGL says so, and everything else works', async () => {
     const without = await stage.openFirst({ before: withoutWebGl });
-    await veil(without, 'offers no WebGL 2');
+    await veil(without, 'needs WebGL 2');
     await without.until(() => window.cautery.tick > 0, null, 'frames come in');
     await without.pause();
     await without.resume();
@@ -127,7 +127,7 @@ describe('a daemon with tokens', () => {
     expect(await input.getAttribute('autocomplete')).toBe('current-password');
     expect(await page.locator('#token input[autocomplete=username]').count()).toBe(1);
     await page.keyboard.press('Escape');
-    await veil(viewer, 'asks for an access token');
+    await veil(viewer, 'needs an access token');
     await page.getByRole('button', { name: 'Enter the token' }).click();
     await input.fill('wrong');
     await page.getByRole('button', { name: 'Connect' }).click();
@@ -144,7 +144,7 @@ describe('a daemon with tokens', () => {
     await viewer.live('d1-fascia');
     expect(await page.locator('#token[open]').count()).toBe(0);
     await page.getByRole('button', { name: 'Operate' }).click();
-    expect(await page.locator('#operate').getByText('With your access you can watch').count()).toBe(1);
+    expect(await page.locator('#operate').getByText('Your access allows you to watch only').count()).toBe(1);
     await page.getByRole('button', { name: 'Invite others' }).click();
     const link = await page.getByLabel('Link to this session').inputValue();
     expect(link).toMatch(/\?session=d1-fascia#token=only-looking-0123456789abcdef$/);

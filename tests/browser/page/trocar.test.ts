@@ -45,7 +45,7 @@ describe('the field', () => {
   });
 
   it('is seen through a trocar: round, with tissue up to the edge from every side, and black outside', async () => {
-    for (const side of ['Home', 'From above', 'Along', 'From the left']) {
+    for (const side of ['First view', 'From above', 'Along', 'From the left']) {
       await viewer.page.getByRole('button', { name: side }).click();
       await viewer.drawn();
       const { edge, corners } = await look(viewer);
@@ -54,7 +54,7 @@ describe('the field', () => {
       const other = edge.filter((colour) => !flesh(colour));
       expect(other.length, `${side}: ${JSON.stringify(other)}`).toBeLessThanOrEqual(3); // the tool is somewhere
     }
-    await viewer.page.getByRole('button', { name: 'Home' }).click();
+    await viewer.page.getByRole('button', { name: 'First view' }).click();
   });
 
   it('is neither pointed at nor cut where it is black', async () => {
@@ -70,7 +70,7 @@ describe('the field', () => {
     expect([driving, energized]).toEqual([false, false]);
     const after = await viewer.project([0, 0.03, 0.002]);
     expect(Math.hypot(after.x - before.x, after.y - before.y)).toBeGreaterThan(5); // the drag turned the camera
-    await viewer.page.getByRole('button', { name: 'Home' }).click();
+    await viewer.page.getByRole('button', { name: 'First view' }).click();
   });
 
   it('is open for who chooses so by keyboard, and when the page comes up again', async () => {

@@ -63,7 +63,7 @@ static void mistakes_are_told_with_what_is_right(void **state)
 {
 	(void)state;
 	expect_said("destroy d1-knee",
-	            "cautery: no command \"destroy\"; that is \"rm\" here. --help lists them\n");
+	            "cautery: no command \"destroy\": use \"rm\". --help lists all commands\n");
 	expect_said("rewnd",
 	            "cautery: no command \"rewnd\"; did you mean \"rewind\"? --help lists them\n");
 	expect_said("step d1-knee 10",
@@ -104,11 +104,11 @@ static void mistakes_are_told(void **state)
 		{"rewind", "the arguments are: [SESSION] TICK"},
 		{"ls --colour", "no option \"--colour\"; --help"},
 		{"ls --json=1", "--json takes no value"},
-		{"ls --url", "--url wants a value"},
+		{"ls --url", "--url needs a value"},
 		{"fork --paused=yes", "--paused takes no value"},
-		{"ls --timeout never", "--timeout wants a number"},
-		{"ls --timeout 0", "--timeout wants a number"},
-		{"ls --timeout nan", "--timeout wants a number"},
+		{"ls --timeout never", "--timeout needs a number"},
+		{"ls --timeout 0", "--timeout needs a number"},
+		{"ls --timeout nan", "--timeout needs a number"},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		reading r = read_line(cases[i].line);

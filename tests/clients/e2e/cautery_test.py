@@ -80,7 +80,7 @@ class Backups(programs.Case):
         file, size = re.fullmatch(r"(.*/backups/evening\.db): (\d+) bytes\n", said).groups()
         self.assertEqual(os.path.getsize(file), int(size))
         self.assertEqual(file, os.path.join(self.daemon.folder, "backups", "evening.db"))
-        self.assertIn("something is there", self.cautery("backup", "evening", code=1)[1])
+        self.assertIn("a file of this name exists", self.cautery("backup", "evening", code=1)[1])
         made = self.json("backup")
         self.assertGreater(made["byte_count"], 0)
         self.cautery("create", "fascia", "--name", "later", "--paused")
@@ -144,7 +144,7 @@ class Scripts(programs.Case):
         session = self.create("fascia")
         file = self.path("broken.jsonl", script(move(1, 0)) + "{\"command\": \"fly\"}\n")
         self.assertIn("line 2", self.cautery("run", session, file, code=4)[1])
-        self.assertIn("holds no command", self.cautery("run", session, os.devnull, code=4)[1])
+        self.assertIn("the script has no command", self.cautery("run", session, os.devnull, code=4)[1])
         self.cautery("run", session, self.path("absent.jsonl"), code=4)
 
     def test_a_paused_session_is_not_waited_for(self):
@@ -169,7 +169,7 @@ class Silence(programs.Case):
         out, told = running.communicate(timeout=programs.PATIENCE_S)
         self.assertEqual(running.returncode, 5, told)
         self.assertEqual(json.loads(out.splitlines()[-1])["watchdog_cuts"], 1)
-        self.assertIn("the watchdog cut the energy of `hook`", told)
+        self.assertIn("the watchdog turned off the energy of `hook`", told)
 
     def await_event(self, session, kind):
         deadline = time.monotonic() + programs.PATIENCE_S
@@ -316,7 +316,7 @@ class Ends(programs.Case):
         self.cautery("ls", "--token-file", watcher, url=daemon.url)
         self.cautery("create", "fascia", "--token-file", watcher, url=daemon.url, code=1)
         self.cautery("create", "fascia", "--token-file", master, url=daemon.url)
-        self.assertIn("its first line holds no token", self.cautery(
+        self.assertIn("the first line of the file has no token", self.cautery(
             "ls", "--token-file", self.path("empty", "\n"), url=daemon.url, code=4)[1])
         self.cautery("ls", "--token-file", self.path("nowhere"), url=daemon.url, code=4)
         # for every user of the machine to see
@@ -345,7 +345,7 @@ class Refusals(programs.Case):
         port = urllib.parse.urlsplit(self.daemon.url).port
         threading.Thread(target=pass_on, args=(listening, port), daemon=True).start()
         url = f"ws://127.0.0.1:{listening.getsockname()[1]}"
-        told = r"it answered HTTP 421: the Host header does not name this daemon \(setting hosts\)"
+        told = r"the server answered HTTP 421: the Host header does not name this daemon \(setting hosts\)"
         self.assertRegex(self.cautery("ls", url=url, code=3)[1], told)
         self.assertRegex(self.json("ls", url=url, code=3)["error"]["reason"], told)
         self.assertRegex(self.program("cautery-load", "--seconds", 1, url=url, code=3)[1], told)

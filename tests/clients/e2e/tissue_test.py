@@ -101,7 +101,7 @@ class Tissue(programs.Case):
         self.assertEqual(len([line for line in lines if "mesh=flat" in line]), len(lines))
         _, told = self.cautery("create", file, "--strict", code=1)
         self.assertIn("mend.obj: the mesh", told)
-        self.assertIn("strict refuses to mend this mesh: 1 degenerate triangles left out", told)
+        self.assertIn("strict refuses to repair this mesh: 1 degenerate triangles left out", told)
         self.path("mend.obj", sheet(4, 160))
         _, told = self.cautery("create", file, code=1)
         self.assertIn("did you mean millimetres (unit_m 0.001)?", told)
@@ -131,7 +131,7 @@ class Tissue(programs.Case):
         self.assertIn("a sheet (--as fascia)", told)
         self.assertEqual(self.json("info", session.strip())["triangle_count"], 32)
         _, told = self.cautery("create", file, "--strict", code=1)
-        self.assertIn("--strict refuses to mend this mesh: 1 degenerate triangles left out", told)
+        self.assertIn("--strict refuses to repair this mesh: 1 degenerate triangles left out", told)
         _, told = self.cautery("create", file, "--as", "fat", code=1)
         self.assertIn("nothing is inside this surface", told)
 
@@ -224,13 +224,13 @@ class Solids(programs.Case):
         segmentation = self.file("raw.nrrd", cases["raw.nrrd"])
         for arguments, words in (((ball, "--edge-mm", 300), "an edge of 300 is longer than the tissue is thick: choose a shorter one"),
                                  ((ball, "--edge-mm", 0.01), "choose a longer one"),
-                                 ((ball, "--labels", 1), "this file is no segmentation"),
+                                 ((ball, "--labels", 1), "this file is not a segmentation"),
                                  ((segmentation, "--labels", 5), "no voxel has label 5"),
-                                 ((segmentation, "--as", "fascia"), "a segmentation has no sheet: make a solid of it (--as fat)"),
+                                 ((segmentation, "--as", "fascia"), "a segmentation cannot become a sheet: use it as a solid (--as fat)"),
                                  ((self.file("image.nrrd", cases["image.nrrd"]),), "more than 63 different labels: choose some of them (--labels)"),
                                  ((self.file("short.nrrd", cases["short_file.nrrd"]),), "the file ends early"),
                                  ((self.file("mixed.obj", solid_files.obj(solid_files.turned(solid_files.ball(), 7)).encode()), "--strict"),
-                                  "--strict refuses to turn 218 triangles that look inward")):
+                                  "--strict refuses to turn 218 triangles whose normal points inward")):
             with self.subTest(arguments):
                 _, told = self.cautery("create", *arguments, code=1)
                 self.assertIn(words, told)

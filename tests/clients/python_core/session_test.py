@@ -355,7 +355,7 @@ class Life(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_a_missing_or_strange_library_is_named(self):
-        for place, words in (("/nowhere/libcautery-core.so", "does not load"), ("libm.so.6", "no libcautery-core")):
+        for place, words in (("/nowhere/libcautery-core.so", "cannot be loaded"), ("libm.so.6", "not libcautery-core")):
             done = subprocess.run([sys.executable, "-c", "import cautery_core; cautery_core.Session({})"],
                                   env={**os.environ, "LIBCAUTERY_CORE": place}, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 1)

@@ -227,16 +227,16 @@ static void impossible_numbers_are_refused(void **state)
 	position[4] = INFINITY;
 	refuse(copy_of(3, position, 1, triangle, 0, NULL), "vertex 1: its y is not finite");
 	position[4] = 1e300;
-	refuse(copy_of(3, position, 1, triangle, 0, NULL), "is its unit right?");
+	refuse(copy_of(3, position, 1, triangle, 0, NULL), "check unit_m");
 	position[4] = 2e6;
-	refuse(copy_of(3, position, 1, triangle, 0, NULL), "is its unit right?");
+	refuse(copy_of(3, position, 1, triangle, 0, NULL), "check unit_m");
 	const double far[] = {3e6, 0, 0, 3e6 + 1, 0, 0, 3e6, 1, 0};
 	refuse(copy_of(3, far, 1, triangle, 0, NULL), "3e+06 m from the origin");
 	const double tiny[] = {0, 0, 0, 1e-10, 0, 0, 0, 1e-10, 0};
-	refuse(copy_of(3, tiny, 1, triangle, 0, NULL), "is its unit right?");
+	refuse(copy_of(3, tiny, 1, triangle, 0, NULL), "check unit_m");
 	// the second triangle is removed, and the first alone is too small
 	const double long_[] = {0, 0, 0, 5e-10, 0, 0, 0, 5e-10, 0, 4e-5, 0, 0, 2e-5, 0, 0};
-	refuse(copy_of(5, long_, 2, (int32_t[]){0, 1, 2, 0, 3, 4}, 0, NULL), "is its unit right?");
+	refuse(copy_of(5, long_, 2, (int32_t[]){0, 1, 2, 0, 3, 4}, 0, NULL), "check unit_m");
 	const double point[] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
 	refuse(copy_of(3, point, 1, triangle, 0, NULL), "all vertices lie on one point");
 }

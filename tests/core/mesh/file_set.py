@@ -205,21 +205,21 @@ def all_mending():
     strict = ("--strict",)
     case("strict-clean.msh", gmsh_2(BOX, [(15, 0, (0,)), *tets]), *tetrahedra("Gmsh 2.2", passed="passed over: 1 points"), arguments=strict)
     case("strict-duplicates.msh", gmsh_2(loose, [(4, 0, range(4 * i, 4 * i + 4)) for i in range(6)]),
-         "refused: strict: strict refuses to mend this mesh: 16 duplicate vertices merged", arguments=strict)
+         "refused: strict: strict refuses to repair this mesh: 16 duplicate vertices merged", arguments=strict)
     case("strict-hexahedron.msh", gmsh_2(BOX, [(5, 1, HEXAHEDRON)]),
-         "refused: strict: strict refuses to mend this mesh: 1 hexahedra split into tetrahedra", arguments=strict)
+         "refused: strict: strict refuses to repair this mesh: 1 hexahedra split into tetrahedra", arguments=strict)
     case("strict-degenerate.msh", gmsh_2(BOX, [*tets, (4, 0, (0, 1, 2, 3))]),
-         "refused: strict: strict refuses to mend this mesh: 1 degenerate tetrahedra left out", arguments=strict)
+         "refused: strict: strict refuses to repair this mesh: 1 degenerate tetrahedra left out", arguments=strict)
 
 
 # ---- units -----------------------------------------------------------------------------------------
 def all_units():
     def scaled(factor):
         return gmsh_2([tuple(factor * c for c in p) for p in BOX], [(4, 0, t) for t in TETRAHEDRA])
-    case("millimetres.msh", scaled(4000), "refused: unit_m: this mesh is 160 m long, which no tissue is: did you mean millimetres (unit_m 0.001)?")
-    case("centimetres.msh", scaled(400), "refused: unit_m: this mesh is 16 m long, which no tissue is: did you mean centimetres (unit_m 0.01)?")
-    case("micrometres.msh", scaled(2.5e6), "refused: unit_m: this mesh is 1e+05 m long, which no tissue is: did you mean micrometres (unit_m 1e-06)?")
-    case("too-small.msh", scaled(1e-3), "refused: unit_m: this mesh is 4e-05 m long, which no tissue is: did you mean kilometres (unit_m 1000)?")
+    case("millimetres.msh", scaled(4000), "refused: unit_m: this mesh is 160 m long, which is not a plausible size of tissue: did you mean millimetres (unit_m 0.001)?")
+    case("centimetres.msh", scaled(400), "refused: unit_m: this mesh is 16 m long, which is not a plausible size of tissue: did you mean centimetres (unit_m 0.01)?")
+    case("micrometres.msh", scaled(2.5e6), "refused: unit_m: this mesh is 1e+05 m long, which is not a plausible size of tissue: did you mean micrometres (unit_m 1e-06)?")
+    case("too-small.msh", scaled(1e-3), "refused: unit_m: this mesh is 4e-05 m long, which is not a plausible size of tissue: did you mean kilometres (unit_m 1000)?")
     case("millimetres-said.msh", scaled(1000),
          *tetrahedra("Gmsh 2.2")[:-2], "size: 0.04 x 0.03 x 0.02 m, unit_m 0.001 (millimetres)", "regions: 0 (6 tetrahedra)",
          arguments=("--unit-m", "0.001"))
@@ -261,7 +261,7 @@ def all_obj():
          "size: 0.04 x 0.03 x 0 m, unit_m 1 (metres)", "regions: 0 (2 triangles)")
     case("other-lines.obj", obj(TRIANGLES) + "l 1 2\np 1\nf 1 2\n",
          *surface("OBJ", passed="passed over: 1 lines, 1 points, 1 faces of fewer than 3 corners"))
-    case("missing-vertex.obj", obj([*TRIANGLES, (0, 1, 8)]), "refused: line 21: 9 as a vertex number: there are 8 so far")
+    case("missing-vertex.obj", obj([*TRIANGLES, (0, 1, 8)]), "refused: line 21: 9 as a vertex number: the file has only 8 so far")
 
 
 # ---- STL -------------------------------------------------------------------------------------------
@@ -287,7 +287,7 @@ def all_stl():
     case("binary-and-more.stl", stl_binary() + b"abc",
          *surface("STL binary", vertices=36, passed="passed over: 3 bytes after the last facet", mended=merged))
     case("cut-short.stl", stl(TRIANGLES)[:-40], "refused: line")
-    case("binary-cut-short.stl", stl_binary()[:-40], "refused: 'binary-cut-short.stl' is in none of the formats that are read")
+    case("binary-cut-short.stl", stl_binary()[:-40], "refused: 'binary-cut-short.stl' has none of the supported formats")
 
 
 # ---- PLY -------------------------------------------------------------------------------------------
@@ -476,8 +476,8 @@ def all_vtk():
 # ---- what is none of them --------------------------------------------------------------------------
 def all_others():
     case("empty.msh", "", "refused: 'empty.msh' is empty")
-    case("letter.txt", "Dear colleague,\nhere is the liver.\n", "refused: 'letter.txt' is in none of the formats that are read")
-    case("noise.stl", bytes(range(256)) * 2, "refused: 'noise.stl' is in none of the formats that are read")
+    case("letter.txt", "Dear colleague,\nhere is the liver.\n", "refused: 'letter.txt' has none of the supported formats")
+    case("noise.stl", bytes(range(256)) * 2, "refused: 'noise.stl' has none of the supported formats")
     case("volume.nrrd", "NRRD0004\ntype: uchar\n", "refused: 'volume.nrrd' is a volume of voxels (NRRD): make tetrahedra of it with cautery-mesh")
     case("volume.nii", bytes(344) + b"n+1\0" + bytes(100), "refused: 'volume.nii' is a volume of voxels (NIfTI): make tetrahedra of it with cautery-mesh")
     case("volume.mha", "ObjectType = Image\nNDims = 3\n", "refused: 'volume.mha' is a MetaImage: save the segmentation as NRRD or NIfTI")

@@ -142,13 +142,13 @@ static void bad_definitions_are_refused(void **state)
 	refuse(def, CAU_BAD_VALUE, "translate_m", "finite");
 	def = bytes_def("a.obj", triangle_file);
 	def.unit_m = 1e9;
-	refuse(def, CAU_BAD_MESH, "", "is its unit right?");
+	refuse(def, CAU_BAD_MESH, "", "check unit_m");
 	def.unit_m = 1e308;
 	refuse(def, CAU_BAD_MESH, "", "not finite");
 	def.unit_m = 1;
 	refuse(def, CAU_BAD_MESH, "unit_m", "did you mean millimetres (unit_m 0.001)?");
 	def = bytes_def("a", "a letter");
-	refuse(def, CAU_UNSUPPORTED, "", "'a' is in none of the formats that are read");
+	refuse(def, CAU_UNSUPPORTED, "", "'a' has none of the supported formats");
 	def = bytes_def("a.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n");
 	refuse(def, CAU_BAD_MESH, "", "every element is degenerate");
 	def.bytes = NULL;
@@ -156,7 +156,7 @@ static void bad_definitions_are_refused(void **state)
 	refuse(def, CAU_BAD_SYNTAX, "", "is empty");
 	def = fixture_def(2, 2, 2);
 	def.source = 99;
-	refuse(def, CAU_BAD_VALUE, "source", "no source");
+	refuse(def, CAU_BAD_VALUE, "source", "no kind of mesh source");
 }
 
 int main(void)

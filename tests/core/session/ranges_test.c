@@ -59,7 +59,7 @@ static cau_status read_and_check(const cau_scene_def *scene, cau_error *error)
 static void make_way(cau_tool_def *tool, const cau_field *field)
 {
 	if (strcmp(field->name, "hot_radius_m") == 0)
-		tool->grid_step_m = 5e-5; // "at most the thinnest hot radius"
+		tool->grid_step_m = 5e-5; // "at most the smallest radius of the hot part"
 	if (strcmp(field->name, "grid_step_m") == 0)
 		tool->hot_radius_m = 0.05;
 	if (strcmp(field->name, "grid_step_m") == 0 || strcmp(field->name, "hot_radius_m") == 0)

@@ -309,7 +309,7 @@ static void wrong_vessels_are_refused(void **state)
 	refuse_with(have_no_lumen, CAU_BAD_VALUE, "lumen");
 	refuse_with(be_of_another_layer, CAU_NOT_FOUND, "fascia");
 	refuse_with(have_one_point, CAU_BAD_VALUE, "points");
-	refuse_with(have_no_length, CAU_BAD_VALUE, "one place");
+	refuse_with(have_no_length, CAU_BAD_VALUE, "the same position");
 	refuse_with(have_no_number, CAU_BAD_VALUE, "points");
 	cau_scene_def *scene = stage_scene_named("pedicle");
 	cau_error error = {0};

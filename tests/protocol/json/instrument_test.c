@@ -176,7 +176,7 @@ static void a_tool_that_is_none_is_refused(void **state)
 		{TOOL("\"instrument\":\"monopolar-hook\",\"mode\":\"seal\""), "tools[0].mode",
 	     "\"seal\" is none of cut, blend, coagulation"},
 		{TOOL("\"shape\":\"hook\",\"mode\":\"cut\""), "tools[0].mode",
-	     "a mode is one of an instrument: name it"},
+	     "a mode needs the member instrument, which names the instrument"},
 		{TOOL("\"power_w\":3"), "tools[0].shape", "missing: a string is needed"},
 		{TOOL("\"instrument\":\"monopolar-hook\",\"mode\":\"coagulation\",\"power_w\":76"),
 	     "tools[0].power_w", "76 is not between 1 and 75 W, which the mode \"coagulation\" has"},

@@ -99,11 +99,11 @@ static const refusal refused[] = {
 	{"\"\xf4\x90\x80\x80\"", 1, 2, 1, "UTF-8"}, // beyond U+10FFFF
 	{"\"\xe2\x82\"", 1, 2, 1, "UTF-8"},
 	{"\xef\xbb\xbf{}", 1, 1, 0, "not a JSON value"}, // byte order mark
-	{"{\"a\":1,\n \"a\":2}", 2, 3, 10, "has already"},
-	{"{\"a\":1,\"\\u0061\":2}", 1, 9, 8, "has already"},
-	{"{\"\xc3\xa9\":1,\"\\u00E9\":2}", 1, 10, 9, "has already"},
-	{"{\"\\ud83d\\ude00\":1,\"\xf0\x9f\x98\x80\":2}", 1, 20, 19, "has already"},
-	{"{\"x\":{\"b\":1},\"y\":1,\"x\":2}", 1, 21, 20, "has already"},
+	{"{\"a\":1,\n \"a\":2}", 2, 3, 10, "this name twice"},
+	{"{\"a\":1,\"\\u0061\":2}", 1, 9, 8, "this name twice"},
+	{"{\"\xc3\xa9\":1,\"\\u00E9\":2}", 1, 10, 9, "this name twice"},
+	{"{\"\\ud83d\\ude00\":1,\"\xf0\x9f\x98\x80\":2}", 1, 20, 19, "this name twice"},
+	{"{\"x\":{\"b\":1},\"y\":1,\"x\":2}", 1, 21, 20, "this name twice"},
 	{"/* c */ 1", 1, 1, 0, "not a JSON value"},
 };
 

@@ -127,16 +127,17 @@ static void print_layers(FILE *out)
 	                                     "Fat's material", "The links' material"};
 	static const char *const texts[] = {
 		"Members of a layer of kind `fascia`.",
-		"Members of a layer of kind `membrane`: as a fascia's, but for the ignition temperature.",
+		"Members of a layer of kind `membrane`: those of a fascia, with another ignition "
+		"temperature by default.",
 		"Members of a layer of kind `fat`. Axes: the first along `fibre`.",
 		"Members of a layer of kind `links`, which has no `regions`.",
 	};
 	cau_default_layer_def(&layer, CAU_LAYER_FASCIA);
 	print_title(
 		out, "A layer",
-		"Elements of `layers`, with the members of the material of its kind. `regions`, an "
-		"array, holds what differs in regions of the mesh file: each names its `region` and "
-		"any members of the material.");
+		"Elements of `layers`. Each also has the members of the material of its kind. The array "
+		"`regions` holds other materials for regions of the mesh file: each element has the "
+		"member `region`, and the members of the material that differ.");
 	print_rows(out, &cau_layer_record, &layer);
 	for (int kind = 0; kind < CAU_LAYER_COUNT; kind++) {
 		cau_part parts[2];
@@ -158,18 +159,20 @@ static void print_table(FILE *out)
 	cau_default_mesh_def(&mesh);
 	cau_default_selection(&selection, CAU_SELECT_RIM);
 	cau_default_tool_def(&tool, CAU_TOOL_HOOK);
-	print_title(out, "The scene",
-	            "Beside these, the arrays `meshes`, `layers`, `pins`, `tools` and `vessels`, and "
-	            "the objects "
-	            "`pull` and `cut`.");
+	print_title(
+		out, "The scene",
+		"Members of a scene. Further members are the arrays `meshes`, `layers`, `pins`, `tools` "
+		"and `vessels`, and the objects `pull` and `cut`.");
 	print_rows(out, &cau_scene_record, &scene);
 	print_title(out, "A mesh", "Elements of `meshes`.");
 	print_rows(out, &cau_mesh_record, &mesh);
 	print_layers(out);
-	print_title(out, "A selection", "Elements of `pins`, and the `selection` of a pull: vertices.");
+	print_title(out, "A selection",
+	            "Elements of `pins`, and the `selection` of a pull: a choice of vertices.");
 	print_rows(out, &cau_selection_record, &selection);
 	print_title(out, "A tool",
-	            "Elements of `tools`. Its own frame: the tip at the origin, the shaft along +z.");
+	            "Elements of `tools`. In the frame of a tool, the tip is at the origin and the "
+	            "shaft points along +z.");
 	cau_choice_names none = {0};
 	print_rows(out, &cau_tool_name_record, &tool);
 	print_rows(out, &cau_instrument_record, &none);
@@ -181,13 +184,14 @@ static void print_table(FILE *out)
 		out, "A vessel",
 		"Elements of `vessels`: blood vessels in a layer of fat, with energy `tissue` "
 		"([core/vessel](../../core/vessel/README.md)). `points`, an array of 2 to 32, holds the "
-		"places of its middle line.");
+		"points of the middle line.");
 	print_rows(out, &cau_vessel_record, &vessel);
 	print_title(out, "A point of a vessel", "Elements of a vessel's `points`.");
 	print_rows(out, &cau_vessel_point_record, vessel.points_m[0]);
 	print_title(out, "The pull", "`pull`, with its `selection`: a motion for measurements.");
 	print_rows(out, &cau_pull_record, &scene.pull);
-	print_title(out, "The cut", "`cut`: the tool dwells where it begins, then is drawn.");
+	print_title(out, "The cut",
+	            "`cut`: the tool waits at its first position, then moves along a line.");
 	print_rows(out, &cau_cut_record, &scene.cut);
 	fputc('\n', out);
 }

@@ -342,8 +342,7 @@ static void syntax_is_the_scans_business(void **state)
 	cau_error error = {0};
 	static const char twice[] = "{\"name\":\"a\",\n\"name\":\"b\"}";
 	assert_int_equal(cau_scene_from_json("s", twice, strlen(twice), scene, &error), CAU_BAD_SYNTAX);
-	assert_string_equal(error.reason,
-	                    "line 2, column 2 (byte 14): a name that the object has already");
+	assert_string_equal(error.reason, "line 2, column 2 (byte 14): the object has this name twice");
 	assert_int_equal(cau_scene_from_json("s", twice, CAU_SCENE_JSON_MAX_BYTES + 1, scene, &error),
 	                 CAU_LIMIT);
 	free(scene);

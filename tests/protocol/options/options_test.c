@@ -108,22 +108,22 @@ static void mistakes_say_what_would_be_right(void **state)
 	static const struct {
 		const char *text, *complaint;
 	} cases[] = {
-		{"a b --seconds 11", "example: --seconds wants a number from 0.5 to 10, not \"11\"\n"},
-		{"a b --seconds nan", "example: --seconds wants a number from 0.5 to 10, not \"nan\"\n"},
-		{"a b --seconds=", "example: --seconds wants a number from 0.5 to 10, not \"\"\n"},
-		{"a b --seconds 1x", "example: --seconds wants a number from 0.5 to 10, not \"1x\"\n"},
-		{"a b --threads 1.5", "example: --threads wants a whole number, not \"1.5\"\n"},
-		{"a b --threads 17", "example: --threads wants a number from 1 to 16, not \"17\"\n"},
+		{"a b --seconds 11", "example: --seconds needs a number from 0.5 to 10, not \"11\"\n"},
+		{"a b --seconds nan", "example: --seconds needs a number from 0.5 to 10, not \"nan\"\n"},
+		{"a b --seconds=", "example: --seconds needs a number from 0.5 to 10, not \"\"\n"},
+		{"a b --seconds 1x", "example: --seconds needs a number from 0.5 to 10, not \"1x\"\n"},
+		{"a b --threads 1.5", "example: --threads needs a whole number, not \"1.5\"\n"},
+		{"a b --threads 17", "example: --threads needs a number from 1 to 16, not \"17\"\n"},
 		{"a b --solver lu", "example: --solver is one of cholesky, diagonal; not \"lu\"\n"},
-		{"a b --from 1,2", "example: --from wants three numbers X,Y,Z, not \"1,2\"\n"},
-		{"a b --from 1,2,3,4", "example: --from wants three numbers X,Y,Z, not \"1,2,3,4\"\n"},
-		{"a b --from 1,2,inf", "example: --from wants three numbers X,Y,Z, not \"1,2,inf\"\n"},
-		{"a b --scene", "example: --scene wants a value\n"},
+		{"a b --from 1,2", "example: --from needs three numbers X,Y,Z, not \"1,2\"\n"},
+		{"a b --from 1,2,3,4", "example: --from needs three numbers X,Y,Z, not \"1,2,3,4\"\n"},
+		{"a b --from 1,2,inf", "example: --from needs three numbers X,Y,Z, not \"1,2,inf\"\n"},
+		{"a b --scene", "example: --scene needs a value\n"},
 		{"a b --cut=1", "example: --cut takes no value\n"},
 		{"a b --secnods 1", "example: there is no option --secnods: did you mean --seconds?\n"},
 		{"a b --annihilate", "example: there is no option --annihilate (--help lists them)\n"},
-		{"a", "example: wants SESSION TOOL (see --help)\n"},
-		{"a b c", "example: \"c\" belongs to no option\n"},
+		{"a", "example: needs the arguments SESSION TOOL (see --help)\n"},
+		{"a b c", "example: the argument \"c\" is not expected here\n"},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		asked a;

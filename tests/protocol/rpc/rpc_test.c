@@ -378,7 +378,8 @@ static void test_every_status_has_its_code(void **unused)
 		assert_string_equal(cau_rpc_error_sentence(code), cau_status_sentence((cau_status)status));
 	}
 	assert_int_equal(cau_rpc_error_of_status(CAU_STATUS_COUNT), CAU_RPC_INTERNAL);
-	assert_string_equal(cau_close_reason(CAU_CLOSE_NO_HELLO), "no hello within 5 s");
+	assert_string_equal(cau_close_reason(CAU_CLOSE_NO_HELLO),
+	                    "the client sent no hello within 5 s");
 }
 
 static void test_members_of_newer_servers_are_skipped(void **unused)

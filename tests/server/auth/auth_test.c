@@ -232,8 +232,8 @@ static void a_broken_file_changes_nothing(void **state)
 		{"view aaaaaaaaaaaaaaaa\nview short\n", 0600, "line 2"},
 		{"view\n", 0600, "line 1"},
 		{long_line, 0600, "line 1 is too long"},
-		{"# none\n", 0600, "has no token"},
-		{"", 0600, "has no token"},
+		{"# none\n", 0600, "contains no token"},
+		{"", 0600, "contains no token"},
 		{"view aaaaaaaaaaaaaaaa\n", 0640, "read by other users"},
 	};
 	for (size_t i = 0; i < sizeof broken / sizeof broken[0]; i++) {

@@ -239,7 +239,8 @@ static void whose_creator_is_gone_for_good_it_ends(void **state)
 	cau_hosted_abandon(t.h, CREATOR + 1); // another client
 	cau_hosted_abandon(t.h, CREATOR);
 	hosted_go_on();
-	assert_non_null(strstr(hosted_await(0)->reason, "its creator disconnected"));
+	assert_non_null(
+		strstr(hosted_await(0)->reason, "the client that created the session disconnected"));
 	assert_int_equal(hosted_stored_sessions(), 0);
 }
 

@@ -387,7 +387,7 @@ static void a_lease_is_taken_from_nobody(void **state)
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_CLAIM);
 	claim = (cau_claim){.held = held, .known = other};
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_REFUSE);
-	assert_non_null(strstr(error.reason, "generation 5 and etcd knows 7"));
+	assert_non_null(strstr(error.reason, "generation 5, etcd has 7"));
 	claim.take_label = true;
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_CLAIM);
 	bool has_next = false;

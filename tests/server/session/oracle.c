@@ -465,11 +465,12 @@ void oracle_note_cut(world *w)
 	uint64_t *silent = &tool->silent[tool->enabler];
 	if (strcmp(drive->cut_cause, "another driver") == 0 && change)
 		cut(tool, change);
-	else if (strcmp(drive->cut_cause, "it was removed") == 0 && removal)
+	else if (strcmp(drive->cut_cause, "the tool was removed") == 0 && removal)
 		cut(tool, removal);
-	else if (strcmp(drive->cut_cause, "its driver is silent") == 0 && tool->looked > tool->enable)
+	else if (strcmp(drive->cut_cause, "the driver sent no heartbeat in time") == 0 &&
+	         tool->looked > tool->enable)
 		*silent = tool->looked > *silent ? tool->looked : *silent;
-	else if (strcmp(drive->cut_cause, "its limit of ticks is over") == 0 && is_over(w, tool))
+	else if (strcmp(drive->cut_cause, "the limit of ticks is reached") == 0 && is_over(w, tool))
 		tool->enable = tool->limit = 0;
 	else if (should_be_lit(w, tool))
 		world_wrong(w, "%s is cut for nothing: %s", drive->tool, drive->cut_cause);

@@ -113,7 +113,7 @@ static void refusals_name_the_options(void **state)
 	wish.unit_m = 0.001;
 	wish.strict = 1;
 	assert_int_equal(sim_mesh_scene(&wish, scene, &error), CAU_BAD_MESH);
-	assert_non_null(strstr(error.reason, "--strict refuses to mend this mesh: 128 hexahedra"));
+	assert_non_null(strstr(error.reason, "--strict refuses to repair this mesh: 128 hexahedra"));
 	free(scene);
 }
 

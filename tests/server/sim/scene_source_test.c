@@ -38,8 +38,8 @@ static void what_cannot_be_read_is_named(void **state)
 	fixture_write(bad, "{\"name\":\"own\",\"step_s\":9}");
 	expect_failure(bad, CAU_BAD_VALUE, bad, "9 is outside");
 	expect_failure("not-there", CAU_NOT_FOUND, "", "not-there");
-	expect_failure("../layers", CAU_BAD_VALUE, "", "is no scene name");
-	expect_failure("", CAU_BAD_VALUE, "", "is no scene name");
+	expect_failure("../layers", CAU_BAD_VALUE, "", "is neither the name of a scene");
+	expect_failure("", CAU_BAD_VALUE, "", "is neither the name of a scene");
 	expect_failure("/nowhere/x.json", CAU_IO, "/nowhere/x.json", "cannot open");
 }
 

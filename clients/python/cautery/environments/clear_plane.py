@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An areolar plane: strands join two sheets. Part all strands under traction, and burn neither sheet."""
+"""An areolar plane: strands join two sheets. Part all strands under traction, and damage no sheet."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ LENGTH_M, WIDTH_M = 0.014, 0.010  # of the plane, along x and y
 TAB_M = 0.004  # of the upper sheet, in front of the plane, where the grasper holds it
 BACK_M = 0.004  # of the upper sheet, behind the plane, so that traction can lift it there too
 STEP_M = 0.001  # from strand to strand, along x and y
-# From sheet to sheet: a strand's length. The wire burns a sheet that is 0.7 mm from its middle, and spares one at 0.8 mm.
-# So it passes nowhere between sheets 1.4 mm apart: traction has to open the plane.
+# Distance of the sheets, which is the length of a strand. The wire parts a sheet that is 0.7 mm from its middle, but not
+# a sheet at 0.8 mm. So the wire cannot pass between sheets that are 1.4 mm apart: traction has to open the plane.
 GAP_M = 0.0014
 HOT_RADIUS_M = 0.0004
-FOOT_M = 0.004  # of the hook, along x: four strands beside each other
+FOOT_M = 0.004  # of the hook, along x: as wide as four strands
 TEMPERATURE_C = 700
 THICKNESS_M, STIFFNESS_PA = 0.0005, 1e6  # of a sheet; the stiffness is that of its strain limit
 # A sheet bends as a plate of that stiffness, E h^3 / (12 (1 - nu^2)) (Timoshenko and Woinowsky-Krieger, Theory of Plates
 # and Shells, 1959, eq. 3). Soft tissue keeps its volume, so nu is 0.5. Without bending stiffness the tab hangs straight
 # down, and the grasper finds nothing to hold. With it the tab's edge sags by 0.03 mm.
 BENDING_NM = STIFFNESS_PA * THICKNESS_M ** 3 / (12 * (1 - 0.5 ** 2))
-LEAST_M = np.array([-0.008, -0.012, -GAP_M])  # that the tip reaches
+LEAST_M = np.array([-0.008, -0.012, -GAP_M])  # least position of the tip
 MOST_M = np.array([0.008, 0.006, 0.003])
-MOVE_M = 0.0005  # of the tip in a step, along each axis, and of the grasper, at most
+MOVE_M = 0.0005  # largest motion in a step, of the tip along each axis and of the grasper
 HEIGHT_MOST_M = 0.01  # of the grasper
-HEIGHT_FIRST_M = 0.004  # the grasper feels 0.16 N there, and no strand is longer than 4.6 mm
-FORCE_MOST_N = 0.8  # that costs nothing: a grasper 7 mm high, where the plane is open enough, feels up to 0.61 N
+HEIGHT_FIRST_M = 0.004  # height at the start; there the grasper feels 0.16 N, and no strand is longer than 4.6 mm
+FORCE_MOST_N = 0.8  # force without a penalty; a grasper 7 mm high, which opens the plane enough, feels up to 0.61 N
 TICKS = 4  # of the simulation in a step
 STEPS_MOST = 250  # of an episode
-ROWS = 5  # of blocks of strands, along x and along y
+ROWS = 5  # number of blocks of strands along x, and along y
 
-_HELD_Y_M = -WIDTH_M / 2 - TAB_M / 2  # where the grasper holds
-_FREE_Y_M = -0.02  # where nothing is
-_APPROACH_TICKS, _GRASP_TICKS, _LIFT_STEPS, _LIFT_TICKS = 10, 15, 10, 2  # of the way to traction, before an episode
+_HELD_Y_M = -WIDTH_M / 2 - TAB_M / 2  # y at which the grasper holds
+_FREE_Y_M = -0.02  # y without tissue
+_APPROACH_TICKS, _GRASP_TICKS, _LIFT_STEPS, _LIFT_TICKS = 10, 15, 10, 2  # phases before an episode, until traction
 _SIDEWAYS = (0.5 ** 0.5, 0.5 ** 0.5, 0.0, 0.0)  # the shaft comes along y, from the free edge; the foot lies along x
 _FLAT = (0.5, 0.5, 0.5, -0.5)  # as the hook's, and the jaws open along z
 _CLEARED_REWARD, _DONE_REWARD, _BURNT_REWARD, _FORCE_REWARD, _STEP_REWARD = 10.0, 10.0, -0.5, -0.1, -0.005
@@ -58,10 +58,10 @@ def _layer(name: str) -> dict[str, Any]:
 
 
 def scene(seed: int) -> dict[str, Any]:
-    """The task's scene. `seed`: of which strands and faces are tougher."""
-    # Each strand goes straight down: no other vertex is within its reach. The ends of a strand are further from the
-    # wire than the faces of a cut, so it takes heat up ten times as fast as these. It is 0.18 mm thick: then traction that
-    # opens the plane as far as the wire needs stays below FORCE_MOST_N.
+    """Returns the scene of the task. `seed` decides which strands and faces are tougher."""
+    # Each strand goes straight down, because no other vertex is within reach_m. The ends of a strand are farther from the
+    # wire than the faces of a cut. So strands take up heat ten times as fast as the sheets. Strands are 0.18 mm thick, so
+    # that the traction which opens the plane for the wire stays below FORCE_MOST_N.
     strands = {"kind": "links", "name": "strands", "of": "upper", "to": "lower", "young_modulus_pa": 1e5,
                "area_m2": 2.5e-8, "reach_m": 1.02 * GAP_M, "per_vertex": 1, "ignition_c": 120, "ignition_spread_c": 20,
                "absorption_per_s": 40}
@@ -79,24 +79,24 @@ def scene(seed: int) -> dict[str, Any]:
 
 
 class ClearPlane(Task):
-    """Part all strands, and no face of either sheet. `cautery.environments.Task` has the parameters.
+    """Part all strands, and no face of a sheet. `cautery.environments.Task` describes the parameters.
 
-    A grasper holds the upper sheet's free edge. Its height is the traction: without it the sheets are
-    so near each other that the hook burns one of them. The hook lies between the sheets, its foot along x.
+    A grasper holds the free edge of the upper sheet, and its height gives the traction. Without traction the sheets are
+    so near each other that the hook parts one of them. The hook lies between the sheets, with its foot along x.
 
-    An action has five numbers from -1 to 1: how the hook's tip moves along x, y and z, and the grasper up (1 is 0.5 mm),
-    and the energy, which is on above 0. An observation: the tip's place (3, from -1 to 1 in its reach), whether energy is
-    on, the grasper's height (in shares of 10 mm), its force (1: all that costs nothing; at most 2, shown halved), whether
-    it holds, and of 5 x 5 blocks of strands, x slowest, the share that is parted (25) and how far the upper sheet is from
-    the lower one (25, in shares of 10 mm).
+    An action has five numbers from -1 to 1: the motion of the hook's tip along x, y and z, the motion of the grasper
+    upward (1 is 0.5 mm), and the energy, which is on above 0. An observation has: the position of the tip (3, from -1 to 1
+    within its reach); whether energy is on; the height of the grasper (over 10 mm); its force (over twice the force
+    without a penalty, at most 1); whether the grasper holds; for each of 5 x 5 blocks of strands, x slowest, the share of
+    parted strands (25); and for each block the distance of the upper from the lower sheet (25, over 10 mm).
 
-    Rewards: 10 times the share of strands that part, 10 once all have, -0.5 for each face that parts, -0.1 for each step
-    at twice the force that costs nothing (in proportion to what is above it), -0.005 a step. It is terminated once all
-    strands or a face have parted, and truncated after 250 steps.
+    Rewards: 10 times the share of strands that part; 10 when all strands have parted; -0.5 for each face that parts; -0.1
+    for each step at twice the force without a penalty (in proportion to the excess); -0.005 for each step. An episode
+    terminates when all strands or a face have parted, and is truncated after 250 steps.
 
-    Streams do not show strands. A strand has parted when both vertices that it joined count a parted edge (the channel
-    `charring`): while no face has parted, no other edge has. `reset(options={"tip_m": [x, y, z]})` says where the tip
-    begins. `render()` returns the plane from above, (110, 150, 3): strands that hold, and the wire.
+    Streams do not show strands. A strand has parted if the channel `charring` of both its vertices counts a parted edge:
+    as long as no face has parted, no other edge can have. `reset(options={"tip_m": [x, y, z]})` sets the first position
+    of the tip. `render()` returns the plane from above, (110, 150, 3): strands that hold, and the wire.
     """
 
     steps_usual, ticks, scalars = STEPS_MOST, TICKS, ("charring",)
@@ -117,8 +117,8 @@ class ClearPlane(Task):
         self._take_hold()
 
     def _take_strands(self) -> None:
-        """The ends of each strand, upper and lower, and its block."""
-        # In whole steps from strand to strand: a daemon sends places at rest as floats, and they would be rounded otherwise.
+        """Finds the upper and lower end of each strand, and its block."""
+        # In whole steps of STEP_M, because a daemon sends rest positions as rounded floats.
         corner = (-LENGTH_M / 2, -WIDTH_M / 2)
         steps = np.round((self._tissue.rest[:, :2] - corner) / STEP_M).astype(int)
         upper, lower = (np.unique(self._tissue.faces[self._faces_of(layer)]) for layer in (0, 1))
@@ -129,7 +129,7 @@ class ClearPlane(Task):
         self._in_block = np.bincount(self._block, minlength=ROWS ** 2)
 
     def _take_hold(self) -> None:
-        """The grasper closes on the tab, and lifts it."""
+        """Closes the grasper on the tab, and lifts it."""
         place = np.array([0, _HELD_Y_M, 0])
         hook = ToolCommand("hook", self._tip, _SIDEWAYS)
         self._go([hook, ToolCommand("grasper", place, _FLAT, jaw=1.0)], _APPROACH_TICKS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A band of fascia lies over a second sheet. Part the band from side to side, and burn nothing below."""
+"""A band of fascia lies over a second sheet. Part the band from side to side, and damage nothing below."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ CELLS = (30, 12)
 GAP_M = 0.004  # from the band down to the sheet
 HOT_RADIUS_M = 0.0008
 TEMPERATURE_C = 700
-REACH_M = (0.012, 0.012, 0.008)  # of the tip: to both sides of the band's middle, and above it
-DEPTH_M = 0.006  # and below
-MOVE_M = 0.0005  # of the tip in a step, along each axis, at most
+REACH_M = (0.012, 0.012, 0.008)  # reach of the tip: to both sides of the middle of the band, and above it
+DEPTH_M = 0.006  # reach of the tip below the band
+MOVE_M = 0.0005  # largest motion of the tip in a step, along each axis
 TICKS = 4  # of the simulation in a step
 STEPS_MOST = 200  # of an episode
-COLUMNS = 12  # across the band: whether each is whole
+COLUMNS = 12  # columns across the band, each observed as whole or parted
 
 _PARTED_REWARD, _BURNT_REWARD, _STEP_REWARD, _DONE_REWARD = 1.0, -0.5, -0.005, 10.0
 
@@ -39,7 +39,7 @@ def _layer(name: str) -> dict[str, Any]:
 
 
 def scene(seed: int) -> dict[str, Any]:
-    """The task's scene. `seed`: of where the tissue is tougher."""
+    """Returns the scene of the task. `seed` decides where the tissue is tougher."""
     ends = [{"kind": "box", "layer": "band", "least_m": [x - 1e-4, -1, -1], "most_m": [x + 1e-4, 1, 1]}
             for x in (-LENGTH_M / 2, LENGTH_M / 2)]
     tool = {"name": "hook", "shape": "sphere", "hot_radius_m": HOT_RADIUS_M, "temperature_c": TEMPERATURE_C,
@@ -50,15 +50,16 @@ def scene(seed: int) -> dict[str, Any]:
 
 
 class PartBand(Task):
-    """Part the band, and burn nothing below it. `cautery.environments.Task` has the parameters.
+    """Part the band, and damage nothing below it. `cautery.environments.Task` describes the parameters.
 
-    An action has four numbers from -1 to 1: how the tip moves along x, y and z (1 is 0.5 mm), and the energy, which is
-    on above 0. An observation: the tip's place (3, in shares of its reach), whether energy is on, whether a face has
-    parted in each of 12 columns across the band, and the largest exposure of the band and of the sheet below (1 parts).
-    Rewards: 1 for each column that parts, 10 for the whole band, -0.5 for each face below that parts, -0.005 a step.
-    It is terminated once the band is parted or a face below is, and truncated after 200 steps.
+    An action has four numbers from -1 to 1: the motion of the tip along x, y and z (1 is 0.5 mm), and the energy, which
+    is on above 0. An observation has: the position of the tip (3, over its reach); whether energy is on; for each of 12
+    columns across the band, whether a face has parted; the largest exposure of the band, and of the sheet below (at 1 a
+    face parts). Rewards: 1 for each column that parts; 10 for the whole band; -0.5 for each face below that parts; -0.005
+    for each step. An episode terminates when the band or a face below has parted, and is truncated after 200 steps.
 
-    `reset(options={"tip_m": [x, y, z]})` says where the tip begins. `render()` returns the band from above, (60, 150, 3).
+    `reset(options={"tip_m": [x, y, z]})` sets the first position of the tip. `render()` returns the band from above,
+    (60, 150, 3).
     """
 
     steps_usual, ticks = STEPS_MOST, TICKS
@@ -101,7 +102,7 @@ class PartBand(Task):
 
     # ---- what is seen
     def _columns_left(self, state: Seen) -> npt.NDArray[np.int64]:
-        """1 for each column that is whole, 0 once a face of it has parted. (COLUMNS,)"""
+        """Returns 1 for each whole column, 0 for a column with a parted face. (COLUMNS,)"""
         left = np.ones(COLUMNS, np.int64)
         left[self._column[state.removed[self._band]]] = 0
         return left

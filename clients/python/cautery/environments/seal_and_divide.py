@@ -13,29 +13,30 @@ from .task import Observation, Picture, Task, is_divided
 from .tissue import Seen, SeenVessel, ToolCommand
 
 LENGTH_M, WIDTH_M, DEPTH_M = 0.02, 0.004, 0.003  # of the strip, along x, y and z; its top is at 0
-REACH_M = 0.006  # of both tools along x, to both sides of the strip's middle
-FORCEPS_LOW_M, FORCEPS_HIGH_M = -0.008, 0.004  # of the forceps' tip: low, the strip is between the jaws
-FORCEPS_MOVE_M = 0.001  # of the forceps in a step, along each axis, at most
-NEEDLE_REACH_M = 0.006  # to both sides of the strip's middle line
-NEEDLE_MOVE_M = 0.0005  # of the needle in a step, along each axis, at most: 6 mm/s
-PRESSURE_PA = (8000, 16000)  # of which the artery's is drawn: means of arteries, low to high
-MARGIN = 2  # of the burst pressure that the artery needs, over its pressure
+REACH_M = 0.006  # reach of both tools along x, to both sides of the middle of the strip
+FORCEPS_LOW_M, FORCEPS_HIGH_M = -0.008, 0.004  # height of the forceps' tip; when low, the strip is between the jaws
+FORCEPS_MOVE_M = 0.001  # largest motion of the forceps in a step, along each axis
+NEEDLE_REACH_M = 0.006  # reach to both sides of the middle line of the strip
+NEEDLE_MOVE_M = 0.0005  # largest motion of the needle in a step, along each axis: 6 mm/s
+PRESSURE_PA = (8000, 16000)  # range of the drawn pressure of the artery: low to high mean pressures of arteries
+MARGIN = 2  # burst pressure that the artery needs, over its pressure
 TICKS = 5  # of the simulation in a step
 STEPS_MOST = 200  # of an episode
 
-_NEEDLE_Z_M = -0.007  # of the needle's tip: it stands through the strip's whole depth
+_NEEDLE_Z_M = -0.007  # z of the needle's tip; the needle passes through the whole depth of the strip
 _TURNED = (0.5 ** 0.5, 0.0, 0.0, 0.5 ** 0.5)  # the jaws open along y
-_HOT_C, _LOAD_OHM, _POWER_W, _BLEEDING_M3_S, _SHED_M3 = 100.0, 1000.0, 40.0, 5e-6, 5e-6  # that are 1 in an observation
+_HOT_C, _LOAD_OHM, _POWER_W, _BLEEDING_M3_S, _SHED_M3 = 100.0, 1000.0, 40.0, 5e-6, 5e-6  # values that are 1 in an observation
 _SEALED_REWARD, _DONE_REWARD, _BLOOD_REWARD, _STEP_REWARD = 5.0, 10.0, -2e6, -0.005  # blood: -2 for 1 ml
 
 
 def scene(seed: int) -> dict[str, Any]:
-    """The task's scene: as deploy/scenes/pedicle.json, half as long, with coarser elements and a third of its iterations.
+    """Returns the scene of the task: like deploy/scenes/pedicle.json, but half as long, with coarser elements and a third of
+    the iterations.
 
-    `seed`: of the artery's place across the strip and of its pressure, and of the tissue.
+    `seed` decides the position of the artery across the strip, its pressure, and the tissue.
     """
     random = np.random.default_rng(seed)
-    y_m = float(random.uniform(-0.0004, 0.0004))  # then 0.6 mm of tissue are beside it at least
+    y_m = float(random.uniform(-0.0004, 0.0004))  # leaves at least 0.6 mm of tissue beside the artery
     pressure_pa = float(random.uniform(*PRESSURE_PA))
     strip = {"kind": "fat", "name": "strip", "mesh": "strip", "tissue": "connective", "density_kg_m3": 1050,
              "young_modulus_pa": 60000, "model": "neohookean", "poisson_ratio": 0.4, "limit": "none",
@@ -57,22 +58,22 @@ def scene(seed: int) -> dict[str, Any]:
 
 
 class SealAndDivide(Task):
-    """Seal the artery, and divide the strip in the seal. `cautery.environments.Task` has the parameters.
+    """Seal the artery, and divide the strip in the seal. `cautery.environments.Task` describes the parameters.
 
-    An action has seven numbers from -1 to 1. Forceps: how they move along x and z (1 is 1 mm), whether their jaws close
-    (above 0), and their energy (on above 0). Needle: how it moves along x and y (1 is 0.5 mm), and its energy.
+    An action has seven numbers from -1 to 1. Forceps: motion along x and z (1 is 1 mm), closing of the jaws (closed above
+    0), and energy (on above 0). Needle: motion along x and y (1 is 0.5 mm), and energy.
 
-    An observation has 21 numbers. Forceps: place along x and z (2, from -1 to 1 in their reach), opening of the jaws,
-    whether they hold tissue, whether energy is on, power (in shares of 40 W), load (of 1,000 ohm), temperature (of
-    100 degC) and force (of 60 N). Needle: place along x and y (2), whether energy is on, power. Artery: its pressure (of
-    16 kPa), the burst pressure of its seal (of what it needs: twice its pressure), whether it is shut, sealed, pierced and
-    parted, bleeding (of 5 ml/s), and blood that it has shed (of 5 ml).
+    An observation has 21 numbers. Forceps: position along x and z (2, from -1 to 1 within their reach), opening of the
+    jaws, whether they hold tissue, whether energy is on, power (over 40 W), load (over 1,000 ohm), temperature (over
+    100 degC) and force (over 60 N). Needle: position along x and y (2), whether energy is on, power. Artery: its pressure
+    (over 16 kPa); the burst pressure of its seal (over the needed pressure, which is twice its pressure); whether it is
+    shut, sealed, pierced and parted; bleeding (over 5 ml/s); and lost blood (over 5 ml).
 
-    Rewards: 5 times the share of the burst pressure that it needs, as it is gained; 10 once the strip and the artery are
-    divided, if no blood was shed; -2 for each millilitre of blood; -0.005 a step. It is terminated once strip and artery
-    are divided, and truncated after 200 steps. The burst pressure is a prediction (core/vessel/README.md).
+    Rewards: 5 times each gain in the share of the needed burst pressure; 10 when the strip and the artery are divided
+    without blood; -2 for each millilitre of blood; -0.005 for each step. An episode terminates when strip and artery are
+    divided, and is truncated after 200 steps. The burst pressure is a prediction (core/vessel/README.md).
 
-    `reset(options={"forceps_x_m": x})` says where the forceps begin. `render()` returns the strip from above,
+    `reset(options={"forceps_x_m": x})` sets the first position of the forceps. `render()` returns the strip from above,
     (60, 200, 3).
     """
 

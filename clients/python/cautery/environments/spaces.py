@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one space that the tasks need, as gymnasium.spaces.Box has it."""
+"""The only kind of space that the tasks need, with the interface of gymnasium.spaces.Box."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ class Box:
         self.low = np.asarray(low, np.float32)
         self.high = np.asarray(high, np.float32)
         if self.low.shape != self.high.shape or not (self.low < self.high).all():
-            raise ValueError("the bounds have another shape, or cross")
+            raise ValueError("low and high must have the same shape, and low must be below high")
         self.shape = self.low.shape
         self.dtype = np.dtype(np.float32)
         self._random = np.random.default_rng()
 
     def seed(self, seed: int | None = None) -> None:
-        """Makes `sample` begin anew."""
+        """Sets the seed of the random numbers of `sample`."""
         self._random = np.random.default_rng(seed)
 
     def sample(self) -> npt.NDArray[np.float32]:
-        """An element, all of them equally likely."""
+        """Returns a random element, uniform between the bounds."""
         return self._random.uniform(self.low, self.high).astype(np.float32)
 
     def contains(self, x: Any) -> bool:
-        """Whether it is an array of this shape and type within the bounds."""
+        """Returns whether `x` is an array of this shape and type within the bounds."""
         return (isinstance(x, np.ndarray) and x.shape == self.shape and x.dtype == self.dtype
                 and bool(((x >= self.low) & (x <= self.high)).all()))
 

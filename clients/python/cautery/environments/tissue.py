@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a task's tissue is simulated: in a daemon, or in a process that contains the core."""
+"""Simulates the tissue of a task: in a daemon, or in this process with the core."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ Floats = npt.NDArray[np.float64]
 
 _REST = (1.0, 0.0, 0.0, 0.0)
 _CHANNELS: list[Any] = ["positions", "mask", "tools", "vessels"]
-# Settings of the task's own daemon. It has one client, so its quotas have no use.
+# Settings of a daemon that a task starts. It has only one client, so it needs no quotas.
 _OWN = {"quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000, "quota_admin": 1000000,
         "quota_all": 1000000}
 
 
 @dataclass(frozen=True)
 class ToolCommand:
-    """What a tool does in a step. Rotation: w, x, y, z; jaw: 0 closed to 1 open; grasping: whether its jaws hold."""
+    """Command of a tool for a step. `rotation` is w, x, y, z. `jaw`: 0 closed to 1 open. `grasping`: the jaws hold."""
 
     tool: str
     position_m: Floats  # (3,), of the tip
@@ -44,11 +44,11 @@ class SeenTool:
     position_m: Floats  # (3,), of the tip: tissue can stop the tool
     jaw: float  # 0 closed to 1 open
     energized: bool
-    grasped_vertices: int  # that its jaws hold
+    grasped_vertices: int  # number of points that the jaws hold
     force_n: Floats  # (3,), of the tissue on the tool, filtered
     tip_temperature_c: float
-    power_w: float  # given to tissue in the last tick
-    load_ohm: float  # that the generator finds; 0: no current flows
+    power_w: float  # power given to tissue in the last tick
+    load_ohm: float  # load of the generator; 0: no current flows
 
 
 @dataclass(frozen=True)
@@ -56,13 +56,13 @@ class SeenVessel:
     """A blood vessel after a step."""
 
     parted: bool
-    pierced: bool  # its wall has a hole
-    shut: bool  # pressed so flat somewhere that nothing flows
-    sealed: bool  # a seal withstands the pressure of its blood
+    pierced: bool  # the wall has a hole
+    shut: bool  # pressed so flat somewhere that no blood flows
+    sealed: bool  # a seal withstands the blood pressure
     bleeds: bool
-    bleeding_m3_s: float  # blood that left it in the last tick, by time
-    shed_m3: float  # blood that has left it since the beginning
-    burst_pa: float  # predicted pressure at which its best seal opens; 0: no seal
+    bleeding_m3_s: float  # flow of blood out of the vessel in the last tick
+    shed_m3: float  # volume of blood that has left the vessel since the beginning
+    burst_pa: float  # predicted pressure at which the best seal opens; 0: no seal
 
 
 @dataclass(frozen=True)
@@ -72,26 +72,26 @@ class Seen:
     tick: int
     positions: Floats  # (V, 3), m
     removed: npt.NDArray[np.bool_]  # (F,)
-    scalars: Mapping[str, Floats]  # (V,) each, by channel: those that the task has asked for
+    scalars: Mapping[str, Floats]  # (V,) each, by channel; only channels that the task requested
     tools: Mapping[str, SeenTool]
     vessels: Mapping[str, SeenVessel]
 
 
 class Tissue(Protocol):
-    """A session of a scene. `begin` comes first, and again for each episode."""
+    """A session of a scene. A task calls `begin` first, and again for each episode."""
 
     faces: npt.NDArray[np.int32]  # (F, 3)
     face_layers: npt.NDArray[np.int32]  # (F,)
     rest: Floats  # (V, 3), m
 
     def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
-        """Begins at tick 0 of a scene, energy off and nothing grasped. `scalars`: channels that each step shows."""
+        """Begins at tick 0 of a scene, energy off and nothing grasped. `scalars` are the channels that steps return."""
 
     def step(self, commands: Sequence[ToolCommand], ticks: int) -> Seen:
-        """Commands tools, and goes on by so many ticks. A tool without a command does what it did."""
+        """Commands tools and advances by `ticks` ticks. A tool without a command continues its last command."""
 
     def close(self) -> None:
-        """Ends it."""
+        """Ends the session."""
 
 
 def _seen_tool(tool: ObservedTool) -> SeenTool:
@@ -105,7 +105,7 @@ def _seen_vessel(vessel: ObservedVessel) -> SeenVessel:
 
 
 class RemoteTissue:
-    """A session of a daemon, by default of one of its own. `settings`: further ones of that daemon."""
+    """A session of a daemon. By default it starts a daemon, with `settings` as further settings."""
 
     def __init__(self, url: str | None = None, daemon: str | None = None, **settings: object) -> None:
         self._things = contextlib.ExitStack()
@@ -119,7 +119,7 @@ class RemoteTissue:
             raise
 
     def begin(self, scene: Mapping[str, Any], scalars: Sequence[str]) -> None:
-        """Makes another session in the place of the last one."""
+        """Creates a new session, which replaces the last one."""
         if self._session:
             self._client.session_destroy(session=self._session.name)
         made = self._client.session_create(definition=scene, paused=True, ephemeral=True)  # type: ignore[arg-type]
@@ -151,12 +151,12 @@ class RemoteTissue:
                                           {"channels": self._channels})
         except RequestError as error:
             if error.status == "faulted":
-                raise Error("the tissue's motion became numerically unsound: reset") from error
+                raise Error("the motion of the tissue became numerically unsound: call reset") from error
             raise
         self._done.update({wanted.tool: wanted for wanted in commands})
         for name, done in self._done.items():
             if state.tools[name]["energized"] != done.energized:
-                raise Error("energy went off by itself: somebody else uses this session")
+                raise Error("energy went off without a command: another client uses this session")
         assert state.positions is not None and state.removed is not None
         return Seen(state.tick, state.positions, state.removed, state.scalars,
                     {name: _seen_tool(tool) for name, tool in state.tools.items()},

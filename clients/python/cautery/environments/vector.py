@@ -40,7 +40,7 @@ def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | No
 
 
 def _together(infos: Sequence[Mapping[str, Any]]) -> Infos:
-    """Each member as an array over the environments, and under "_" and its name in which of them it is."""
+    """Joins infos: each member becomes an array over the environments. The member "_" + name marks those that have it."""
     made: Infos = {}
     for i, info in enumerate(infos):
         for name, value in info.items():
@@ -56,15 +56,15 @@ def _together(infos: Sequence[Mapping[str, Any]]) -> Infos:
 class VectorEnvironment:
     """Gymnasium's VectorEnv: `reset` and `step` act on all environments and return arrays, (N, ...).
 
-    `makers`: a function for each environment that makes it. The environments have equal spaces. `threads`: on which they
-    step; what they return does not depend on it. More than one helps where steps release Python's lock, as those of
-    cautery_core do.
+    `makers` has a function for each environment that creates it. The environments must have equal spaces. `threads` is the
+    number of threads that step environments; results do not depend on it. Several threads help if steps release Python's
+    lock, as steps of cautery_core do.
 
     The mode of autoreset is NEXT_STEP: in the step after an environment has ended, its action is ignored and it is reset.
-    That step returns the first observation of its next episode, reward 0, and that it has not ended.
+    That step returns the first observation of the next episode, reward 0, and no end of the episode.
 
-    A seed s gives environment i the seed s + i; a list gives each its own. If an environment raises, the others have ended
-    their step when the error comes out; `reset` all of them then.
+    A seed s gives environment i the seed s + i; a list has a seed for each environment. If an environment raises, the other
+    environments first finish their step. After an error, call `reset`.
     """
 
     render_mode = None
@@ -72,7 +72,7 @@ class VectorEnvironment:
 
     def __init__(self, makers: Sequence[Callable[[], Any]], threads: int = 1) -> None:
         if not makers or threads < 1:
-            raise ValueError("a vector has an environment and a thread at least")
+            raise ValueError("a vector needs at least one environment and one thread")
         self.environments: list[Any] = []
         self._pool = ThreadPoolExecutor(threads, "cautery vector") if threads > 1 else None
         self.closed = False
@@ -83,7 +83,7 @@ class VectorEnvironment:
         except BaseException:
             self.close()
             raise
-        self._ended: npt.NDArray[np.bool_] | None = None  # None: reset comes first
+        self._ended: npt.NDArray[np.bool_] | None = None  # None: call reset first
 
     def _take_spaces(self) -> None:
         first = self.environments[0]
@@ -98,7 +98,7 @@ class VectorEnvironment:
 
     @property
     def unwrapped(self) -> VectorEnvironment:
-        """Itself."""
+        """This vector of environments."""
         return self
 
     def __enter__(self) -> VectorEnvironment:
@@ -118,7 +118,7 @@ class VectorEnvironment:
             environment.close()
 
     def render(self) -> tuple[Any, ...]:
-        """What each environment renders."""
+        """Returns the picture of each environment."""
         return tuple(environment.render() for environment in self.environments)
 
     # ---- episodes
@@ -133,12 +133,12 @@ class VectorEnvironment:
 
     def step(self, actions: npt.ArrayLike) -> tuple[
             npt.NDArray[np.float32], npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], Infos]:
-        """Steps all environments: observations, rewards, terminations, truncations, infos."""
+        """Steps all environments. Returns observations, rewards, terminations, truncations and infos."""
         if self._ended is None:
-            raise Error("no episode has begun, or an environment has raised: call reset")
+            raise Error("no episode has begun, or an environment has raised an error: call reset")
         given = np.asarray(actions)
         if given.shape != self.action_space.shape:
-            raise ValueError(f"actions have the shape {self.action_space.shape}, not {given.shape}")
+            raise ValueError(f"actions must have the shape {self.action_space.shape}, not {given.shape}")
         ended, self._ended = self._ended, None
         results = self._on_all(lambda i: self._step_one(i, given[i].copy(), bool(ended[i])))
         observations, rewards, terminations, truncations, infos = zip(*results)
@@ -154,7 +154,7 @@ class VectorEnvironment:
         return result
 
     def _on_all(self, act: Callable[[int], Any]) -> list[Any]:
-        """The results in order; the first error, once all are done."""
+        """Calls `act` for all environments. Returns the results in order, or raises the first error after all calls."""
         if self.closed:
             raise Error("the environments are closed")
         if not self._pool:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places of the tissue that a place of the picture (both coordinates from -1 to 1) points at.
+// Finds the point of the tissue under a point of the picture (both coordinates from -1 to 1).
 import { Vector3 } from 'three';
 
 import { acrossGap } from '../model/gap';
@@ -9,8 +9,8 @@ import type { Viewport } from '../scene/viewport';
 export class Aim {
   constructor(private readonly viewport: Viewport) {}
 
-  /** The nearest tissue that is drawn there, or where it would be if it had no gap there; null beside it, and where the picture
-   * is dark. */
+  /** Returns the nearest drawn tissue, or the point in a gap where the tissue would be. Returns null beside the tissue, and
+   * where the picture is black. */
   onSurface(x: number, y: number): Vector3 | null {
     if (!this.viewport.sees(x, y)) return null;
     const { origin, direction } = this.viewport.orbit.ray(x, y);
@@ -18,7 +18,7 @@ export class Aim {
     return distance === null ? null : origin.addScaledVector(direction, distance);
   }
 
-  /** In the plane that faces the eye, through a point. */
+  /** Returns the point in the plane through `through` that faces the eye. */
   inPlane(x: number, y: number, through: Vector3): Vector3 {
     const { orbit } = this.viewport;
     const { origin, direction } = orbit.ray(x, y);
@@ -26,7 +26,7 @@ export class Aim {
     return origin.addScaledVector(direction, through.clone().sub(origin).dot(z) / direction.dot(z));
   }
 
-  /** The tissue straight under a point, or else its vertex nearest to it; without tissue in the picture the point. */
+  /** Returns the tissue straight under a point, else the nearest vertex; without tissue in the picture, the point itself. */
   under(point: Vector3): Vector3 {
     const { tissue, clip } = this.viewport;
     if (!tissue) return point.clone();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How deep each tool works: by how much its tip goes below the surface that the hand points at. Every
-// tool has its own depth, and begins at the surface when it is taken.
+// The depth of each tool: how far its tip is below the surface to which the hand points. Each tool has its own depth,
+// which is 0 when the tool is taken.
 
 const LEAST_M = -0.1; // above the surface
 const MOST_M = 0.03; // below it: through every tissue of the scenes

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy while something is held: a key, a button, a trigger, a finger; or a latch, which holds for some
-// seconds at most. Who lets go of everything has switched off. What was held and went dark all the same is
-// said at once, with what brings it back, and comes back only by a fresh press.
+// Turns energy on while something is held: a key, a button, a trigger, a finger, or the latch (Keep on), which holds for
+// at most some seconds. Releasing everything turns energy off. If energy goes off while something is held, the page says
+// so at once and says how to continue. Energy then comes back only by a new press.
 //
-// The latch's limit is the daemon's: it goes with the enable, and the daemon keeps it whatever becomes of this
-// page. The page never enables energy without a press.
+// The enable tells the daemon the limit of the latch, so the daemon ends it even if this page fails. The page never
+// enables energy without a press.
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
@@ -13,7 +13,7 @@ import type { Frame } from '../wire/worker_messages';
 import { errorWords } from '../model/sentences';
 import { LATCH, type Held, type Holds, type Lost } from './holds';
 
-/** How to hold it again. */
+/** How the user turns energy on again, for each kind of hold. */
 const AGAIN: Readonly<Record<Held, string>> = {
   space: 'Release Space and press it again.',
   button: 'Release Energy and press it again.',
@@ -21,33 +21,33 @@ const AGAIN: Readonly<Record<Held, string>> = {
   pointer: 'Lift and press again.',
   pedal: 'Lift the pedal and press it again.',
   cap: 'Release the 3D mouse’s button and press it again.',
-  latch: 'Press Keep on for more.',
+  latch: 'Press Keep on again to continue.',
 };
 const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
-  watchdog: 'this page sent no heartbeat in time, which a busy machine can cause',
+  watchdog: 'the server did not hear from this page in time. A busy computer can cause this',
   taken_over: 'another user took the tool over',
   restored: 'the session was rewound or restarted',
-  never_enabled: 'the simulation cut it before it came on',
-  commanded: 'another user switched it off',
+  never_enabled: 'the simulation turned energy off before it came on',
+  commanded: 'another user turned energy off',
 };
-/** Why a hold ended that nobody ended by letting go. */
+/** Why a hold ended without a release by the user. */
 const LET_GO_WORDS: Readonly<Record<Exclude<Lost, 'released'>, string>> = {
   buttons: 'a second button was pressed. Release both and press again.',
-  cancelled: 'the browser took the press over. Press again.',
-  second: 'a second finger came. Lift both and press again.',
-  focus: 'the focus went to another control. Press again.',
-  typing: 'the focus went to a field. Press again.',
+  cancelled: 'the browser interrupted the press. Press again.',
+  second: 'a second finger touched the picture. Lift both and press again.',
+  focus: 'another control was selected. Press again.',
+  typing: 'a text field was selected. Press again.',
   menu: 'a menu opened. Press again.',
   dialog: 'a dialog opened. Press again.',
-  blur: 'the page lost the focus. Press again.',
-  hidden: 'the page was out of sight. Press again.',
-  gone: 'the control that was held is no longer usable.',
+  blur: 'another window was selected. Press again.',
+  hidden: 'this page was hidden. Press again.',
+  gone: 'the control that you held can no longer be used.',
   unplugged: 'the device was disconnected.',
-  past: 'this is a past view.',
+  past: 'the picture shows a past view.',
 };
 const PAUSED = 'the session is paused';
 const KEY = 'energy';
-/** Simulated seconds, in which heat does what it does: a long cut of a hand, not one that was forgotten. */
+/** Limit of the latch in simulated seconds: enough for a long cut, short if the user forgets it. */
 export const LATCH_S = 15;
 
 type State = 'off' | 'asked' | 'on' | 'lost';
@@ -55,11 +55,11 @@ type State = 'off' | 'asked' | 'on' | 'lost';
 export class Energy {
   private state: State = 'off';
   private tool: string | null = null;
-  /** counts enables, so that a late answer to an earlier one is told from that to the last */
+  /** number of enables, which distinguishes a late answer to an earlier enable */
   private enables = 0;
-  /** where the last enable took effect */
+  /** epoch and tick at which the last enable took effect */
   private since: { epoch: string; tick: number } | null = null;
-  /** of the last enable, in ticks from where it took effect; null: it has no limit */
+  /** limit of the last enable in ticks; null: no limit */
   private limit: number | null = null;
 
   constructor(
@@ -67,7 +67,7 @@ export class Energy {
     private readonly control: Control,
     private readonly sequence: () => number,
     private readonly holds: Holds,
-    /** told when nothing holds any more although nobody let go: a latch has ended */
+    /** called when the latch has ended by itself */
     private readonly ended: () => void,
   ) {
     model.on('frame', (frame) => this.check(frame));
@@ -77,12 +77,12 @@ export class Energy {
     model.on('tools', () => this.checkDriver());
   }
 
-  /** Something is held that should keep energy on. */
+  /** Whether something is held that should keep energy on. */
   get wanted(): boolean {
     return this.holds.held;
   }
 
-  /** Energy was asked for and, as far as this page knows, not cut since. */
+  /** Whether energy was requested and, as far as this page knows, has not gone off since. */
   get alive(): boolean {
     return this.state === 'asked' || this.state === 'on';
   }
@@ -91,13 +91,13 @@ export class Energy {
     return this.holds.latched;
   }
 
-  /** Simulated seconds until the latch ends. */
+  /** Returns the simulated seconds until the latch ends. */
   get latchedForS(): number {
     const { limit, since, model } = this;
     return limit !== null && since && model.frame ? Math.max(0, (since.tick + limit - model.frame.tick) * this.stepS) : LATCH_S;
   }
 
-  /** Switches on if something is held; `fresh`: it has just been pressed, which also brings back what was cut. */
+  /** Turns energy on if something is held. `fresh`: it was just pressed, which also ends a loss of energy. */
   enable(tool: string, fresh: boolean): void {
     if (!this.wanted || this.alive || (this.state === 'lost' && !fresh)) return;
     this.state = 'asked';
@@ -112,12 +112,12 @@ export class Energy {
     this.model.emit('tools', undefined);
   }
 
-  /** Energy that is on already gets the latch's limit, because the latch was pressed as well. */
+  /** Applies the limit of the latch to energy that is already on, because the latch was also pressed. */
   limitByLatch(): void {
     if (this.tool !== null && this.alive && this.latched) this.ask(this.tool);
   }
 
-  /** Nothing is held any more. What nobody let go of gets its words. */
+  /** Turns energy off, because nothing is held any more. Explains an end without a release. */
   off(why: Lost): void {
     const had = this.alive;
     this.end();
@@ -151,7 +151,7 @@ export class Energy {
     this.limit = null;
     this.tool = null;
     if (tool === null || state === 'off') return;
-    // Off is also said after a loss, should an enable still be under way; but never to somebody else's tool.
+    // Off is also sent after a loss, in case an enable is still under way, but never to the tool of another driver.
     if (!this.model.drives(tool)) return;
     this.control.call('tool.energize', { tool, sequence: this.sequence(), energized: false }).catch((error: unknown) => {
       if (state !== 'lost') this.model.say('warning', errorWords(error));
@@ -159,7 +159,7 @@ export class Energy {
     this.model.emit('tools', undefined);
   }
 
-  /** The newest frame tells whether energy that is held is on. */
+  /** Checks in the newest frame whether the energy that is held is on. */
   private check(frame: Frame): void {
     if (!this.alive || this.since === null) return;
     const state = frame.tools.find(({ name }) => name === this.tool);
@@ -171,12 +171,12 @@ export class Energy {
 
   private wentDark(frame: Frame, state: ToolState | undefined): void {
     const over = state?.energyOff === 'commanded' && this.limit !== null && frame.tick >= this.since!.tick + this.limit;
-    this.lose(over ? `it stays on for ${LATCH_S} s at most` : this.reason(state));
+    this.lose(over ? `Keep on lasts ${LATCH_S} s at most` : this.reason(state));
   }
 
-  /** Frames tell why energy went off; of what never came on they tell only the reason of the time before. */
+  /** Returns the reason why energy went off. If it never came on, the frame has only the reason of an earlier time. */
   private reason(state: ToolState | undefined): string {
-    if (!state) return 'the tool was taken away';
+    if (!state) return 'the tool was removed from the session';
     if (this.state === 'asked' && state.energyOff !== 'watchdog') return LOST_WORDS['never_enabled'];
     return LOST_WORDS[state.energyOff];
   }
@@ -184,8 +184,8 @@ export class Energy {
   private checkDriver(): void {
     if (!this.alive || this.tool === null || this.model.link.state !== 'online') return;
     const driver = this.model.drivers.get(this.tool);
-    if (!driver) this.lose('the tool was taken away');
-    else if (driver.client === 0) this.lose('the tool has no driver any more');
+    if (!driver) this.lose('the tool was removed from the session');
+    else if (driver.client === 0) this.lose('the tool no longer has a driver');
     else if (!this.model.drives(this.tool)) this.lose(`${nameOf(driver)} took the tool over`);
   }
 
@@ -199,7 +199,7 @@ export class Energy {
       this.end();
       this.ended();
     }
-    // What is held has its words until it is let go; a latch is gone with its energy.
+    // The message stays while something is held. A latch has ended with its energy.
     this.model.say('warning', `Energy is off: ${why}. ${by ? AGAIN[by] : 'Press again.'}`, this.wanted ? { key: KEY } : {});
     this.model.emit('tools', undefined);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A gamepad with the standard mapping: sticks lead, the right trigger is energy while it is pulled, A grasps.
+// A gamepad with the standard mapping: the sticks move the tool, the right trigger turns energy on, A grasps.
 // Browsers report no presses of gamepads as events, so the trigger is read fifty times a second. A trigger
 // counts only after it was seen at rest: one that is held while the pad is plugged in, or while the page comes
 // to the front, does nothing.
@@ -10,7 +10,7 @@ const STICK_REST = 0.12;
 const A = 0, RIGHT_TRIGGER = 7;
 
 export interface LedByPad {
-  /** shares of the way: right, up, nearer to the eye; and a turn about the shaft */
+  /** deflections, -1 to 1: right, up, nearer to the eye, and turn about the shaft */
   lead(right: number, up: number, nearer: number, turn: number): void;
   hold(): void;
   letGo(unplugged: boolean): void;
@@ -18,9 +18,9 @@ export interface LedByPad {
 }
 
 export class Pad {
-  /** of the pad in use; null: there is none */
+  /** index of the gamepad in use; null: none */
   private index: number | null = null;
-  /** the trigger was at rest since the pad came, or the page came to the front */
+  /** whether the trigger was at rest since the gamepad was connected or the page came to the front */
   private rested = false;
   private pulled = false;
   private grasped = false;
@@ -30,7 +30,7 @@ export class Pad {
     window.addEventListener('gamepaddisconnected', () => this.lose());
   }
 
-  /** What the sticks do; once per animation frame. */
+  /** Applies the sticks; called once per animation frame. */
   advance(): void {
     const pad = this.find();
     if (!pad) return;

@@ -9,16 +9,16 @@ export interface Watched {
 }
 
 const PLACES: readonly Place[] = ['picture', 'energy', 'latch'];
-/** Inputs that take no text. */
+/** Types of inputs into which no text is typed. */
 const NOT_TYPED = new Set(['range', 'checkbox', 'radio', 'button', 'submit', 'reset', 'file', 'color']);
 
-/** Whether keys that are pressed there write or choose something. */
+/** Returns whether keys write or choose something in this element. */
 export function takesTyping(target: EventTarget | null): boolean {
   if (target instanceof HTMLInputElement) return !NOT_TYPED.has(target.type);
   return target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement || (target instanceof HTMLElement && target.isContentEditable);
 }
 
-/** The part of the page that an element is in; the ids of the elements are the names of the places. */
+/** Returns the part of the page that contains an element. The ids of the elements are the names of the parts. */
 function placeOf(target: EventTarget | null): Place | null {
   return (target instanceof Element && PLACES.find((place) => target.closest(`#${place}`))) || null;
 }
@@ -38,7 +38,7 @@ function watchPointers(watched: Watched): void {
     window.addEventListener(type, ({ pointerId: id, buttons }) => watched.take({ type: 'buttons', id: pointerId(id), buttons: type === 'pointerup' ? 0 : buttons }), early);
   for (const type of ['pointercancel', 'lostpointercapture'] as const)
     window.addEventListener(type, ({ pointerId: id }) => watched.take({ type: 'release', id: pointerId(id), why: 'cancelled' }), early);
-  // A menu swallows what is released over it. A finger that is held long asks for one too, which the page prevents.
+  // A menu hides the release of a button over it. A long press of a finger also opens a menu, which the page prevents.
   window.addEventListener('contextmenu', (event) => {
     const byFinger = (event as Partial<PointerEvent>).pointerType === 'touch' && placeOf(event.target) !== null;
     if (!byFinger) watched.take({ type: 'leave', why: 'menu' });
@@ -71,7 +71,7 @@ function pressable(place: Place): boolean {
   return element !== null && !(element as Partial<HTMLButtonElement>).disabled && element.closest('[hidden], [inert]') === null;
 }
 
-/** Elements that are removed, disabled or hidden send no event to what they held. */
+/** Watches elements that hold something: if they are removed, disabled or hidden, no other event reports it. */
 function watchElements(watched: Watched): void {
   const changed = (changes: MutationRecord[]): void => {
     if (!watched.pressed) return;

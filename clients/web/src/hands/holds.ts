@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether energy is held, and by what. This is the one place that decides it: events in, one answer out. It
-// knows no page; hold_watch.ts turns the browser's events into these. Off wins: an event that could mean the
-// end of a hold ends it, and only a fresh press begins one.
+// Decides whether energy is held, and by what. No other module decides this. Its input are events, which hold_watch.ts
+// makes of the browser's events. In doubt energy goes off: an event that could mean the end of a hold ends it, and only
+// a new press begins a hold.
 // The table in tests/browser/page/holds.ts names each way to hold and each way to lose a hold.
 
-/** What can be held. */
+/** Kinds of holds. */
 export type Held = 'space' | 'button' | 'trigger' | 'pointer' | 'pedal' | 'cap' | 'latch';
 
-/** Parts of the page that something is held on. */
+/** Parts of the page on which something can be held. */
 export type Place = 'picture' | 'energy' | 'latch';
 
-/** Where the focus goes: to such a part, to a field that takes typing, or anywhere else. */
+/** Target of the focus: such a part, a text field, or any other element. */
 export type FocusTarget = Place | 'field' | 'other';
 
-/** Why nothing is held any more. */
+/** Reasons why nothing is held any more. */
 export type Lost =
   | 'released' | 'buttons' | 'cancelled' | 'second' | 'focus' | 'typing' | 'menu' | 'dialog' | 'blur' | 'hidden' | 'gone' | 'unplugged' | 'past';
 
@@ -23,7 +23,7 @@ export interface Press {
   /** the pointer, key or device that is pressed */
   id: string;
   place: Place | null;
-  /** false: it counts only after `ripe`, because a second finger may still come */
+  /** false: the press counts only after the event `ripe`, because a second finger may still touch */
   ripe: boolean;
 }
 
@@ -36,9 +36,9 @@ export type HoldEvent =
   /** a pointer was pressed on a place; `first`: no other pointer of its kind is down */
   | { type: 'down'; id: string; place: Place; kind: string; first: boolean }
   | { type: 'focus'; to: FocusTarget }
-  /** a place left the page, or can no longer be pressed */
+  /** a part was removed from the page, or can no longer be pressed */
   | { type: 'gone'; place: Place }
-  /** nothing of what is held can be trusted any more */
+  /** all holds end, because their state is no longer known */
   | { type: 'leave'; why: Lost };
 
 /** PointerEvent.buttons while the left button, the pen's tip or a finger is down, and nothing else. */
@@ -55,12 +55,12 @@ export class Holds {
   /** pointers that are down, whether they hold something or not */
   private readonly down = new Map<string, { place: Place; kind: string }>();
 
-  /** The one answer: something is held that should keep energy on. */
+  /** Whether something is held that should keep energy on. */
   get held(): boolean {
     return this.by.length > 0;
   }
 
-  /** What is held, the oldest first. */
+  /** Returns the present holds, the oldest first. */
   get by(): Held[] {
     return [...this.holds.values()].filter(({ ripe }) => ripe).map(({ by }) => by);
   }
@@ -69,7 +69,7 @@ export class Holds {
     return this.holds.has(LATCH);
   }
 
-  /** Something is held, or will be if it is not lost before it counts. */
+  /** Whether something is held, or is pressed and does not count yet. */
   get pressed(): boolean {
     return this.holds.size > 0;
   }
@@ -111,9 +111,9 @@ export class Holds {
     }
   }
 
-  /** Two pointers on one place hold nothing. */
+  /** Notes a pointer that was pressed. Two pointers on one part hold nothing. */
   private pressDown({ id, place, kind, first }: HoldEvent & { type: 'down' }): void {
-    if (first) for (const [other, one] of this.down) if (one.kind === kind) this.forget(other); // its end was not seen
+    if (first) for (const [other, one] of this.down) if (one.kind === kind) this.forget(other); // the release of that pointer was missed
     this.down.set(id, { place, kind });
     this.end((hold) => isPointer(hold) && hold.place === place);
   }
@@ -123,7 +123,7 @@ export class Holds {
     this.holds.delete(pointer);
   }
 
-  /** The end of a latch ends everything: whoever presses Escape wants no energy, whatever else is held. */
+  /** Ends a hold. The end of the latch ends all holds, because a user who presses Escape wants no energy. */
   private release(id: string, why: Lost): Lost {
     const hold = this.holds.get(id);
     this.forget(id);
@@ -149,7 +149,8 @@ function isPointer({ id }: Press): boolean {
   return id.startsWith('pointer ');
 }
 
-/** Pointers hold on while the focus goes from the picture to Energy: two hands use both. Keys stay where they are. */
+/** Returns whether a change of focus ends a hold. Pointers keep holding when the focus moves from the picture to Energy,
+ * because two hands can use both. */
 function losesFocus(hold: Press, to: FocusTarget): boolean {
   if (to === 'field') return true;
   if (isPointer(hold)) return to !== 'picture' && to !== 'energy';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Jaws: closed and opened by a command that lasts, or closed as long as something is held, once the tool
-// is where it was led.
+// Jaws: a command closes or opens them, or they are closed while something is held, once the tool has reached its
+// commanded position.
 import { Vector3 } from 'three';
 
 import type { Control } from '../model/control';
@@ -11,7 +11,7 @@ import { errorWords } from '../model/sentences';
 const ARRIVED_M = 0.001;
 
 export class Jaws {
-  /** closed by what is held, or to be closed when the tool is there */
+  /** whether a hold closes the jaws: no, when the tool has arrived, or yes */
   private pressed: 'no' | 'soon' | 'yes' = 'no';
 
   constructor(
@@ -42,7 +42,7 @@ export class Jaws {
     this.pressed = 'no';
   }
 
-  /** The hand has led the tool here; jaws that wait for it close. */
+  /** Notes that the tool has arrived; waiting jaws close. */
   arrived(position: Vector3): void {
     const state = this.model.toolState;
     if (this.pressed !== 'soon' || !state || position.distanceTo(new Vector3(...state.asked.positionM)) > ARRIVED_M) return;

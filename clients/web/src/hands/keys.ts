@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys while the picture or nothing has the focus, and what a gamepad does besides. What they do stands in KEY_HELP.
+// Keys while the picture or no element has the focus, and the gamepad. KEY_HELP describes what they do.
 import type { Viewport } from '../scene/viewport';
 import { LATCH_S } from './energy';
 import { Pad } from './gamepad';
@@ -7,24 +7,24 @@ import { keyId } from './holds';
 import type { ToolHand } from './tool_hand';
 
 export const KEY_HELP: readonly (readonly [string, string])[] = [
-  ['Mouse', 'leads the tool over the tissue'],
-  ['Press and drag', 'cut: energy while held'],
-  ['Arrows', 'lead the tool'],
-  ['Space', 'energy while held'],
-  ['Wheel, W S', 'depth; W deeper, S nearer'],
-  ['Q E, R F', 'turn the tool, tilt it'],
-  ['L', `keep energy on, for ${LATCH_S} s at most; L or Escape ends it`],
-  ['G', 'grasp or release'],
-  ['Right drag, Shift + drag', 'turn or move the camera'],
+  ['Mouse', 'moves the tool over the tissue'],
+  ['Press and drag', 'cut: energy is on while you press'],
+  ['Arrows', 'move the tool'],
+  ['Space', 'energy is on while you hold the key'],
+  ['Wheel, W S', 'depth of the tool: W deeper, S nearer'],
+  ['Q E, R F', 'Q and E turn the tool, R and F tilt the tool'],
+  ['L', `keep energy on for at most ${LATCH_S} s; L or Escape turns energy off`],
+  ['G', 'close the jaws to grasp, or open them'],
+  ['Right drag, Shift + drag', 'right drag turns the camera, Shift + drag moves it'],
   ['Ctrl + wheel, + −', 'zoom'],
-  ['H', 'camera home'],
-  ['Gamepad', 'sticks lead, right trigger cuts, A grasps'],
+  ['H', 'put the camera back to its first view'],
+  ['Gamepad', 'the sticks move the tool, the right trigger cuts, A grasps'],
 ];
 
 const SPEED_M_S = 0.03;
 const TURN_RAD_S = 1.2;
 const ZOOM_PER_S = 2.5;
-const PAD_SPEED = 1.5; // of the keys'
+const PAD_SPEED = 1.5; // times the speed of the keys
 
 const TRIGGER = 'trigger';
 
@@ -34,13 +34,13 @@ const HELD = new Set([
   'NumpadAdd', 'NumpadSubtract',
 ]);
 
-/** Every key that has work of its own here. */
+/** All keys that this page uses. */
 export const WORKING_KEYS: ReadonlySet<string> = new Set([...HELD, 'Space', 'KeyG', 'KeyH', 'KeyL']);
 
 export class Keys {
   private readonly down = new Set<string>();
   private readonly pad: Pad;
-  /** metres and radians of the present time step */
+  /** motion of the present animation frame, metres and radians */
   private step = 0;
   private turn = 0;
   private last = performance.now();
@@ -51,7 +51,7 @@ export class Keys {
     private readonly hand: ToolHand,
     private readonly grasping: () => boolean,
   ) {
-    // A page that has just come up has the focus nowhere: keys work there too.
+    // In a page that was just loaded no element has the focus: keys must work then, too.
     const meant = (event: KeyboardEvent): boolean => event.target === canvas || event.target === document.body;
     window.addEventListener('keydown', (event) => meant(event) && this.press(event));
     window.addEventListener('keyup', (event) => this.down.delete(event.code));
@@ -68,7 +68,7 @@ export class Keys {
     });
   }
 
-  /** What held keys and sticks do in a time; once per animation frame. */
+  /** Applies held keys and sticks; called once per animation frame. */
   advance(): void {
     const now = performance.now();
     const seconds = Math.min((now - this.last) / 1000, 0.1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motions of the tool in hand on their way to the daemon: the newest counts, no more than the daemon uses.
+// Sends motions of the tool in hand to the daemon: always the newest, and not more often than the daemon uses.
 import type { Quaternion, Vector3 } from 'three';
 
 import type { Control } from '../model/control';
@@ -14,7 +14,7 @@ export interface Wanted {
 
 export class Motion {
   private sentAt = -Infinity;
-  /** there is something that the daemon does not know yet */
+  /** whether there is a motion that was not sent yet */
   unsent = false;
 
   constructor(

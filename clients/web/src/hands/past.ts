@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// While the picture shows the past there is nothing in it for a hand to do: what is not seen is not worked on.
+// Refuses input while the picture shows the past, because the user does not see the present tissue.
 import type { Model } from '../model/model';
 
 export class Past {
@@ -16,9 +16,9 @@ export class Past {
     return this.model.held !== null;
   }
 
-  /** Says so to a hand that tries. */
+  /** Returns whether input is refused, and explains it to the user. */
   refuses(): boolean {
-    if (this.shown) this.model.say('info', 'This is a past view. Return to live to work.');
+    if (this.shown) this.model.say('info', 'This is a past view. Press Return to live to use the tools.');
     return this.shown;
   }
 }

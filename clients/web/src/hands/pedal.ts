@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A foot pedal: most of them are keyboards with one key to a browser. Which key is kept by the browser.
+// A foot pedal. Browsers see most pedals as a keyboard with one key. The browser stores which key it is.
 import { takesTyping } from './hold_watch';
 import { keyId, type HoldEvent } from './holds';
 import { WORKING_KEYS } from './keys';
 
 const KEPT = 'pedal';
-/** Keys with which people go through a page, whatever it is. */
+/** Keys that every page needs for navigation. */
 const EVERY_PAGES = /^(Arrow|Tab$|Enter$|NumpadEnter$|Escape$|Space$|Shift|Control|Alt|Meta)/;
 
 /** "B" for KeyB, "F13", "Page Down". */
@@ -14,7 +14,7 @@ export function keyWords(code: string): string {
 }
 
 export class Pedal {
-  /** told the next key instead of having it pressed */
+  /** called with the result for the next key, which is not treated as a press */
   private asked: ((words: string | null) => void) | null = null;
 
   constructor(
@@ -23,12 +23,12 @@ export class Pedal {
     window.addEventListener('keydown', (event) => this.down(event), { capture: true });
   }
 
-  /** the key's place on a keyboard, as browsers name it; null: there is no pedal */
+  /** KeyboardEvent.code of the pedal's key; null: no pedal */
   get code(): string | null {
     return localStorage.getItem(KEPT);
   }
 
-  /** Takes the next key for the pedal's; `told`: why it cannot be that one, or null when it is. */
+  /** Uses the next key as the pedal's key. `told` is called with the reason why a key cannot be used, or null on success. */
   choose(told: (problem: string | null) => void): void {
     this.asked = told;
   }
@@ -54,7 +54,7 @@ export class Pedal {
     event.preventDefault();
     event.stopPropagation();
     if (event.code === '' || EVERY_PAGES.test(event.code) || WORKING_KEYS.has(event.code)) {
-      told(`${keyWords(event.code || event.key)} is already used in this page. Give the pedal another key, with the program that came with it.`);
+      told(`${keyWords(event.code || event.key)} is already used by this page. Give the pedal another key with the program that came with the pedal.`);
       return;
     }
     this.asked = null;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pins painted onto the tissue: what a press passes over is held where it is.
+// Paints pins onto the tissue: a drag pins the vertices under the pointer.
 import type { Vector3 } from 'three';
 
 import type { Selection } from '../wire/messages.gen';
 import type { Aim } from './aim';
 
 const RADIUS_M = 0.005;
-/** Dabs overlap by this much of their radius, so that a stroke has no gaps. */
+/** Distance of the dabs of a stroke: half a radius, so that the stroke has no gaps. */
 const STEP_M = RADIUS_M / 2;
 
 export class PinBrush {
@@ -22,7 +22,7 @@ export class PinBrush {
     this.reach(x, y);
   }
 
-  /** Beside the tissue it pins nothing. */
+  /** Continues the stroke to a point of the picture. Beside the tissue nothing is pinned. */
   reach(x: number, y: number): void {
     const place = this.places.onSurface(x, y);
     if (!place || (this.last && place.distanceTo(this.last) < STEP_M)) return;

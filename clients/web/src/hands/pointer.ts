@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mouse, pen and fingers on the picture. A mouse leads the tool by hovering; what is pressed on the tissue
-// works there. Beside the tissue a press turns the camera, as the right button does everywhere; the middle
-// one or Shift moves it; two fingers turn, pinch for depth or zoom.
+// Mouse, pen and fingers on the picture. A hovering mouse moves the tool; a press on the tissue works there. Beside the
+// tissue a press turns the camera, and the right button turns it everywhere. The middle button or Shift moves the
+// camera. Two fingers turn the camera; a pinch changes depth or zoom.
 import type { Viewport } from '../scene/viewport';
 import { pointerId } from './holds';
 import type { PinBrush } from './pin_brush';
@@ -18,17 +18,17 @@ interface Finger {
 
 type Drag = 'tool' | 'turn' | 'pan' | 'ruler' | 'pins' | 'none';
 
-const TURN_RAD = 3.4; // for a drag over the picture's height
-const WHEEL_DEPTH_M = 0.0005; // a notch
+const TURN_RAD = 3.4; // turn for a drag over the height of the picture
+const WHEEL_DEPTH_M = 0.0005; // for each notch of the wheel
 const WHEEL_ZOOM = 1.1;
-const NOTCH = 100; // deltaY of one
-const PINCH_DEPTH_M = 0.02; // for a pinch over the picture's height
-/** A second finger may still come, and then nothing is to burn. */
+const NOTCH = 100; // deltaY of one notch
+const PINCH_DEPTH_M = 0.02; // for a pinch over the height of the picture
+/** Time in which a second finger may follow, before energy may come on. */
 const FINGER_MS = 120;
 
 export class Pointer {
   press: Press = 'work';
-  /** the last place of a pointer in the page, CSS pixels; null: there was none yet */
+  /** last position of a pointer in the page, CSS pixels; null: no pointer yet */
   last: { x: number; y: number } | null = null;
   private readonly fingers = new Map<number, Finger>();
   private drag: Drag = 'none';
@@ -46,7 +46,7 @@ export class Pointer {
     canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
     window.addEventListener('blur', () => {
-      this.fingers.clear(); // where they are lifted, this page may not see
+      this.fingers.clear(); // this page may miss their release
       this.drag = 'none';
     });
   }
@@ -122,7 +122,7 @@ export class Pointer {
     this.drag = 'none';
   }
 
-  /** Every place that the pointer passed since the last event counts: a browser gathers them. */
+  /** Leads the tool along all positions that the browser has gathered since the last event. */
   private lead(event: PointerEvent): void {
     const passed = event.getCoalescedEvents();
     for (const one of passed.length > 0 ? passed : [event]) {
@@ -131,7 +131,7 @@ export class Pointer {
     }
   }
 
-  /** Each finger's share of the common motion turns; its share of the pinch is depth or zoom. */
+  /** Handles the motion of one of two fingers: the common motion turns the camera, the pinch changes depth or zoom. */
   private twoFingers(moving: Finger, dx: number, dy: number): void {
     const other = [...this.fingers.values()].find((finger) => finger !== moving);
     if (!other) return;
@@ -151,12 +151,12 @@ export class Pointer {
     this.viewport.invalidate();
   }
 
-  /** Depth is of a tool in hand; without one the same motion is the camera's. */
+  /** Whether wheel and pinch change the depth of the tool in hand; otherwise they zoom. */
   private get leadsTool(): boolean {
     return this.leads && this.hand.driving;
   }
 
-  /** Pointing leads the tool. */
+  /** Whether pointing moves the tool. */
   private get leads(): boolean {
     return this.press === 'work' || this.press === 'move';
   }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's signs of life: often while something is held, now and then otherwise, none while the page is
-// out of sight or without the focus. They come from the page's own thread: one that hangs must lose its
-// energy.
+// Heartbeats of the page: often while something is held, rarely otherwise, none while the page is hidden or without the
+// focus. The main thread of the page sends them, because a page that hangs must lose its energy.
 import type { Link } from '../wire/link';
 
-const HELD_MS = 50; // a fifth of the daemon's shortest patience
+const HELD_MS = 50; // a fifth of the daemon's shortest deadline
 const IDLE_MS = 1000;
 
 export class Presence {

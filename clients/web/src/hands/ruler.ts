@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A ruler from one place of the tissue to another. It stays where it was laid; tissue may move under it.
+// A ruler between two points of the tissue. The ruler does not move with the tissue.
 import type { Vector3 } from 'three';
 
 import type { Aim } from './aim';
@@ -10,7 +10,7 @@ export class Ruler {
 
   constructor(private readonly places: Aim) {}
 
-  /** m */
+  /** Returns the length, m. */
   get length(): number | null {
     return this.from && this.to ? this.from.distanceTo(this.to) : null;
   }
@@ -20,7 +20,7 @@ export class Ruler {
     this.to = null;
   }
 
-  /** Beside the tissue it stays. */
+  /** Moves the end of the ruler to a point of the picture. Beside the tissue the end stays. */
   reach(x: number, y: number): void {
     if (this.from) this.to = this.places.onSurface(x, y) ?? this.to;
   }

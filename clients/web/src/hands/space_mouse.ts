@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A 3D mouse by WebHID: its cap leads the tool and turns it, its first button is energy while held. The
-// browser lets a page see only devices that somebody has chosen by hand.
+// A 3D mouse by WebHID. Its cap moves and turns the tool, and its first button keeps energy on while held. The browser
+// shows a page only devices that the user has chosen.
 
-/** What of WebHID is used; the DOM's types do not have it. */
+/** The used part of WebHID, which the types of the DOM do not have. */
 interface HidDevice extends EventTarget {
   readonly productName: string;
   readonly opened: boolean;
@@ -20,10 +20,10 @@ interface InputReport extends Event {
   readonly data: DataView;
 }
 
-/** 3Dconnexion's own number, and Logitech's with the generic page of multi-axis controllers. */
+/** Vendor ids: 3Dconnexion; Logitech with the usage page of multi-axis controllers. */
 const FILTERS = [{ vendorId: 0x256f }, { vendorId: 0x046d, usagePage: 1, usage: 8 }];
-const FULL = 350; // of the cap, in each direction
-const REST = 0.06; // of it, that a hand which only lies there makes
+const FULL = 350; // full deflection of the cap, in each direction
+const REST = 0.06; // share of the full deflection that a resting hand causes
 const SPEED_M_S = 0.045;
 const TURN_RAD_S = 1.6;
 const MOVED = 1, TURNED = 2, BUTTONS = 3;
@@ -37,10 +37,10 @@ export interface LedByCap {
 }
 
 export class SpaceMouse {
-  /** shares of the way: right, towards the hand, down; and turns about them */
+  /** deflections, -1 to 1: right, towards the hand, down, and the turns about these axes */
   private readonly axes = [0, 0, 0, 0, 0, 0];
   private device: HidDevice | null = null;
-  /** as last reported; it outlives an unplugged mouse, so that no press counts until the button was up */
+  /** last reported state of the button; kept while the mouse is unplugged, so that a held button is no new press */
   private pressed = false;
   private last = performance.now();
 
@@ -49,13 +49,13 @@ export class SpaceMouse {
     private readonly changed: () => void,
   ) {
     this.hid?.addEventListener('connect', (event) => {
-      // One that was chosen before and is plugged in now.
+      // A mouse that was chosen before was plugged in.
       if (!this.device) void this.use((event as HidConnection).device).catch(() => undefined);
     });
     this.hid?.addEventListener('disconnect', (event) => {
       if ((event as HidConnection).device === this.device) this.lose();
     });
-    // What was chosen once is known again.
+    // The browser remembers a mouse that was chosen before.
     void this.hid?.getDevices().then(([known]) => (known ? this.use(known) : undefined), () => undefined);
   }
 
@@ -63,18 +63,18 @@ export class SpaceMouse {
     return this.hid !== undefined;
   }
 
-  /** null: none is in use */
+  /** Returns the name of the mouse; null: no mouse is in use. */
   get name(): string | null {
     return this.device?.productName ?? null;
   }
 
-  /** Opens the browser's own chooser. */
+  /** Opens the browser's dialog for choosing a device. */
   async choose(): Promise<void> {
     const [chosen] = (await this.hid?.requestDevice({ filters: FILTERS })) ?? [];
     if (chosen) await this.use(chosen);
   }
 
-  /** What the cap does in a time; once per animation frame. */
+  /** Applies the cap; called once per animation frame. */
   advance(): void {
     const now = performance.now();
     const seconds = Math.min((now - this.last) / 1000, 0.1);
@@ -91,7 +91,7 @@ export class SpaceMouse {
 
   private async use(device: HidDevice): Promise<void> {
     if (!device.opened) await device.open();
-    device.addEventListener('inputreport', this.report); // known already where it was plugged in again
+    device.addEventListener('inputreport', this.report); // registered already if the mouse was plugged in again
     this.device = device;
     this.changed();
   }
@@ -104,13 +104,13 @@ export class SpaceMouse {
       return;
     }
     if (reportId !== MOVED && reportId !== TURNED) return;
-    // Newer ones tell all six axes in one report.
+    // Newer mice send all six axes in one report.
     const first = reportId === TURNED ? 3 : 0;
     const count = Math.min(Math.floor(data.byteLength / AXIS_BYTES), 6 - first);
     for (let i = 0; i < count; i++) this.axes[first + i] = Math.min(Math.max(data.getInt16(AXIS_BYTES * i, true) / FULL, -1), 1);
   }
 
-  /** Every change of any button reports all of them: only the first one's own press is a press. */
+  /** Handles the first button. Each report has all buttons, so only a change of the first button counts. */
   private press(down: boolean): void {
     if (down && !this.pressed) this.led.hold();
     if (!down && this.pressed) this.led.letGo(false);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Taking a tool by using it, and saying at once, where the hand is, why it does not move.
+// Takes a free tool when the user uses it. If the tool cannot be used, says at once why, beside the pointer.
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
 import { errorWords } from '../model/sentences';
 
 const KEY = 'driver';
-const TOLD_MS = 4000; // keys and sticks ask sixty times a second
+const TOLD_MS = 4000; // least time between two messages; keys and sticks try sixty times a second
 
 export class Taking {
   private busy = false;
@@ -21,7 +21,7 @@ export class Taking {
     });
   }
 
-  /** Becomes the driver of the chosen tool if nobody is. False: it cannot be used, and why has been said. */
+  /** Becomes the driver of the chosen tool if it has none. Returns false, and shows the reason, if it cannot be used. */
   use(): boolean {
     const { model } = this;
     if (this.busy || model.driving) return true;
@@ -41,9 +41,9 @@ export class Taking {
 
   private obstacle(): string | null {
     const { model } = this;
-    if (model.link.state !== 'online') return 'There is no connection: the tool cannot be moved.';
-    if (!model.mayOperate) return 'You can only watch: your token does not allow the use of tools.';
-    if (!model.joined) return null; // the picture says what it waits for
+    if (model.link.state !== 'online') return 'There is no connection, so the tool cannot be moved.';
+    if (!model.mayOperate) return 'You can only watch, because your access token does not allow you to use tools.';
+    if (!model.joined) return null; // the veil over the picture explains the wait
     if (model.tools.length === 0) return 'This session has no tools.';
     return model.driver ? `${nameOf(model.driver)} is using the ${model.driver.tool}.` : null;
   }
@@ -64,6 +64,6 @@ export class Taking {
         (error: unknown) => model.say('error', errorWords(error)),
       );
     };
-    model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for it`, press: ask } });
+    model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for the tool`, press: ask } });
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hand on the chosen tool. Whatever points (mouse, finger, keys, stick) aims at a place of the
-// tissue; the tool hovers over it, and while something is held it goes down to it and works: heat where
-// the shape has heat, jaws where it has only those. Using a free tool takes it.
+// Moves the chosen tool. Mouse, finger, keys or stick aim at a point of the tissue, and the tool hovers over it. While
+// something is held, the tool goes down and works: with heat if its shape has a hot part, else with its jaws. Using a
+// free tool takes it.
 import { Quaternion, Vector3 } from 'three';
 
 import { hasHeat, toolSizes } from '../model/tool_parts';
@@ -22,12 +22,12 @@ import { Way } from './way';
 
 export type Guide = 'surface' | 'plane';
 
-const ECHO_MS = 400; // after this without a motion the server's pose is drawn
-const POINTED_MAX = 400; // as many as a way holds
-const HOVER_M = 0.003; // between tissue and the hot part of a tool that does not work
+const ECHO_MS = 400; // without a motion for this time, the pose of the server is drawn
+const POINTED_MAX = 400; // capacity of a way
+const HOVER_M = 0.003; // distance of tissue and hot part while the tool does not work
 
 export class ToolHand {
-  /** over the surface, or in the plane of the picture through the tip */
+  /** whether pointing moves the tool over the surface, or in the plane parallel to the screen through the tip */
   guide: Guide = 'surface';
   readonly depths = new Depths();
   readonly energy: Energy;
@@ -40,16 +40,16 @@ export class ToolHand {
   private readonly pace: CuttingPace;
   private readonly past: Past;
   private wanted: Wanted | null = null;
-  /** the place of the tissue that is aimed at; null: where the tool is */
+  /** point of the tissue at which the hand aims; null: the position of the tool */
   private aim: Vector3 | null = null;
-  /** where the hand pointed while the tool was still being taken, all of it: a cut begins at its beginning */
+  /** all points of the hand while the tool was being taken, so that a cut begins at the first of them */
   private pointed: { x: number; y: number }[] = [];
   private movedAt = -Infinity;
   private sequence = 0;
   private lastAdvance = performance.now();
   private tool: string | null = null;
   private driven = false;
-  /** it has gone down to work, and not risen since */
+  /** whether the tool has gone down to work and not risen since */
   private down = false;
 
   constructor(
@@ -76,28 +76,28 @@ export class ToolHand {
 
   get mayHeat(): boolean { return this.driving && this.model.tool !== null && hasHeat(this.model.tool.shape); }
 
-  /** Whether using the chosen tool moves it: it is this page's, or nobody's. */
+  /** Whether this page may use the chosen tool: it drives the tool, or the tool has no driver. */
   get usable(): boolean {
     return this.model.mayOperate && this.tool !== null && (this.model.driving || this.model.driver === null);
   }
 
-  /** m, below the surface */
+  /** Depth below the surface, m. */
   get depthM(): number { return this.depths.of(this.tool); }
 
-  /** Whether a place of the picture is on the tissue, gaps in it included; both coordinates from -1 to 1. */
+  /** Whether a point of the picture is on the tissue or in a gap of it; both coordinates from -1 to 1. */
   overTissue(x: number, y: number): boolean { return this.places.onSurface(x, y) !== null; }
 
-  /** Leads a tool that is this page's to a place of the picture. Beside the tissue it stays. */
+  /** Moves a tool that this page drives to a point of the picture. Beside the tissue the tool stays. */
   hover(x: number, y: number): void {
     if (!this.model.driving || !this.begin()) return;
     const place = this.places.onSurface(x, y);
     if (place) this.aimAt(x, y, place);
   }
 
-  /** Something begins to point anew. */
+  /** Begins a new motion of pointing. */
   press(): void { this.pointed = []; }
 
-  /** Points at a place of the picture: takes a free tool, and leads it there. False: it may not. */
+  /** Points at a point of the picture: takes a free tool and moves it there. Returns false if the page may not. */
   pointAt(x: number, y: number): boolean {
     if (this.past.refuses()) return false;
     if (!this.begin()) {
@@ -108,10 +108,10 @@ export class ToolHand {
     return true;
   }
 
-  /** Something is held, or is about to count as held. */
+  /** Whether something is held, or is pressed and does not count yet. */
   get pressed(): boolean { return this.holds.pressed; }
 
-  /** Takes what happens to that which is held: the tool works as long as anything is. */
+  /** Handles an event of a hold. The tool works while something is held. */
   take(event: HoldEvent): void {
     if (event.type === 'press' && this.past.refuses()) return;
     const lost = this.holds.take(event);
@@ -119,7 +119,7 @@ export class ToolHand {
     else if ((event.type === 'press' && event.ripe) || event.type === 'ripe') this.hold(event);
   }
 
-  /** Keeps energy on without anything held, or ends that. */
+  /** Begins or ends the latch, which keeps energy on without a hold. */
   latch(): void {
     if (this.holds.latched) this.take({ type: 'release', id: LATCH });
     else this.take({ type: 'press', by: 'latch', id: LATCH, place: 'latch', ripe: true });
@@ -136,9 +136,9 @@ export class ToolHand {
     }
   }
 
-  /** Nothing is held any more. */
+  /** Handles the end of the last hold. */
   private lost(why: Lost): void {
-    this.pointed = this.pointed.slice(-1); // a tool that is still being taken only comes there
+    this.pointed = this.pointed.slice(-1); // a tool that is still being taken only moves to the last point
     this.energy.off(why);
     this.rest();
   }
@@ -181,7 +181,7 @@ export class ToolHand {
     this.moved();
   }
 
-  /** Poses to draw instead of the server's, and motion to the daemon; once per animation frame. */
+  /** Sends motions, and returns the poses to draw instead of the server's; called once per animation frame. */
   advance(): ReadonlyMap<string, Pose> {
     const now = performance.now();
     const seconds = Math.min((now - this.lastAdvance) / 1000, 0.1);
@@ -197,11 +197,11 @@ export class ToolHand {
     return poses;
   }
 
-  /** Goes along the way: as fast as the tool may, while it cuts as fast as heat parts tissue. */
+  /** Moves along the way at the largest speed of the tool, or while cutting, as fast as heat parts tissue. */
   private goOn(seconds: number): void {
     const { way, wanted } = this;
     if (!wanted) return;
-    if (this.energy.wanted && !this.energy.alive && this.mayHeat) way.clear(); // what went dark does not go on
+    if (this.energy.wanted && !this.energy.alive && this.mayHeat) way.clear(); // without energy the cut does not continue
     if (way.empty) return;
     const fastest = toolSizes(this.model.tool!).maxSpeed * seconds;
     way.follow(wanted.position, this.energy.alive ? Math.min(this.pace.metresFrom(wanted.position), fastest) : fastest);
@@ -215,7 +215,7 @@ export class ToolHand {
     this.lower();
   }
 
-  /** What was held is let go of: the rest of the way is dropped, and the tool rises. */
+  /** Ends the work: drops the rest of the way and raises the tool. */
   private rest(): void {
     this.jaws.letGo();
     this.pace.from = null;
@@ -225,7 +225,7 @@ export class ToolHand {
     this.viewport.invalidate();
   }
 
-  /** Down to where it works, straight. */
+  /** Lowers the tool straight to its working position. */
   private lower(): void {
     if (!this.wanted || this.guide === 'plane') return;
     const aim = this.aim ?? this.places.under(this.wanted.position);
@@ -235,14 +235,14 @@ export class ToolHand {
     this.moveTo(this.pace.from, true);
   }
 
-  /** Up from where it is now, which may be behind where the hand is. */
+  /** Raises the tool from its present position, which may be behind the hand. */
   private rise(): void {
     const { z } = this.viewport.orbit.axes();
     this.aim = this.wanted!.position.clone().addScaledVector(z, this.depthM);
     this.moveTo(this.over(this.aim), true);
   }
 
-  /** `known`: the place of the tissue there, where it has been looked up. */
+  /** Aims at a point of the picture. `known` is the point of the tissue there, if it is already known. */
   private aimAt(x: number, y: number, known: Vector3 | null = null): void {
     const surface = this.guide === 'surface';
     const place = surface ? (known ?? this.places.onSurface(x, y)) : null;
@@ -250,7 +250,7 @@ export class ToolHand {
     this.moveTo(surface ? this.over(this.aim) : this.aim);
   }
 
-  /** Where the tip is for a place that is aimed at: in it while the tool works, else over it. */
+  /** Returns the position of the tip for an aimed point: at its depth while the tool works, else above it. */
   private over(aim: Vector3): Vector3 {
     const { hot, shaft } = toolSizes(this.model.tool!);
     const heats = hasHeat(this.model.tool!.shape);
@@ -265,7 +265,7 @@ export class ToolHand {
     this.movedAt = performance.now();
   }
 
-  /** Takes the tool's present pose up, if this page may move it; jaws that grasp are open once they let go. */
+  /** Starts from the present pose of the tool, if this page may move it. Grasping jaws will be open after a release. */
   private begin(): boolean {
     const state = this.model.toolState;
     if (!this.model.driving || !state || this.past.shown) return false;
@@ -297,7 +297,7 @@ export class ToolHand {
     else this.drop();
   }
 
-  /** The tool has come into this hand: it begins at the surface, where the hand points. */
+  /** Handles a tool that was just taken: it begins at the surface under the pointer. */
   private taken(): void {
     this.depths.reset(this.tool!);
     const [first, ...rest] = this.pointed;

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The way that the hand has shown and the tool has not gone yet. A cut keeps all of it, so that a hand
-// that is quicker than the tool leaves no gaps; without heat only where the hand is now counts.
+// The path of the hand that the tool has not followed yet. A cut keeps the whole path, so that a hand which is faster
+// than the tool leaves no gaps. Without heat, only the present position of the hand counts.
 import { Vector3 } from 'three';
 
-const SPACING_M = 0.0005; // of kept points: a cut is some millimetres wide
-const POINTS_MAX = 400; // 200 mm: longer than any tissue here; beyond it the way's end is drawn in
+const SPACING_M = 0.0005; // distance of kept points; a cut is some millimetres wide
+const POINTS_MAX = 400; // 200 mm, longer than any tissue; beyond this the last point of the path moves
 
 export class Way {
   private readonly points: Vector3[] = [];
 
-  /** Goes straight to a point; what was left of the way is dropped. */
+  /** Replaces the path by a straight line to a point. */
   to(point: Vector3): void {
     this.points.length = 0;
     this.points.push(point.clone());
   }
 
-  /** Goes on to a point after what is left. */
+  /** Appends a point to the path. */
   append(point: Vector3): void {
     const { points } = this;
     const end = points.at(-1);
@@ -31,7 +31,7 @@ export class Way {
     return this.points.length === 0;
   }
 
-  /** Moves `from` along by at most some metres; returns what of them was not needed. */
+  /** Moves `from` along the path by at most `metres`; returns the metres that were not needed. */
   follow(from: Vector3, metres: number): number {
     const { points } = this;
     let left = metres;
@@ -48,7 +48,7 @@ export class Way {
     return left;
   }
 
-  /** What is left, from the tool on. */
+  /** Returns the remaining path, from the tool on. */
   rest(): readonly Vector3[] {
     return this.points;
   }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tissue lies on, drawn only: a hollow under a sheet, or a well for solid tissue with a shelf around it. It
-// follows: where tissue goes down it goes down before it, so that it is never seen through tissue that it lies under.
+// The bed under the tissue, for drawing only: a hollow under a sheet, or a well for solid tissue with a shelf around it. The
+// bed follows the tissue: it is lowered with the tissue, so that it is never visible above it.
 import { hills, HIDDEN_M, OVERLAP_M, scaleOf, ZONES, type FieldShape, type Surroundings } from './field_shape';
 
-const CELL_M = 0.005; // longer than a side of usual meshes; in tissue of USUAL_M
+const CELL_M = 0.005; // longer than a side of usual meshes; for tissue of USUAL_M
 const STEP_M = 1e-4; // width of the wall between shelf and well
-const BOWL_M = 0.009; // depth of the hollow under a sheet that nothing lies under
-const UNDER_M = 0.001; // of a well below solid tissue
+const BOWL_M = 0.009; // depth of the hollow under a sheet without tissue below
+const UNDER_M = 0.001; // distance of the well below solid tissue
 /** Cells around a place whose tissue it stays below: a triangle's corners are no farther than one cell, a wall and what lies over it. */
 const REACH = 4;
 
-/** Places of lines from one end to another. */
+/** Returns the positions of lines from one end to another. */
 function lines(from: number, to: number, between: readonly number[], cell: number): Float32Array {
   const ends = [from, ...between.filter((at) => at > from && at < to), to];
   const all = [from];
@@ -21,7 +21,7 @@ function lines(from: number, to: number, between: readonly number[], cell: numbe
   return Float32Array.from(all);
 }
 
-/** The cell between two lines that holds a place; beyond the ends the last one. */
+/** Returns the cell between two lines that contains a position; beyond the ends, the last cell. */
 function cellAt(line: Float32Array, at: number): number {
   let [low, high] = [0, line.length - 1];
   while (high - low > 1) {
@@ -36,9 +36,9 @@ export class Bed {
   readonly shape: FieldShape;
   private readonly x: Float32Array;
   private readonly y: Float32Array;
-  /** m, of each crossing of lines, where no tissue is below */
+  /** height of each crossing of lines without tissue below it, m */
   private readonly base: Float32Array;
-  /** m, of each cell: what it must stay below */
+  /** largest height of each cell, m */
   private readonly limit: Float32Array;
   /** vertices that never push it: those beside the wall of a well, which are below its shelf at rest, and those of no face */
   private readonly exempt: Uint8Array;
@@ -65,7 +65,7 @@ export class Bed {
     this.exempt = this.exempted(rest);
   }
 
-  /** Goes below tissue as it lies now, m (vertices x 3). Says whether that changed it. */
+  /** Lowers the bed below the present tissue, m (vertices x 3). Returns whether the bed changed. */
   follow(position: Float32Array): boolean {
     const { x, y, limit, exempt } = this;
     limit.fill(Infinity);
@@ -119,7 +119,7 @@ export class Bed {
     return { z: Math.min(solid.most[2], edgeZ) - HIDDEN_M, kind: ZONES.fat };
   }
 
-  /** Of the bed at rest in a cell. */
+  /** Returns the largest height of the bed at rest in a cell. */
   private highest(i: number, j: number): number {
     const { base, x } = this;
     const at = j * x.length + i;
@@ -135,7 +135,7 @@ export class Bed {
     });
   }
 
-  /** Each crossing goes below all cells around it. */
+  /** Lowers each crossing below the limits of all cells around it. */
   private settle(): void {
     const [nx, ny] = [this.x.length, this.y.length];
     const { position } = this.shape;

@@ -31,7 +31,7 @@ const SAMPLES = {
 } satisfies Record<string, readonly Colour[]>;
 export type ColourMap = keyof typeof SAMPLES;
 
-/** What may be shown as colour, and in which colours: nobody should take temperature for exposure. */
+/** Scalars that can be shown as colour. Temperature has another colour map, so that it cannot be mistaken for exposure. */
 export type Scalar = 'exposure' | 'charring' | 'stress' | 'temperature';
 export const MAP_OF: Readonly<Record<Scalar, ColourMap>> = {
   exposure: 'cividis',
@@ -40,7 +40,7 @@ export const MAP_OF: Readonly<Record<Scalar, ColourMap>> = {
   temperature: 'heat',
 };
 
-/** sRGB bytes at 0 to 1. */
+/** Returns the colour at a value from 0 to 1, as sRGB bytes. */
 export function colourAt(map: ColourMap, value: number): [number, number, number] {
   const samples: readonly Colour[] = SAMPLES[map];
   const place = Math.min(Math.max(value, 0), 1) * (samples.length - 1);
@@ -50,7 +50,7 @@ export function colourAt(map: ColourMap, value: number): [number, number, number
   return [channel(0), channel(1), channel(2)];
 }
 
-/** RGBA bytes of a whole map, for a texture or a legend. */
+/** Returns a whole colour map as RGBA bytes, for a texture or a legend. */
 export function colourRow(map: ColourMap, width: number): Uint8Array {
   const row = new Uint8Array(4 * width);
   for (let i = 0; i < width; i++) row.set([...colourAt(map, i / (width - 1)), 255], 4 * i);

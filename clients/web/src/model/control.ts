@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between model and daemon: what the user wants done, and what the daemon pushes.
+// Connects model and daemon: sends requests of the user, and handles notifications of the daemon.
 import type { Link } from '../wire/link';
 import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool, ToolConfigure } from '../wire/messages.gen';
 import { nameOf } from './person';
@@ -7,19 +7,19 @@ import type { Channels } from '../wire/worker_messages';
 import type { Model } from './model';
 import { errorWords } from './sentences';
 
-/** What makes the picture doubtful from then on, though the session goes on. */
+/** Returns a warning for events after which the tissue cannot be trusted, although the session continues. */
 function doubtOf({ kind, count, detail }: Pushes['event']['event']): string | null {
-  if (kind === 'inverted') return `${count} tetrahedra of ${detail} have been inside out for half a second. Do not trust what is there: rewind or reset.`;
-  if (kind === 'energy_gain') return `The tissue gained energy by itself (${detail}). Do not trust its motion.`;
+  if (kind === 'inverted') return `${count} tetrahedra of ${detail} have been inverted (inside out) for half a second. Do not trust the tissue there. Rewind or reset the session.`;
+  if (kind === 'energy_gain') return `The simulation gained energy that no tool gave (${detail}). Do not trust the motion of the tissue.`;
   return null;
 }
 
-/** What is always joined. The worker adds those of vessels where the scene has any. */
+/** Channels that are always joined. The worker adds the channels of vessels if the scene has vessels. */
 const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
-/** Channels that cost the daemon work of their own: joined only while they are shown. */
+/** Channels that the daemon must compute: joined only while they are shown. */
 export type ExtraChannel = 'stress' | 'temperature';
 export class Control {
-  /** what the user waits for, in words: "Rewinding to 12.3 s" */
+  /** running work for which the user waits, as in "Rewinding to 12.3 s" */
   readonly busy: string[] = [];
   private colour: ExtraChannel | null = null;
   private inspecting = false;
@@ -29,7 +29,7 @@ export class Control {
     readonly link: Link,
   ) {}
 
-  /** After every hello: what may have changed meanwhile. */
+  /** Loads what may have changed meanwhile; called after every hello. */
   async refresh(): Promise<void> {
     const { scenes } = await this.link.call('scene.list', {});
     this.model.scenes = scenes;
@@ -58,7 +58,7 @@ export class Control {
     if (this.model.session !== null) this.watch(this.model.session);
   }
 
-  /** Has stress and temperature of single vertices told, or no longer. */
+  /** Turns the values of single vertices, stress and temperature, on or off. */
   inspect(on: boolean): void {
     if (on === this.inspecting) return;
     this.inspecting = on;
@@ -66,7 +66,7 @@ export class Control {
   }
 
   async create(params: { scene?: string; definition?: Scene; name?: string }): Promise<SessionDescription> {
-    const description = await this.during('Making the session', this.link.call('session.create', params));
+    const description = await this.during('Creating the session', this.link.call('session.create', params));
     this.model.putSession(description.summary);
     this.watch(description.summary.session);
     return description;
@@ -91,16 +91,16 @@ export class Control {
     await this.loadTimeline();
   }
 
-  /** Shows a past tick in the picture; nobody is rewound. */
+  /** Shows a past tick in the picture; the session is not rewound. */
   async lookAt(tick: number): Promise<void> {
     await this.link.past(this.here().session, tick);
   }
 
-  /** Shows the newest again, and has the daemon fetch nothing any more. */
+  /** Shows the newest state again, and cancels the loading of a past view. */
   lookAtPresent(): void {
     this.link.present();
     if (this.model.session === null || this.model.link.state !== 'online') return;
-    this.link.call('session.frame_cancel', this.here()).catch(() => undefined); // there was nothing to give up
+    this.link.call('session.frame_cancel', this.here()).catch(() => undefined); // there was no past view to cancel
   }
 
   async reset(): Promise<void> {
@@ -146,7 +146,7 @@ export class Control {
     await this.describe();
   }
 
-  /** Takes a tool that nobody drives, or from somebody as admin; else asks its driver. */
+  /** Takes a tool without a driver, or as admin any tool; otherwise asks its driver. */
   async takeOver(tool: string): Promise<'taken' | 'asked'> {
     const driver = this.model.drivers.get(tool);
     if (driver && driver.client !== 0 && this.model.hello?.role !== 'admin') {
@@ -166,7 +166,7 @@ export class Control {
     this.model.setDriver(await this.link.call('tool.hand_over', params));
   }
 
-  /** A call about the watched session. */
+  /** Sends a request about the watched session. */
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
     return this.link.call(method, { ...params, ...this.here() });
   }
@@ -186,7 +186,7 @@ export class Control {
   }
 
   here(): { session: string } {
-    if (this.model.session === null) throw new Error('no session is open');
+    if (this.model.session === null) throw new Error('no session is open; choose or create one');
     return { session: this.model.session };
   }
 
@@ -194,15 +194,15 @@ export class Control {
     'session.changed': (params) => this.sessionChanged(params),
     'session.faulted': ({ session, reason }) => {
       if (session === this.model.session)
-        this.model.notice('error', `The simulation met numerical trouble: ${reason}. Rewind or reset the session.`);
+        this.model.notice('error', `The simulation stopped because of a numerical error: ${reason}. Rewind or reset the session.`);
     },
     'tool.driver_changed': ({ session, driver }) => {
       if (session !== this.model.session) return;
       const drove = this.model.drives(driver.tool);
       this.model.setDriver(driver);
-      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', `${nameOf(driver)} uses the ${driver.tool} now.`);
+      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', `${nameOf(driver)} now uses the ${driver.tool}.`);
     },
-    'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow: ${reason}.`),
+    'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow your hand: ${reason}.`),
     'takeover.requested': (params) => this.model.setTakeover(params),
     'session.frame_progress': (params) => {
       if (params.session === this.model.session) this.model.emit('looking', params);
@@ -221,7 +221,7 @@ export class Control {
       this.left(summary.session);
       return;
     }
-    if (change === 'moved') { // the page goes after it: see main.ts
+    if (change === 'moved') { // the page follows the session: see main.ts
       this.model.removeSession(summary.session);
       return;
     }
@@ -233,7 +233,7 @@ export class Control {
 
   private left(session: string): void {
     if (session !== this.model.session) return;
-    this.model.notice('info', `${session} no longer exists.`);
+    this.model.notice('info', `The session ${session} no longer exists.`);
     this.watch(this.model.sessions.find((other) => other.session !== session)?.session ?? null);
   }
 
@@ -246,7 +246,7 @@ export class Control {
     }
   }
 
-  /** Follow-up questions whose failure only means that the next change asks again. */
+  /** Runs a follow-up request. If it fails, the next change repeats it. */
   private later(work: Promise<void>): void {
     work.catch((error: unknown) => this.model.notice('warning', errorWords(error)));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a sheet was cut: sides between a face that is drawn and one that is gone. Its own border is none.
+// Finds where a sheet was cut: sides between a drawn face and a removed face. The border of the sheet does not count.
 
-/** Vertices of faces (x 3). */
+/** Returns the vertices of faces (x 3). */
 export function cornersOf(faces: Int32Array, of: Int32Array): Int32Array {
   const corners = new Int32Array(3 * of.length);
   of.forEach((face, i) => corners.set(faces.subarray(3 * face, 3 * face + 3), 3 * i));
@@ -34,7 +34,7 @@ export class CutSides {
     return this.sides.has(sideKey(a, b));
   }
 
-  /** Whether a face has a vertex on a cut. */
+  /** Returns whether a face has a vertex on a cut. */
   touches(face: number): boolean {
     const { faces, vertices } = this;
     return vertices.size > 0 && (vertices.has(faces[3 * face]) || vertices.has(faces[3 * face + 1]) || vertices.has(faces[3 * face + 2]));

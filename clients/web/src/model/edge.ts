@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The edge of a sheet, which has no thickness in the daemon's mesh: a wall as high as the sheet is thick, down
-// from every side at its border. Cuts have lips of their own (lips.ts). Only sight.
+// The edge of a sheet, which has no thickness in the mesh of the daemon: a wall down from every side at its border, as high
+// as the sheet is thick. Cuts have lips instead (lips.ts). This is for drawing only.
 import { SURFACE_FLOATS, writeRecord, type SurfaceShape, type SurfaceSource } from './surface';
 
-/** Of two triangles for each pair of rows, between their upper (2 row) and lower (2 row + 1) records. */
+/** Returns the indices of two triangles for each pair, between the upper (2 i) and lower (2 i + 1) records of both. */
 function bandIndex(pairs: readonly (readonly [number, number])[]): Uint32Array<ArrayBuffer> {
   return Uint32Array.from(pairs.flatMap(([a, b]) => [2 * a, 2 * b, 2 * b + 1, 2 * a, 2 * b + 1, 2 * a + 1]));
 }
@@ -24,7 +24,7 @@ export class Edge {
     return this.vertices.length;
   }
 
-  /** After faces of the layer went or came back. */
+  /** Finds the sides at the border again, after faces of the layer were removed or restored. */
   rebuild(): void {
     const { faces, hidden } = this.source;
     const rows = new Map<number, number>();
@@ -45,12 +45,12 @@ export class Edge {
     this.index = bandIndex(pairs);
   }
 
-  /** The wall where the tissue is now; index is shared with later shapes until faces change. */
+  /** Returns the wall at the present positions. The index is shared with later shapes until faces change. */
   shape(): SurfaceShape {
     const records = new Float32Array(2 * SURFACE_FLOATS * this.vertices.length);
     const { normal } = this.source;
     this.vertices.forEach((vertex, i) => {
-      // Down is where the ground is, whichever side the mesh calls its front.
+      // Down is towards the ground, on whichever side the front of the mesh is.
       const sunk = this.thicknessM * (normal[3 * vertex + 2] < 0 ? 1 : -1);
       for (let under = 0; under < 2; under++)
         writeRecord(records, 2 * i + under, this.source, vertex, under, (c) => under * sunk * normal[3 * vertex + c]);

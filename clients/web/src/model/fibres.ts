@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Material coordinates in metres for each vertex, the first along the fibres: from the texture where
-// the mesh has one, else from rest positions and the layer's direction.
+// Computes material coordinates in metres for each vertex, the first along the fibres. They come from texture coordinates
+// if the mesh has them, else from rest positions and the fibre direction of the layer.
 import type { Layer, LayerDescription, Scene } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
 
@@ -17,7 +17,7 @@ function normalised(v: Vector): Vector {
   return [v[0] / length, v[1] / length, v[2] / length];
 }
 
-/** Three directions at right angles, the first along `fibre`. */
+/** Returns three perpendicular directions, the first along `fibre`. */
 export function fibreFrame(fibre: Vector): [Vector, Vector, Vector] {
   const first = normalised(Math.hypot(...fibre) > 0 ? fibre : [1, 0, 0]);
   const aside: Vector = Math.abs(first[2]) < 0.9 ? [0, 0, 1] : [0, 1, 0];
@@ -30,7 +30,7 @@ function layerFibre(scene: Scene, name: string): Vector {
   return layer && 'fibre' in layer && layer.fibre ? layer.fibre : [1, 0, 0];
 }
 
-/** Metres in one unit of texture, from the longest sides of the layer's faces. */
+/** Returns the metres in one unit of the texture, from the longest sides of the faces of the layer. */
 function textureScale(topology: Topology, texture: Float32Array, rest: Float32Array, layer: LayerDescription): number {
   let metres = 0;
   let units = 0;
@@ -43,7 +43,7 @@ function textureScale(topology: Topology, texture: Float32Array, rest: Float32Ar
   return units > 0 ? metres / units : 0;
 }
 
-/** (vertices x 3); vertices of several layers take the first sheet's. */
+/** Returns the material coordinates (vertices x 3). A vertex of several layers has the coordinates of the first sheet. */
 export function materialCoordinates(
   topology: Topology,
   rest: Float32Array,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The operative field around tissue, drawn only: walls of fat up to a rim of skin and a cloth with a window, or
-// tissue of the same kind on and on. Rings around the tissue's rectangle, the same points in each.
+// Shapes of the operative field around the tissue, for drawing only: walls of fat up to a rim of skin and a cloth with a
+// window, or a continuation of the same tissue. Shapes are rings around the rectangle of the tissue, with equal points.
 import type { LayerDescription, Scene, Selection } from '../wire/messages.gen';
 
 /** Corners of an upright box, m. */
@@ -9,48 +9,48 @@ export interface Extent {
   most: readonly [number, number, number];
 }
 
-/** Material coordinates as a plane over x and y: at x = y = 0, and for a metre along each (m). */
+/** Material coordinates as a plane over x and y: value at x = y = 0, and change for each metre along x and y (m). */
 export interface Sheath {
-  /** what is on top: a sheet, a membrane on fat, or fat alone */
+  /** topmost tissue: a sheet, a membrane on fat, or fat alone */
   kind: 'fascia' | 'membrane' | 'fat';
   origin: readonly number[];
   alongX: readonly number[];
   alongY: readonly number[];
 }
 
-/** What lies in the field. */
+/** The tissue in the field. */
 export interface Surroundings {
   all: Extent;
-  /** of layers with thickness */
+  /** extent of the layers with tetrahedra; null: only sheets */
   solid: Extent | null;
-  /** m, how high the tissue is at its edge */
+  /** height of the tissue at its edge, m */
   edgeZ: number;
-  /** it lies in a body; else it hangs freely */
+  /** whether the tissue lies in a body; else it hangs freely */
   inBody: boolean;
-  /** material coordinates of what continues it */
+  /** material coordinates of the continuation of the tissue */
   sheath: Sheath;
 }
 
 export interface FieldShape {
   /** m (vertices x 3) */
   position: Float32Array;
-  /** what it is there, of each vertex: see ZONES */
+  /** kind of flesh at each vertex: see ZONES */
   zone: Float32Array;
   index: Uint32Array;
 }
 
-/** Of flesh; between them one goes over into the other. */
+/** Kinds of flesh; numbers in between are transitions. */
 export const ZONES = { muscle: 0, fat: 1, skin: 2, most: 3 } as const;
 
 const EDGE_POINTS = 22; // on each side of the rectangle
 const CORNER_POINTS = 7; // of a quarter turn
-const EDGE_SHARE = 0.02; // of the tissue's width, that its edge is wide
-const USUAL_M = 0.12; // width of tissue for which the lengths below are meant
-export const OVERLAP_M = 0.0012; // of the shelf with the tissue that it goes around: no line is seen between them
-export const HIDDEN_M = 0.0004; // below tissue that lies on it, so that only one of the two is seen
-const SKIRT_M = 0.03; // of what lies around tissue, down beside it: no gap is seen where the bed has gone down
+const EDGE_SHARE = 0.02; // width of the edge, as a share of the width of the tissue
+const USUAL_M = 0.12; // width of the tissue for which the lengths below are chosen
+export const OVERLAP_M = 0.0012; // overlap of the shelf with the tissue, so that no line is visible between them
+export const HIDDEN_M = 0.0004; // distance below the tissue on it, so that only the tissue is visible
+const SKIRT_M = 0.03; // depth of the surroundings beside the tissue, so that no gap is visible where the bed was lowered
 
-/** Metres from the tissue's edge outwards, and above it. */
+/** Profile of the wall: metres outwards from the edge of the tissue, metres above it, kind of flesh. */
 const WALL: readonly (readonly [number, number, number])[] = [
   [0, -0.0003, 1], [0.0012, 0.0004, 1], [0.003, 0.0013, 1], [0.006, 0.0031, 1], [0.0095, 0.0049, 1], [0.0122, 0.006, 1.15],
   [0.0132, 0.0069, 1.9], [0.0144, 0.0073, 2], [0.019, 0.0075, 2], [0.027, 0.0078, 2], [0.034, 0.0079, 2],
@@ -60,22 +60,22 @@ const SHEATH: readonly (readonly [number, number])[] = [
   [0.036, 0.003], [0.047, 0.0055], [0.06, 0.009], [0.08, 0.016], [0.11, 0.028], [0.15, 0.05], [0.21, 0.095], [0.3, 0.2], [0.42, 0.5],
 ];
 const FARTHEST_M = 0.8;
-const BELOW_M = 0.012; // of tissue that hangs freely
+const BELOW_M = 0.012; // distance of the cloth below tissue that hangs freely
 const CLOTH: readonly (readonly [number, number])[] = [
   [0.0235, 0.0082], [0.0238, 0.0094], [0.0247, 0.0101], [0.0262, 0.0101], [0.032, 0.0098], [0.042, 0.0092], [0.06, 0.007], [0.09, 0.001],
   [0.14, -0.012], [0.22, -0.035], [0.4, -0.085], [0.8, -0.17],
 ];
 
 interface Ray {
-  /** of the rectangle, each coordinate from -1 to 1 */
+  /** point of the rectangle, each coordinate from -1 to 1 */
   x: number;
   y: number;
-  /** outwards */
+  /** direction outwards */
   nx: number;
   ny: number;
 }
 
-/** Places on the rectangle from one corner around, with as many directions at a corner as make it round. */
+/** Returns points around the rectangle, from one corner on, with several directions at each corner, so that it is round. */
 function rays(): Ray[] {
   const all: Ray[] = [];
   const corners = [[1, -1], [1, 1], [-1, 1], [-1, -1]];
@@ -95,7 +95,7 @@ function rays(): Ray[] {
 }
 const RAYS = rays();
 
-/** A hilly ground without a seam, about -1 to 1; x and y in waves. */
+/** Returns the height of hills without a seam, about -1 to 1; x and y in waves. */
 export function hills(x: number, y: number): number {
   return (Math.sin(x + 1.7 * Math.sin(0.6 * y)) + Math.sin(1.3 * y + 1.9 * Math.sin(0.7 * x) + 1) + 0.6 * Math.sin(2.1 * x - 1.6 * y)) / 2.6;
 }
@@ -129,22 +129,22 @@ class Rings {
 const middle = ({ least, most }: Extent): [number, number] => [(least[0] + most[0]) / 2, (least[1] + most[1]) / 2];
 const half = ({ least, most }: Extent): [number, number] => [(most[0] - least[0]) / 2, (most[1] - least[1]) / 2];
 
-/** Rings of a box's rectangle, grown by some metres. */
+/** Returns a function for the points of a ring around the rectangle of a box, enlarged by `grown` metres. */
 function around(box: Extent, grown: number): (ray: Ray) => [number, number] {
   const [mx, my] = middle(box);
   const [hx, hy] = half(box);
   return ({ x, y, nx, ny }) => [mx + hx * x + grown * nx, my + hy * y + grown * ny];
 }
 
-/** Tissue that is held all around, or stands on its ground, lies in a body; what hangs freely does not, nor does a strip
- * that is held at its ends. */
+/** Returns whether the tissue lies in a body: it is pinned all around, or at its bottom. Tissue that hangs freely, or a
+ * strip that is pinned at its ends, does not. */
 function liesInBody({ pins = [] }: Scene, solid: Extent | null): boolean {
   const holdsMiddle = ({ least_m: least, most_m: most }: Selection): boolean =>
     solid !== null && least !== undefined && most !== undefined && middle(solid).every((at, c) => at >= least[c] && at <= most[c]);
   return pins.some((pin) => pin.kind === 'rim' || (pin.kind === 'box' && holdsMiddle(pin)));
 }
 
-/** Walls up to a rim of skin, as in an open operation. */
+/** Returns walls up to a rim of skin, as in an open operation. */
 export function fleshAround(surroundings: Surroundings): FieldShape {
   const { all, edgeZ } = surroundings;
   const scale = scaleOf(all);
@@ -162,7 +162,7 @@ export function fleshAround(surroundings: Surroundings): FieldShape {
   return rings.shape();
 }
 
-/** The tissue's own kind on and on, over its border, as in a body that a trocar leads into: hilly, and rising to a wall. */
+/** Returns the continuation of the tissue beyond its border, as seen through a trocar: hills that rise to a wall. */
 export function sheathAround({ all, edgeZ }: Surroundings): FieldShape {
   const scale = scaleOf(all);
   const rings = new Rings();
@@ -177,7 +177,7 @@ export function sheathAround({ all, edgeZ }: Surroundings): FieldShape {
   return rings.shape();
 }
 
-/** The cloth around a window. */
+/** Returns the cloth around a window. */
 export function clothAround({ all, edgeZ }: Surroundings): FieldShape {
   const scale = scaleOf(all);
   const rings = new Rings();
@@ -193,7 +193,7 @@ export function clothAround({ all, edgeZ }: Surroundings): FieldShape {
   return rings.shape();
 }
 
-/** A cloth without a window, under tissue that hangs freely. */
+/** Returns a cloth without a window, under tissue that hangs freely. */
 export function clothUnder({ all }: Surroundings): FieldShape {
   const scale = scaleOf(all);
   const rings = new Rings();
@@ -210,7 +210,7 @@ export function scaleOf(all: Extent): number {
   return Math.max(...half(all)) / (USUAL_M / 2);
 }
 
-/** Least and largest coordinates of the vertices of some corners. */
+/** Returns the least and largest coordinates of vertices. */
 function extentOf(position: Float32Array, corners: Iterable<number>): Extent | null {
   const least: [number, number, number] = [Infinity, Infinity, Infinity];
   const most: [number, number, number] = [-Infinity, -Infinity, -Infinity];
@@ -223,7 +223,7 @@ function extentOf(position: Float32Array, corners: Iterable<number>): Extent | n
   return least[0] <= most[0] ? { least, most } : null;
 }
 
-/** How high tissue comes at the edge of its rectangle. */
+/** Returns the height of the tissue at the edge of its rectangle. */
 function edgeHeight(position: Float32Array, corners: Int32Array, { least, most }: Extent): number {
   const near = EDGE_SHARE * Math.max(most[0] - least[0], most[1] - least[1]);
   let height = -Infinity;
@@ -234,7 +234,7 @@ function edgeHeight(position: Float32Array, corners: Int32Array, { least, most }
   return height;
 }
 
-/** The plane through material coordinates over rest positions of some corners, by least squares. */
+/** Fits a plane to material coordinates over rest positions, by least squares. */
 function planeOver(rest: Float32Array, material: Float32Array, corners: Int32Array): Omit<Sheath, 'kind'> {
   const mean = (of: Float32Array, c: number): number => corners.reduce((sum, v) => sum + of[3 * v + c], 0) / corners.length;
   const [mx, my] = [mean(rest, 0), mean(rest, 1)];
@@ -251,7 +251,7 @@ function planeOver(rest: Float32Array, material: Float32Array, corners: Int32Arr
   return { origin: axes.map(({ origin }) => origin), alongX: axes.map(({ x }) => x), alongY: axes.map(({ y }) => y) };
 }
 
-/** From rest positions and material coordinates, corners of faces (vertex of each) and layers; null without faces. */
+/** Computes the surroundings from rest positions, material coordinates, corners of faces and layers; null without faces. */
 export function surroundingsOf(rest: Float32Array, material: Float32Array, faces: Int32Array, layers: readonly LayerDescription[], scene: Scene): Surroundings | null {
   const all = extentOf(rest, faces);
   if (!all) return null;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a ray goes through a gap in the drawn tissue: in the surface that the tissue around it would go on in.
+// Finds where a ray passes a gap in the drawn tissue: on the surface that continues the tissue around the gap.
 
 type Vector = readonly [number, number, number];
 
 /** Half of the widest gap that is bridged. */
 const REACH_M = 0.02;
 const SECTORS = 12;
-/** In a row, without tissue in them: there is an edge of the tissue, not a gap. Half a turn has at least these. */
+/** Number of adjacent sectors without tissue that mean an edge of the tissue, not a gap: nearly half a turn. */
 const OPEN_SECTORS = SECTORS / 2 - 1;
-const NEAREST_M2 = 1e-8; // a vertex on the ray itself does not divide by nothing
-const GRAZING = 0.2; // cosine below which the surface says nothing about the distance
+const NEAREST_M2 = 1e-8; // m^2, least squared distance, so that a vertex on the ray does not divide by zero
+const GRAZING = 0.2; // cosine of the angle to the ray below which the surface gives no useful distance
 
 const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -19,7 +19,7 @@ function normalised(v: Vector): Vector {
   return [v[0] / length, v[1] / length, v[2] / length];
 }
 
-/** Sums over vertices around the ray, each by the fourth power of how near it is. */
+/** Weighted sums over vertices around the ray; the weight falls with the fourth power of the distance. */
 class Around {
   private weight = 0;
   private readonly place: [number, number, number] = [0, 0, 0];
@@ -46,7 +46,7 @@ class Around {
     return true;
   }
 
-  /** Along the ray, to the surface through what was added. */
+  /** Returns the distance along the ray to the surface through the added vertices. */
   distance(origin: Vector, direction: Vector): number {
     const to: Vector = [0, 1, 2].map((c) => this.place[c] / this.weight - origin[c]) as [number, number, number];
     const facing = dot(this.normal, direction);
@@ -64,7 +64,7 @@ export function acrossGap(
   position: Float32Array,
   normal: Float32Array,
   indices: readonly (Uint32Array | null)[],
-  /** whether a place is cut away from the picture */
+  /** whether the clip plane hides a point */
   hidden: (x: number, y: number, z: number) => boolean = () => false,
 ): number | null {
   const right = normalised(cross(direction, Math.abs(direction[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tools did since this page watches the session: temperature, force and energy of each, thinned
-// so that any length of it has room. Going back in time forgets what is no longer so.
+// The history of the tools since this page watches the session: temperature, force and energy of each tool. It is thinned
+// out to a limited size. A rewind removes what comes after it.
 import type { ToolState } from '../wire/records';
 
 export interface ToolMoment {
@@ -14,7 +14,7 @@ export interface Moment {
   tools: ReadonlyMap<string, ToolMoment>;
 }
 
-/** Half of them stay when they are this many: an hour at 60 a second is then told 7 times a second. */
+/** Largest number of moments; then every second one is removed. An hour at 60 a second is kept with 7 a second. */
 const MOMENTS_MAX = 32_768;
 
 export function momentOf(tick: number, tools: readonly ToolState[]): Moment {
@@ -27,7 +27,7 @@ export function momentOf(tick: number, tools: readonly ToolState[]): Moment {
 export class History {
   private kept: Moment[] = [];
   private readonly names = new Set<string>();
-  /** of `every` moments one is kept */
+  /** one of `every` moments is kept */
   private every = 1;
   private sinceKept = 0;
 
@@ -35,7 +35,7 @@ export class History {
     return this.kept;
   }
 
-  /** Names of all tools that there were, in the order in which they came. */
+  /** Returns the names of all tools of the history, in the order in which they came. */
   get tools(): readonly string[] {
     return [...this.names];
   }
@@ -44,7 +44,7 @@ export class History {
     const last = this.kept.at(-1);
     if (last && moment.tick <= last.tick) {
       this.forgetFrom(moment.tick);
-      this.sinceKept = this.every; // it stands for what was forgotten, or is the same tick told again
+      this.sinceKept = this.every; // this moment replaces removed moments, or the same tick
     }
     if (++this.sinceKept < this.every) return;
     this.sinceKept = 0;
@@ -62,7 +62,7 @@ export class History {
     this.sinceKept = 0;
   }
 
-  /** The newest moment that is not after a tick. */
+  /** Returns the newest moment at or before a tick. */
   at(tick: number): Moment | null {
     const i = this.firstFrom(tick + 1);
     return this.kept[i - 1] ?? null;
@@ -72,7 +72,7 @@ export class History {
     this.kept.length = this.firstFrom(tick);
   }
 
-  /** Index of the first moment at or after a tick. */
+  /** Returns the index of the first moment at or after a tick. */
   private firstFrom(tick: number): number {
     let [low, high] = [0, this.kept.length];
     while (low < high) {

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a cut lays bare of one layer, drawn finer than the mesh: a sheet's faces beside the cut, the lip that is
-// as thick as the sheet, and fibres that fray from it; of fat, its inside. The border is the cubic B-spline of the
-// border that the daemon's mask leaves (refine.ts). Only sight: nothing of it is in the daemon.
+// The surfaces that a cut exposes in one layer, drawn finer than the mesh. For a sheet: its faces beside the cut, a lip as
+// thick as the sheet, and frayed fibres. For fat: its inside. The border is the cubic B-spline of the border in the mask of
+// the daemon (refine.ts). This is decoration: the daemon does not have these surfaces.
 import { SURFACE_FLOATS, type SurfaceShape, type SurfaceSource } from './surface';
 import { refine, refined, RIM, type Refinement } from './refine';
 
-/** Sides of the daemon's mesh are divided into two so often: those of sheets, where 2 mm become quarters of a millimetre
- * along the lip, and those of the inside of fat. */
+/** How often sides of the mesh are divided in two: for sheets, where 2 mm become a quarter of a millimetre along the lip,
+ * and for the inside of fat. */
 const SHEET_LEVELS = 3;
 const INSIDE_LEVELS = 2;
-/** Of the border, and of the inside of fat, so that the cells' teeth do not show. */
+/** Number of smoothing steps of borders and of the inside of fat, so that the teeth of the mesh are not visible. */
 export const EVENINGS = 2;
-const FRAY_M = 0.0011; // longest fibres
-/** of fibres beside which the cut ran, over those that it crossed */
+const FRAY_M = 0.0011; // length of the longest frayed fibres
+/** length of fibres along the cut, over the length of fibres across the cut */
 const SHORTEST = 0.35;
-const ALONG_FIBRE = 0.8; // how far frayed fibres turn from straight out into the layer's fibre direction
-const SAG = 0.3; // of their ends, over their length
-const GRAIN_M = 0.0002; // places of the material nearer than this fray alike
-/** Of a lip's profile, over its thickness: how far out, how far down, and how much its normal is turned out. */
+const ALONG_FIBRE = 0.8; // share by which frayed fibres turn from straight out to the fibre direction of the layer
+const SAG = 0.3; // sag of the ends of fibres, over their length
+const GRAIN_M = 0.0002; // points of the material nearer than this fray alike
+/** Profile of a lip, over its thickness: distance outwards, distance down, and share by which the normal turns outwards. */
 const PROFILE = [[0, 0, 0.5], [0.28, 0.3, 1], [0.28, 0.65, 1], [0, 1, 0.7]] as const;
 
 export interface LipShape {
@@ -28,7 +28,7 @@ export interface LipShape {
   fringe: SurfaceShape;
 }
 
-/** Of a face beside the rim: two of its sides, summed to go one metre along the fibre. */
+/** Weights of two sides of a face beside the rim, whose sum is one metre along the fibre. */
 interface Fibre {
   corner: readonly [number, number, number];
   shares: readonly [number, number];
@@ -36,7 +36,7 @@ interface Fibre {
 
 const POSITION = 0, MATERIAL = 3, NORMAL = 6, BURN = 9, TIP = 13; // floats of a record
 
-/** A number from 0 to 1 for a place of the material: the same whatever the mesh around it. */
+/** Returns a number from 0 to 1 for a point of the material, independent of the mesh. */
 function grain(material: Float32Array, vertex: number): number {
   let mixed = 0x2545f491;
   for (let c = 0; c < 3; c++) mixed = Math.imul(mixed ^ Math.round(material[3 * vertex + c] / GRAIN_M), 0x9e3779b1);
@@ -59,7 +59,7 @@ export type GoesOn = (a: number, b: number) => boolean;
 export class Lips {
   private patch: Refinement = refine([], 0, 0, 0, () => false);
   private material = new Float32Array(0);
-  /** fine vertices at the rim, the ones before and after each along it, and which of them a vertex is */
+  /** fine vertices at the rim, their neighbours before and after along the rim, and the index of each vertex among them */
   private rim = new Int32Array(0);
   private before = new Int32Array(0);
   private after = new Int32Array(0);
@@ -71,7 +71,7 @@ export class Lips {
 
   constructor(
     private readonly source: SurfaceSource,
-    /** of a sheet; 0: it is no sheet, and has no lips */
+    /** thickness of the sheet; 0: the layer is not a sheet and has no lips */
     private readonly thicknessM: number,
   ) {}
 
@@ -79,8 +79,8 @@ export class Lips {
     return this.asked.faces.length === 0;
   }
 
-  /** After faces of the layer went or came back: those that are drawn finer, vertex indices (x 3). They are refined
-   * when a shape of them is wanted: the page takes fewer frames than the daemon sends. */
+  /** Sets the faces that are drawn finer, vertex indices (x 3), after faces of the layer were removed or restored. They are
+   * refined only when shape() is called, because the page draws fewer frames than the daemon sends. */
   rebuild(faces: ArrayLike<number>, goesOn: GoesOn): void {
     this.asked = { faces, goesOn };
     this.shown = false;
@@ -107,7 +107,7 @@ export class Lips {
     this.index = { band: patch.faces, wall: bandIndex(rims, row, PROFILE.length), fringe: bandIndex(rims, row, 2) };
   }
 
-  /** Where the tissue is now. Indices come once after faces have changed, else null. */
+  /** Returns the shape at the present positions. Indices are returned once after faces have changed, else null. */
   shape(): LipShape {
     if (!this.shown) this.refine();
     const band = this.bandRecords();
@@ -198,7 +198,7 @@ export class Lips {
       const own = band.subarray(at, at + SURFACE_FLOATS);
       const normal = own.subarray(NORMAL, NORMAL + 3);
       const out = this.outwards(band, i, normal);
-      // Down is where the ground is, whichever side the mesh calls its front.
+      // Down is towards the ground, on whichever side the front of the mesh is.
       const down = normal[2] < 0 ? this.thicknessM : -this.thicknessM;
       PROFILE.forEach(([outward, below, turn], r) => {
         const record = wall.subarray(SURFACE_FLOATS * (rows * i + r), SURFACE_FLOATS * (rows * i + r + 1));
@@ -214,7 +214,7 @@ export class Lips {
     return { wall, fringe };
   }
 
-  /** Out of the surface at a rim, in it and across the rim. */
+  /** Returns the direction out of the surface at a rim, tangential to the surface and across the rim. */
   private outwards(band: Float32Array, i: number, n: Float32Array): [number, number, number] {
     const a = SURFACE_FLOATS * this.before[i], b = SURFACE_FLOATS * this.after[i];
     const x = band[b] - band[a], y = band[b + 1] - band[a + 1], z = band[b + 2] - band[a + 2];
@@ -223,7 +223,7 @@ export class Lips {
     return [out[0] / length, out[1] / length, out[2] / length];
   }
 
-  /** Fibres that the cut crossed stand out further than those that it ran along. */
+  /** Writes frayed fibres. Fibres across the cut are longer than fibres along the cut. */
   private fray(records: Float32Array, band: Float32Array, i: number, out: readonly number[]): void {
     const at = SURFACE_FLOATS * this.rim[i];
     const { corner, shares } = this.fibres[i];
@@ -241,7 +241,7 @@ export class Lips {
       record.set(band.subarray(at, at + SURFACE_FLOATS));
       record[TIP] = end;
       for (let c = 0; c < 3; c++) record[POSITION + c] += end * reach * direction[c];
-      // From the middle of the lip's edge, not from its upper side.
+      // Fibres begin in the middle of the lip, not at its upper side.
       record[POSITION + 2] -= 0.4 * this.thicknessM + end * SAG * this.length[i];
     }
   }

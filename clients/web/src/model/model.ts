@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page knows: the connection, sessions, the session that is watched, its newest frame, who
-// drives which tool. Panels and the picture listen to it; it knows neither.
+// The state of the page: the connection, the sessions, the watched session with its newest frame, and the drivers of tools.
+// Panels and the picture listen to its events; the model does not know them.
 import type { LinkState } from '../wire/connection';
 import type {
   Driver,
@@ -26,9 +26,9 @@ export interface Events {
   tools: undefined;
   frame: Frame;
   timeline: Timeline | null;
-  /** the tick that is looked at; null: the newest */
+  /** past tick that is viewed; null: the newest */
   held: number | null;
-  /** how far the daemon is in fetching the tick that is looked at */
+  /** progress of the daemon in loading the viewed tick */
   looking: FrameProgress;
   takeover: TakeoverRequested | null;
   notice: Notice;
@@ -36,17 +36,17 @@ export interface Events {
   unsaid: string;
 }
 
-/** Something to tell the user in words. */
+/** A message to the user. */
 export interface Notice {
   kind: 'info' | 'warning' | 'error';
   words: string;
 }
 
-/** Words at the tool itself, where the eye is. */
+/** A message at the tool, where the user looks. */
 export interface Said extends Notice {
-  /** stays until it is taken back under this key; without one it goes by itself */
+  /** the message stays until `unsay` with this key; without a key it disappears by itself */
   key?: string;
-  /** numbers after the words, which may change: a screen reader is not to read each change */
+  /** numbers after the text, which may change; a screen reader does not read each change */
   figures?: string;
   action?: { words: string; press: () => void };
 }
@@ -74,7 +74,7 @@ export class Model {
   takeover: TakeoverRequested | null = null;
   samples: Sample[] = [];
   readonly history = new History();
-  /** the tick that the timeline is held at; null while it follows the session */
+  /** tick at which the timeline is held; null while it follows the session */
   held: number | null = null;
   private readonly listeners = new Map<keyof Events, Set<Listener<never>>>();
 
@@ -92,7 +92,7 @@ export class Model {
     this.emit('notice', { kind, words });
   }
 
-  /** Says something at the tool; under a key it stays until `unsay`. */
+  /** Shows a message at the tool. With a key it stays until `unsay`. */
   say(kind: Notice['kind'], words: string, more: Pick<Said, 'key' | 'figures' | 'action'> = {}): void {
     this.emit('said', { kind, words, ...more });
   }
@@ -133,7 +133,7 @@ export class Model {
     return this.mayOperate && driver !== undefined && driver.client === this.hello?.client;
   }
 
-  /** Who drives the chosen tool; null: nobody. */
+  /** Returns the driver of the chosen tool; null: no driver. */
   get driver(): Driver | null {
     const driver = this.selectedTool === null ? undefined : this.drivers.get(this.selectedTool);
     return driver && driver.client !== 0 ? driver : null;
@@ -151,7 +151,7 @@ export class Model {
     this.emit('sessions', this.sessions);
   }
 
-  /** What the other daemons of a fleet have, and which of them do not answer. */
+  /** Sets the sessions of the other daemons of a fleet, and the labels of daemons that do not answer. */
   setElsewhere(sessions: readonly SessionSummary[], silent: readonly string[]): void {
     this.elsewhere = [...sessions].sort((a, b) => a.session.localeCompare(b.session));
     this.silent = silent;
@@ -217,7 +217,7 @@ export class Model {
     this.emit('timeline', timeline);
   }
 
-  /** Looks at a past tick, or with null at the newest again. */
+  /** Begins to view a past tick, or the newest again with null. */
   hold(tick: number | null): void {
     if (tick === this.held) return;
     this.held = tick;
@@ -236,7 +236,7 @@ export class Model {
     this.emit('takeover', takeover);
   }
 
-  /** Frames tell driver numbers too, should a notification have been missed. */
+  /** Updates drivers from a frame, which has their numbers, in case a notification was missed. */
   private followDrivers(frame: Frame): void {
     for (const tool of frame.tools) {
       const known = this.drivers.get(tool.name);

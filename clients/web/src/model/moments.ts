@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The events of a timeline, as a list for people. Cuts of one tool one after another are one line.
+// The events of a timeline as a list for users. Successive cuts of one tool are one line.
 import type { TimelineEvent } from '../wire/messages.gen';
 
 export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   cut: 'cut',
   tear: 'tear',
-  inverted: 'tissue inside out',
-  energy_gain: 'energy gained',
+  inverted: 'tissue inverted (inside out)',
+  energy_gain: 'unexplained gain of energy',
   bleeding: 'bleeding',
   bleeding_stopped: 'bleeding stopped',
   sealed: 'vessel sealed',
   energy_on: 'energy on',
   energy_off: 'energy off',
-  watchdog: 'watchdog',
-  fault: 'fault',
+  watchdog: 'energy off: no signal from the driver',
+  fault: 'simulation error',
   snapshot: 'snapshot',
   rewind: 'rewind',
   reset: 'reset',
 };
-/** Events whose detail names what they happened to. */
+/** Kinds of events whose detail is the name of a layer or vessel. */
 const NAMED: readonly TimelineEvent['kind'][] = ['inverted', 'bleeding', 'bleeding_stopped', 'sealed'];
 const GOES_ON: readonly TimelineEvent['kind'][] = ['cut', 'tear'];
 
 export interface Moment {
-  /** of the first of its events */
+  /** tick of the first of its events */
   tick: number;
   words: string;
 }

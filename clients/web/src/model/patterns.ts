@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Patterns of flesh, periodic: lobes of fat, and vessels that branch. Always the same ones.
+// Periodic patterns of flesh: lobes of fat, and branching vessels. They are always the same.
 
-/** Numbers from 0 to 1. */
+/** Returns a generator of random numbers from 0 to 1. */
 export function random(seed: number): () => number {
   let state = seed;
   return () => {
@@ -11,7 +11,7 @@ export function random(seed: number): () => number {
 }
 
 const LOBES = 6; // along each axis
-const DOME = 0.85; // of a lobe's width, from its middle to where it ends
+const DOME = 0.85; // radius of a lobe, as a share of its width
 
 /** size^3 bytes: 255 in the middle of a lobe, 0 far from any. */
 export function lobeValues(size: number): Uint8Array {
@@ -19,7 +19,7 @@ export function lobeValues(size: number): Uint8Array {
   const jitter = Float32Array.from({ length: 3 * LOBES ** 3 }, next);
   const wrap = (cell: number): number => (cell + LOBES) % LOBES;
   const values = new Uint8Array(size ** 3);
-  /** Its square. */
+  /** Returns the squared distance to the nearest middle of a lobe. */
   const nearest = (p: readonly [number, number, number]): number => {
     const [cx, cy, cz] = [Math.floor(p[0]), Math.floor(p[1]), Math.floor(p[2])];
     let least = Infinity;
@@ -53,7 +53,7 @@ interface Sprout {
   turn: number;
   /** texels */
   radius: number;
-  /** of another vessel */
+  /** whether it branches off from another vessel */
   branch: boolean;
 }
 
@@ -70,7 +70,7 @@ export function vesselValues(size: number): Uint8Array {
     let left = radius;
     let sinceBranch = 0;
     let bend = 0;
-    // A trunk comes up out of the depth.
+    // A trunk rises from below, so it begins faint.
     for (let gone = branch ? RISE : 0; left > THINNEST; gone++) {
       bend = 0.75 * bend + 0.22 * (next() - 0.5);
       turn += bend;
@@ -104,7 +104,7 @@ function mark(values: Uint8Array, size: number, { x, y, dx, dy }: Piece, radius:
     for (let i = Math.floor(x - reach); i <= x + reach; i++) {
       const share = Math.min(Math.max(((i - x) * dx + (j - y) * dy) / (STEP * STEP), 0), 1);
       const [ax, ay] = [i - x - share * dx, j - y - share * dy];
-      // By the square of the distance: a ridge with a kink would be lost between texels, and the vessel be dotted.
+      // Uses the squared distance: a ridge with a kink would be lost between texels, so the vessel would look dotted.
       const inside = 0.5 + (radius * radius - ax * ax - ay * ay) / FALL;
       const at = (((j % size) + size) % size) * size + (((i % size) + size) % size);
       values[at] = Math.max(values[at], Math.round(255 * Math.min(Math.max(inside, 0), 1)));

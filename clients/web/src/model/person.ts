@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who sits at this page, for the others in the session: a name of one's own, or one made up for this tab,
-// so that two people always have two names.
+// The name of the user for others in the session: a chosen name, or a name generated for this tab, so that two users always
+// have different names.
 
-const CHOSEN = 'name'; // kept by the browser
-const MADE_UP = 'guest'; // kept by the tab, over reloads
+const CHOSEN = 'name'; // key in the storage of the browser
+const MADE_UP = 'guest'; // key in the storage of the tab, which survives reloads
 const TREES = [
   'Alder', 'Ash', 'Aspen', 'Beech', 'Birch', 'Cedar', 'Cherry', 'Elm', 'Fir', 'Hazel', 'Holly', 'Larch', 'Laurel', 'Lime',
   'Maple', 'Oak', 'Olive', 'Pine', 'Plane', 'Poplar', 'Rowan', 'Spruce', 'Walnut', 'Willow',
@@ -25,19 +25,19 @@ export function ownName(): string {
   return made;
 }
 
-/** Takes a name of one's own; an empty one goes back to the made-up. */
+/** Sets the chosen name. An empty name restores the generated name. */
 export function setOwnName(name: string): void {
   const trimmed = name.trim().slice(0, NAME_MAX);
   if (trimmed === '') localStorage.removeItem(CHOSEN);
   else localStorage.setItem(CHOSEN, trimmed);
 }
 
-/** What the daemon and its other clients are told. */
+/** Returns the client name in hello, which the daemon and other clients see. */
 export function clientWords(version: string): string {
   return `${ownName()}, viewer ${version}`;
 }
 
-/** Somebody's name as people say it; programs without one go by their number. */
+/** Returns the shown name of a client. A program without a name is shown by its number. */
 export function nameOf({ name, client }: { name: string; client: number }): string {
   const bare = name.replace(PROGRAM, '');
   return bare === '' ? `client ${client}` : bare;

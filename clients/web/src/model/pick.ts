@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a ray first meets the drawn tissue (Moeller and Trumbore, both sides).
+// Finds where a ray first meets the drawn tissue, on either side of faces (Moeller and Trumbore).
 
 export interface Hit {
   distance: number;
   batch: number;
-  /** of the triangle's corners the nearest */
+  /** the nearest corner of the triangle */
   vertex: number;
 }
 
@@ -13,7 +13,7 @@ export function pick(
   direction: readonly [number, number, number],
   position: Float32Array,
   indices: readonly (Uint32Array | null)[],
-  /** whether what is at a distance along the ray is cut away from the picture */
+  /** whether the clip plane hides the point at a distance along the ray */
   away: (distance: number) => boolean = () => false,
 ): Hit | null {
   let best: Hit | null = null;
@@ -36,7 +36,7 @@ export function pick(
 }
 
 const PARALLEL = 1e-18; // m^2: edges of a micrometre seen edge-on
-/** Of an edge, that a triangle reaches beyond itself: rounding (1e-12) must not let a ray through between two. */
+/** Share of an edge by which triangles are enlarged, so that rounding (1e-12) lets no ray pass between two triangles. */
 const SEAM = 1e-9;
 
 function meet(

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke as puffs that rise from where tissue burns, drift with slow air, spread, and are gone after some seconds. More of
-// them come where elements are removed. It is decoration: no channel has the amount of smoke yet.
+// Smoke as puffs that rise where tissue is heated, drift with slow air, spread, and disappear after some seconds. Removed
+// elements cause more puffs. This is decoration: no channel has the amount of smoke yet.
 
 export const PUFFS = 128;
-const LIFE_S = 3.2; // of a mean puff: as long as a still room keeps a wisp in view
-const HEATING_PER_S = 7; // puffs, while a hot tip touches tissue
+const LIFE_S = 3.2; // life of a mean puff: as long as a wisp is visible in still air
+const HEATING_PER_S = 7; // puffs in a second while a hot tip touches tissue
 const PER_FACE = 0.6; // puffs for each face that is removed
-const OWED_MOST = 12; // a burst is no wall
+const OWED_MOST = 12; // largest number of waiting puffs, so that a burst does not hide the tissue
 const RISE_M_S = 0.016;
 const DRIFT_M_S = 0.007;
 const SWIRL_PER_M = 55; // waves of the air: some 10 cm long
 const SWIRL_PER_S = 0.35;
 
-/** Where air goes sideways, m/s; slow, and different from place to place. */
+/** Returns the sideways velocity of the air, m/s; slow, and different from point to point. */
 function drift(x: number, y: number, z: number, seconds: number): [number, number] {
   const turn = SWIRL_PER_S * seconds;
   return [
@@ -26,7 +26,7 @@ export class Puffs {
   readonly position = new Float32Array(3 * PUFFS);
   /** 0 new to 1 gone */
   readonly age = new Float32Array(PUFFS).fill(1);
-  /** 0 to 1, of each */
+  /** random number of each puff, 0 to 1 */
   readonly seed: Float32Array;
   private next = 0;
   private owed = 0;
@@ -36,17 +36,17 @@ export class Puffs {
     this.seed = Float32Array.from({ length: PUFFS }, random);
   }
 
-  /** How many are in the air. */
+  /** Number of puffs in the air. */
   get count(): number {
     return this.age.reduce((sum, age) => sum + Number(age < 1), 0);
   }
 
-  /** Faces were removed: the next puffs come sooner. */
+  /** Notes removed faces, after which the next puffs come sooner. */
   burst(faces: number): void {
     this.owed = Math.min(this.owed + PER_FACE * faces, OWED_MOST);
   }
 
-  /** Moves them on, and starts new ones at sources, m. True while any is in the air. */
+  /** Moves the puffs, and starts new ones at the sources, m. Returns true while any puff is in the air. */
   advance(seconds: number, sources: readonly (readonly [number, number, number])[]): boolean {
     this.seconds += seconds;
     let alive = false;

@@ -3,13 +3,13 @@
 // surface of smooth curvature. Rims tend to the cubic B-spline of the rim's vertices, which depends on nothing
 // beside the rim. Joined triangles stay joined, and separate ones stay separate. It changes the picture alone.
 
-/** Of edges and vertices. */
+/** Kinds of edges and vertices. */
 export const SMOOTH = 0;
 export const RIM = 1; // the surface ends here
-export const STILL = 2; // stays on the mesh: the surface goes on there unrefined
+export const STILL = 2; // stays on the mesh, where the surface continues unrefined
 
-/** One step: a vertex keeps `own` of itself and takes `share` of each neighbour, at a rim of those along it; then, where
- * the step divides, comes one vertex on each edge. */
+/** One step. The new value of a vertex is `own` times its value plus `share` times the value of each neighbour, at a rim of
+ * the neighbours along the rim. A step that divides adds one vertex on each edge. */
 interface Step {
   divides: boolean;
   own: Float32Array;
@@ -17,26 +17,26 @@ interface Step {
   vertexKind: Uint8Array;
   edges: Uint32Array;
   edgeKind: Uint8Array;
-  /** third vertices of the two faces at each edge; of no use at a rim */
+  /** third vertices of the two faces at each edge; not used at a rim */
   thirds: Uint32Array;
 }
 
 export interface Refinement {
-  /** vertex of the mesh of each vertex of the patch; one on which the patch only pinches is there once a side */
+  /** vertex of the mesh for each vertex of the patch; a vertex at which the patch is pinched appears once for each side */
   roots: Int32Array;
   steps: Step[];
   vertexCount: number;
   /** fine triangles (x 3) */
   faces: Uint32Array;
-  /** fine edges (x 2) at which the surface ends, the surface on their left, seen from where faces turn left */
+  /** fine edges (x 2) at which the surface ends; the surface is on their left, seen from the front of its faces */
   rims: Uint32Array;
   /** SMOOTH, RIM or STILL for each fine vertex */
   kinds: Uint8Array;
-  /** fine vertices on edges that stay on the mesh: the two vertices of the patch that they lie between, and where */
+  /** fine vertices on edges that stay on the mesh: the two vertices of the patch beside each, and the position between */
   still: { vertex: Int32Array; between: Int32Array; share: Float32Array };
 }
 
-/** A mesh on its way: edges with their faces' third vertices, faces with their edges. */
+/** A mesh during refinement: edges with the third vertices of their faces, faces with their edges. */
 interface Net {
   vertexCount: number;
   vertexKind: Uint8Array;
@@ -47,16 +47,16 @@ interface Net {
   edgeKind: Uint8Array;
 }
 
-/** What a vertex with so many neighbours takes of each (Loop). */
+/** Returns the weight of each neighbour for a vertex with `count` neighbours (Loop). */
 function ringWeight(count: number): number {
   const turn = 3 / 8 + Math.cos((2 * Math.PI) / count) / 4;
   return (5 / 8 - turn * turn) / count;
 }
 
-/** Whether a vertex takes of the other end of an edge. */
+/** Whether a vertex uses the value at the other end of an edge. */
 const takes = (vertexKind: number, edgeKind: number): boolean => vertexKind === SMOOTH || (vertexKind === RIM && edgeKind === RIM);
 
-/** How many neighbours each vertex takes of. */
+/** Returns the number of neighbours that each vertex uses. */
 function takenOf({ vertexCount, vertexKind, edges, edgeKind }: Net): Uint16Array {
   const count = new Uint16Array(vertexCount);
   for (let i = 0; i < edges.length; i++) if (takes(vertexKind[edges[i]], edgeKind[i >> 1])) count[edges[i]]++;
@@ -81,14 +81,14 @@ function stepOf(net: Net, divides: boolean, shareOf: (kind: number, count: numbe
   return { divides, own, share, vertexKind, edges, edgeKind, thirds };
 }
 
-/** Loop's step: vertices of the next net. */
+/** Loop's subdivision step: the vertices of the next net. */
 const divided = (net: Net): Step => stepOf(net, true, (kind, count) => (kind === RIM ? 1 / 8 : ringWeight(count)));
 
-/** Evens out the teeth of the mesh's border. Each vertex moves half way to the mean of its neighbours, at a rim of those
- * along the rim. */
+/** Smoothing step for the teeth of the border. Each vertex moves half way to the mean of its neighbours, at a rim of the
+ * neighbours along the rim. */
 const evened = (net: Net): Step => stepOf(net, false, (_kind, count) => 1 / (2 * count));
 
-/** Each face in four: one at each corner, one between the middles of its edges. */
+/** Divides each face into four: one at each corner, one between the middles of its edges. */
 function split(net: Net): Net {
   const { vertexCount: base, faces, faceEdges, edges, edgeKind } = net;
   const edgeCount = edgeKind.length;
@@ -131,7 +131,7 @@ function split(net: Net): Net {
   return next;
 }
 
-/** Sides of faces (3 face + corner) by their edge. */
+/** Returns the sides of faces (3 face + corner) by edge. */
 function sidesByEdge(faces: ArrayLike<number>, vertexCount: number): Map<number, number[]> {
   const sides = new Map<number, number[]>();
   for (let i = 0; i < faces.length; i++) {
@@ -144,7 +144,7 @@ function sidesByEdge(faces: ArrayLike<number>, vertexCount: number): Map<number,
   return sides;
 }
 
-/** The faces, each turned as the one beside it is: faces between tetrahedra come in any turn. */
+/** Returns the faces with equal orientation, because faces between tetrahedra have arbitrary orientation. */
 function turnedAlike(given: ArrayLike<number>, vertexCount: number): Int32Array {
   const faces = Int32Array.from(given);
   const beside = new Map<number, number[]>();
@@ -174,7 +174,7 @@ function turnedAlike(given: ArrayLike<number>, vertexCount: number): Int32Array 
   return faces;
 }
 
-/** Corners of faces that hang together around a vertex are one vertex of the patch. */
+/** Joins the corners of connected faces around a vertex to one vertex of the patch. */
 function weld(faces: Int32Array, sides: Map<number, number[]>): { roots: Int32Array; corners: Uint32Array } {
   const parent = Int32Array.from(faces, (_, i) => i);
   const find = (corner: number): number => {
@@ -208,7 +208,7 @@ function netOf(given: ArrayLike<number>, vertexCount: number, goesOn: (a: number
   for (const of of sides.values()) {
     const [a, b] = [turned[of[0]], turned[of[0] - (of[0] % 3) + ((of[0] + 1) % 3)]];
     const kind = of.length === 2 ? SMOOTH : goesOn(a, b) ? STILL : RIM;
-    // Where more than two faces meet, each ends.
+    // Where more than two faces meet at an edge, each face has a rim.
     for (const side of of.length === 2 ? of.slice(0, 1) : of) {
       for (const same of of.length === 2 ? of : [side]) faceEdges[same] = edgeKind.length;
       edges.push(corners[side], corners[side - (side % 3) + ((side + 1) % 3)]);
@@ -220,7 +220,7 @@ function netOf(given: ArrayLike<number>, vertexCount: number, goesOn: (a: number
   return { net, roots };
 }
 
-/** A vertex where a rim begins or where the surface goes on unrefined stays. */
+/** Marks vertices: a vertex stays on the mesh where a rim begins, or where the surface continues unrefined. */
 function markVertices(net: Net): void {
   const rims = new Uint8Array(net.vertexCount);
   net.edgeKind.forEach((kind, e) => {
@@ -236,7 +236,7 @@ function markVertices(net: Net): void {
   });
 }
 
-/** Of edges that stay: on which of them each vertex lies, from the first step on. */
+/** Returns the fine vertices on edges that stay on the mesh, from the first step on. */
 function stillOf(first: Net, last: Net, levels: number): Refinement['still'] {
   const vertex: number[] = [];
   const between: number[] = [];
@@ -298,7 +298,7 @@ function advance(step: Step, values: Float32Array, width: number): Float32Array<
   return next;
 }
 
-/** Values of the fine vertices (x width) from those of the patch's (x width). */
+/** Returns the values of the fine vertices (x width) from the values of the vertices of the patch (x width). */
 export function refined({ steps }: Refinement, coarse: Float32Array<ArrayBuffer>, width: number): Float32Array<ArrayBuffer> {
   return steps.reduce((values, step) => advance(step, values, width), coarse);
 }

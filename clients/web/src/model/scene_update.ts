@@ -6,18 +6,18 @@ import type { Color, CylinderPrimitive, Pose, SceneEntity, SceneEntityDeletionTy
 
 import type { ToolState } from '../wire/records';
 
-/** A layer's present faces: three vertices each, in lists. */
+/** The present faces of a layer: lists with three vertices for each face. */
 export interface LayerFaces {
   layer: string;
   lists: Uint32Array[];
 }
 
-/** A moment of a session, as the page sees it. */
+/** The state of a session at one moment, as the page shows it. */
 export interface SeenMoment {
   /** ns since 1970 */
   timeNs: bigint;
   tick: number;
-  /** simulated, s */
+  /** simulated time, s */
   timeS: number;
   /** m (vertices x 3) */
   position: Float32Array;
@@ -25,13 +25,13 @@ export interface SeenMoment {
   tools: Pick<ToolState, 'name' | 'positionM' | 'rotation' | 'energized'>[];
 }
 
-const DELETE_ALL = 1 as unknown as SceneEntityDeletionType.ALL; // of that package the types alone are used
-const METRES = 1e7; // rounded to a tenth of a micrometre
-// What stands for an instrument, m
+const DELETE_ALL = 1 as unknown as SceneEntityDeletionType.ALL; // only types of that package are used
+const METRES = 1e7; // coordinates are rounded to a tenth of a micrometre
+// Sizes of a drawn instrument, m
 const SHAFT_M = 0.06, SHAFT_DIAMETER_M = 0.002, TIP_DIAMETER_M = 0.0015;
 
 const color = (r: number, g: number, b: number): Color => ({ r, g, b, a: 1 });
-/** By layer: pearly fascia, a pink membrane, fat; others like what lies under them. */
+/** Colours of layers: pearly fascia, a pink membrane, fat; further layers have the last colour. */
 const LAYER_COLORS = [color(0.9, 0.82, 0.76), color(0.85, 0.58, 0.5), color(0.93, 0.77, 0.4), color(0.7, 0.35, 0.32)];
 const STEEL = color(0.7, 0.72, 0.75);
 const GLOWING = color(1, 0.35, 0.1);
@@ -55,7 +55,7 @@ function trianglesOf(position: Float32Array, lists: readonly Uint32Array[], shad
   return { pose: AT_ORIGIN, points, color: shade, colors: [], indices };
 }
 
-/** The pose of a point on the shaft's axis, which is the tool's third. */
+/** Returns the pose of a point on the axis of the shaft, the third axis of the tool. */
 function poseOf({ positionM: p, rotation: [w, x, y, z] }: SeenMoment['tools'][number], alongM: number): Pose {
   const axis = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)];
   return {
@@ -88,7 +88,7 @@ export function sceneUpdate(moment: SeenMoment): SceneUpdate {
   });
   const triangles = moment.layers.map(({ lists }, i) => trianglesOf(moment.position, lists, LAYER_COLORS[Math.min(i, LAYER_COLORS.length - 1)]));
   return {
-    // Everything is told anew: whoever begins to read in the middle has the whole scene.
+    // Each update has the whole scene, so that a reader can begin in the middle.
     deletions: [{ timestamp, type: DELETE_ALL, id: '' }],
     entities: [
       entity('tissue', { triangles }),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What goes wrong, in sentences for people: no paths of members, no expressions of programs.
+// Turns errors into sentences for users, without paths of members and expressions of programs.
 
-export const NAME_RULE = 'A name begins with a small letter and goes on with small letters and digits, with single - or _ between them, as in knee-2';
-const EXPRESSION = '[a-z]'; // the daemon's own rule for names
+export const NAME_RULE = 'A name begins with a small letter and contains only small letters, digits and single - or _ between them, as in knee-2';
+const EXPRESSION = '[a-z]'; // part of the daemon's rule for names
 const UNIT = /_(j_m2|j_k|w_k|j|w|v|a|m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/;
 
 /** "hot_radius_m" as people say it: "Hot radius". */
@@ -16,13 +16,13 @@ export function unitText(unit: string): string {
   return unit.replace('^2', '²').replace('^3', '³');
 }
 
-/** With a capital at its beginning and a stop at its end. */
+/** Returns the words with a capital letter at the beginning and a full stop at the end. */
 export function sentence(words: string): string {
   const begun = words.charAt(0).toUpperCase() + words.slice(1);
   return /[.!?…]$/.test(begun) ? begun : `${begun}.`;
 }
 
-/** The last member of a path such as params.layers[2].young_modulus_pa. */
+/** Returns the last member of a path such as params.layers[2].young_modulus_pa. */
 function memberOf(path: string): string {
   return path.replace(/\[\d+\]/g, '').split('.').filter((member) => member !== 'params').at(-1) ?? '';
 }
@@ -35,7 +35,7 @@ export function errorWords(error: unknown): string {
   return member === '' ? sentence(words) : sentence(`${memberWords(member)}: ${words}`);
 }
 
-/** What the daemon says of a mesh file, in the words of the form that uploads one. */
+/** Returns a message about a mesh file in the words of the upload form. */
 export function meshWords(words: string): string {
   return words
     .replace(/\bunit_m ([0-9.]+(?:e[-+]?[0-9]+)?)/g, (_said, unit: string) => `one unit is ${Number((1000 * Number(unit)).toPrecision(6))} mm`)

@@ -6,12 +6,12 @@ import type { ToolState } from '../wire/records';
 
 export type Mode = 'cut' | 'coagulate' | 'bipolar' | 'ultrasonic';
 
-/** Hz. Far enough apart, a major third and more, that an ear without the others beside it tells them. */
+/** Tones, Hz. They differ by a major third or more, so that a user recognises each tone alone. */
 export const TONE_HZ: Readonly<Record<Mode, number>> = { bipolar: 520, cut: 660, coagulate: 940, ultrasonic: 1250 };
 
-/** A wave whose peak is this many times its mean square root does not cut: it is given in bursts. */
+/** Crest factor from which a voltage comes in bursts and does not cut. */
 const BURSTS_FROM = 3;
-const FACES_LOUDEST = 6; // removed between two frames: as loud as it gets
+const FACES_LOUDEST = 6; // removed faces between two frames at which the sizzle is loudest
 
 export function modeOf(tool: Tool): Mode {
   if (tool.shape === 'bipolar') return 'bipolar';

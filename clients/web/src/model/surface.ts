@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is drawn beside the mesh's own faces: records of vertices as the scene takes them.
+// Surfaces that are drawn besides the faces of the mesh, as records of vertices.
 
-/** Floats of a record: position, material coordinates, normal, the four of `burn`, 0 root or 1 tip. */
+/** Number of floats of a record: position, material coordinates, normal, the four bytes of `burn`, 0 root or 1 tip. */
 export const SURFACE_FLOATS = 14;
 
 /** Arrays of the tissue that such surfaces read; only `position`, `normal`, `burn` and `hidden` change. */
@@ -17,11 +17,11 @@ export interface SurfaceSource {
 
 export interface SurfaceShape {
   records: Float32Array;
-  /** null: as before */
+  /** indices; null: unchanged */
   index: Uint32Array | null;
 }
 
-/** What a vertex is, at a place beside it. */
+/** Writes the record of a vertex at a position beside it. */
 export function writeRecord(records: Float32Array, record: number, source: SurfaceSource, vertex: number, tip: number, beside: (c: number) => number): void {
   const at = SURFACE_FLOATS * record;
   const { position, material, normal, burn } = source;
@@ -34,7 +34,7 @@ export function writeRecord(records: Float32Array, record: number, source: Surfa
   records[at + 13] = tip;
 }
 
-/** The face beyond each side of each face of a layer, or -1; side c runs from corner c to the next. */
+/** Returns the face beyond each side of each face of a layer, or -1. Side c is from corner c to the next. */
 export function makeNeighbours(faces: Int32Array, of: Int32Array, vertexCount: number): Int32Array {
   const neighbours = new Int32Array(3 * of.length).fill(-1);
   const first = new Map<number, number>();

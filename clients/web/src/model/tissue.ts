@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tissue as it is drawn: positions in metres, smooth normals, cut rims, and the indices of drawn
-// faces in batches. Brought up to date from a stream's state; only what moved is worked on.
-// Lives in the worker and knows no renderer.
+// The tissue for drawing: positions in metres, smooth normals, cut rims, and the indices of drawn faces in batches. It is
+// updated from the state of a stream, and computes only what changed. It runs in the worker and does not use a renderer.
 import type { Changes, StreamState } from '../wire/decoder';
 import { SCALARS, type LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
@@ -14,12 +13,12 @@ import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_ta
 export interface Batch {
   layer: string;
   kind: LayerDescription['kind'];
-  /** the inside of fat, which only cuts lay open */
+  /** whether this is the inside of fat, which only cuts expose */
   bared: boolean;
   faces: Int32Array;
 }
 
-/** What the fourth byte of `burn` has: a scalar that is shown as colour, or else the blood on the surface. */
+/** Content of the fourth byte of `burn`: a scalar that is shown as colour, or the blood on the surface. */
 export type ShownScalar = 'stress' | 'temperature' | 'blood';
 
 export interface TissueSource {
@@ -29,9 +28,9 @@ export interface TissueSource {
   stepM: number;
   layers: readonly LayerDescription[];
   topology: Topology;
-  /** what is drawn beside exposure and charring */
+  /** scalar that is drawn besides exposure and charring */
   scalar: ShownScalar;
-  /** of sheets, by layer, m */
+  /** thickness of sheets by layer, m */
   thicknessM: Readonly<Record<string, number>>;
   /** material coordinates, m (vertices x 3) */
   material: Float32Array;
@@ -41,7 +40,7 @@ export interface TissueSource {
 export const BURN_BYTES = 4;
 const RIM = 2;
 export const SCALAR = 3;
-const USUAL_SHEET_M = 5e-4; // of sheets whose thickness nobody has told
+const USUAL_SHEET_M = 5e-4; // thickness of sheets without a known thickness
 const BOILING_C = 100;
 
 export class Tissue {
@@ -49,19 +48,19 @@ export class Tissue {
   readonly position: Float32Array;
   readonly normal: Float32Array;
   readonly burn: Uint8Array;
-  /** largest stress seen so far, in steps of the stream; 255 in burn */
+  /** largest stress so far, in steps of the stream, which is 255 in burn */
   stressScale = 1;
-  /** what 0 and 255 are in burn, degC: least and largest temperature seen so far, and boiling water's */
+  /** temperatures of 0 and 255 in burn, degC: least and largest temperature so far, including that of boiling water */
   readonly temperatureRangeC: [number, number] = [BOILING_C, BOILING_C];
-  /** drawn faces of each batch; made anew where changed */
+  /** drawn faces of each batch; replaced when they change */
   readonly drawnIndex: Uint32Array[];
-  /** how many of the drawn faces, the first ones, are drawn as they are; the others are drawn finer, as lips */
+  /** number of drawn faces, the first ones, that are drawn unrefined; the others are drawn finer, as lips */
   readonly plainFaces: Int32Array;
-  /** what a cut lays bare of each batch; null where nothing is drawn finer */
+  /** surfaces of each batch that a cut exposes; null if nothing is drawn finer */
   readonly lips: (Lips | null)[];
-  /** of sheets, at their borders */
+  /** walls of sheets at their borders */
   readonly edges: (Edge | null)[];
-  /** of sheets: the face beyond each side of each face */
+  /** for sheets, the face beyond each side of each face */
   private readonly neighbours: (Int32Array | null)[];
   private readonly vertexFaces: VertexFaces;
   private readonly batchOfFace: Int32Array;
@@ -99,7 +98,7 @@ export class Tissue {
     });
   }
 
-  /** Takes a state over. Returns the batches whose drawn faces changed. */
+  /** Applies a state. Returns the batches whose drawn faces changed. */
   update(state: StreamState, changes: Changes): number[] {
     this.mark++;
     const touched: number[] = [];
@@ -114,7 +113,7 @@ export class Tissue {
     return [...changedBatches];
   }
 
-  /** Drawn faces by layer and what was hidden of it, for people and tests. */
+  /** Returns the number of drawn faces by layer, for users and tests. */
   drawnFaceCounts(): Record<string, number> {
     const counts: Record<string, number> = {};
     this.batches.forEach((batch, b) => {
@@ -150,7 +149,7 @@ export class Tissue {
         changedFaces.push(face);
       }
     }
-    // Normals of faces are computed from positions that are taken over below; here only vertices count.
+    // Only collects vertices here: normals of faces are computed from the positions that are applied below.
     for (const face of changedFaces) {
       for (let c = 0; c < 3; c++) {
         const vertex = this.source.topology.faces[3 * face + c];

@@ -7,7 +7,7 @@ export type Vector3 = [number, number, number];
 
 interface Part {
   hot: boolean;
-  /** turns with the jaws: +1 and -1 sides by `share` of the opening angle about z = hinge */
+  /** for parts that turn with the jaws: side, and `share` of the opening angle by which they turn about z = hinge */
   jaw?: { side: 1 | -1; share: number; hinge: number };
 }
 export type ToolPart = Part &
@@ -23,7 +23,7 @@ export interface ToolSizes {
   shaft: number;
   shaftLength: number;
   jawOpen: number;
-  /** m/s */
+  /** largest speed, m/s */
   maxSpeed: number;
 }
 
@@ -136,7 +136,7 @@ export function toolParts(tool: Tool): ToolPart[] {
       return shears(s);
     case 'grasper':
       return grasper(s);
-    default: // the daemon says the shape of every tool
+    default: // the daemon sends the shape of every tool
       throw new Error(`the tool ${tool.name} has no shape`);
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What follows from the faces alone, made once for each session: which faces meet at a vertex, and
-// which faces of fat lie inside it, so that they are seen only when tissue in front of them is gone.
+// Tables that depend on the faces only, computed once for each session: the faces at each vertex, and the faces inside of
+// fat, which are visible only when the tissue in front of them was removed.
 
 /** Faces at each vertex in rows: those of vertex v are items[start[v]] to items[start[v + 1] - 1]. */
 export interface VertexFaces {
@@ -22,7 +22,7 @@ function edgeKey(a: number, b: number, vertexCount: number): number {
   return a < b ? a * vertexCount + b : b * vertexCount + a;
 }
 
-/** The third vertices of the faces on each edge. */
+/** Returns the third vertices of the faces on each edge. */
 function oppositeVertices(faces: Int32Array, of: Int32Array, vertexCount: number): Map<number, number[]> {
   const opposite = new Map<number, number[]>();
   for (const face of of) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A blood vessel as a mesh: a tube along the points of its middle line, in pieces where it is parted. Each piece has ends
-// that show the lumen. A tube is slimmer where its lumen is pressed shut.
+// Computes the mesh of a blood vessel: a tube along the points of its middle line, in several pieces if it is parted. Each
+// piece has ends that show the lumen. The tube is slimmer where the lumen is pressed shut.
 import { POINT_NUMBERS } from '../wire/vessels';
 
 export interface Tube {
@@ -14,8 +14,8 @@ export interface Tube {
 type Vector = readonly [number, number, number];
 
 const SIDES = 12; // a corner is 3 % of the radius from the circle
-const SHUT_RADIUS = 0.6; // of the open one; two walls that lie on each other
-const LUMEN = 0.75; // of the outer radius; a scene has the wall's thickness, frames do not
+const SHUT_RADIUS = 0.6; // radius of a shut tube over the open radius; two walls lie on each other
+const LUMEN = 0.75; // radius of the lumen over the outer radius; frames do not have the thickness of the wall
 
 const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -42,7 +42,7 @@ class Builder {
     this.look.push(open, lumen);
   }
 
-  /** Faces between a ring of vertices and the next, seen from the side that `outwards` turns them to. */
+  /** Adds the faces between a ring of vertices and the next; `outwards` decides their front side. */
   join(from: number, to: number, outwards: boolean): void {
     for (let s = 0; s < SIDES; s++) {
       const [a, b] = outwards ? [s, (s + 1) % SIDES] : [(s + 1) % SIDES, s];
@@ -60,7 +60,7 @@ interface Ring {
   open: number;
 }
 
-/** Rings around points of a piece. Each ring is turned as little as it can be against the one before. */
+/** Returns the rings around the points of a piece. Each ring is twisted as little as possible against the previous ring. */
 function ringsOf(points: Float32Array, first: number, end: number, radiusM: number): Ring[] {
   const at = (i: number): Vector => [points[POINT_NUMBERS * i], points[POINT_NUMBERS * i + 1], points[POINT_NUMBERS * i + 2]];
   const rings: Ring[] = [];
@@ -82,7 +82,7 @@ function ringsOf(points: Float32Array, first: number, end: number, radiusM: numb
   return rings;
 }
 
-/** The end of a piece: its wall as a rim, and the lumen within. */
+/** Adds the end of a piece: its wall as a rim, and the lumen inside. */
 function addEnd(made: Builder, { at, tangent, spokes, open, radius }: Ring, last: boolean): void {
   const normal = along([0, 0, 0], last ? 1 : -1, tangent);
   const first = made.count;
@@ -102,7 +102,7 @@ function addPiece(made: Builder, rings: readonly Ring[]): void {
   addEnd(made, rings[rings.length - 1], true);
 }
 
-/** `points` as in VesselState. A single point between two gaps has no length and is left out. */
+/** `points` as in VesselState. A single point between two gaps has no length and is not drawn. */
 export function makeTube(points: Float32Array, radiusM: number): Tube {
   const made = new Builder();
   const count = points.length / POINT_NUMBERS;

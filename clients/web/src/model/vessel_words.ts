@@ -4,7 +4,7 @@ import type { VesselState } from '../wire/vessels';
 
 const ML_PER_M3 = 1e6;
 const PA_PER_MMHG = 133.322;
-const WHOLE_ML = 10; // from here on tenths say nothing
+const WHOLE_ML = 10; // from this volume on, tenths of a millilitre are not shown
 
 const rate = (bleedingM3S: number): string => `${(ML_PER_M3 * bleedingM3S).toFixed(1)} ml/s`;
 const lost = (shedM3: number): string => {
@@ -14,27 +14,27 @@ const lost = (shedM3: number): string => {
 const bursts = (burstPa: number): string => `bursts at ${Math.round(burstPa / PA_PER_MMHG)} mmHg`;
 const sum = (numbers: readonly number[]): number => numbers.reduce((total, number) => total + number, 0);
 
-/** "parted, bleeding", "pressed shut", "open". What is parted mostly has holes beside the gap, too. */
+/** "parted, bleeding", "pressed shut", "open". A parted vessel usually also has holes beside the gap. */
 export function stateWords({ parted, pierced, shut, sealed, bleeds }: VesselState): string {
   const words = [parted ? 'parted' : pierced ? 'wall has a hole' : '', sealed ? 'sealed' : '', shut ? 'pressed shut' : '', bleeds ? 'bleeding' : ''];
   return words.filter((word) => word !== '').join(', ') || 'open';
 }
 
-/** "4.9 ml/s, 12 ml lost, bursts at 750 mmHg"; what is zero is left out. */
+/** "4.9 ml/s, 12 ml lost, bursts at 750 mmHg"; zero values are left out. */
 export function figuresOf({ bleeds, bleedingM3S, shedM3, burstPa }: VesselState): string {
   return [bleeds ? rate(bleedingM3S) : '', shedM3 > 0 ? lost(shedM3) : '', burstPa > 0 ? bursts(burstPa) : ''].filter((words) => words !== '').join(', ');
 }
 
-/** What the page has to say: `words`, and `figures` that change. */
+/** A message of the page: `words`, and `figures` that change. */
 export interface Finding {
-  /** of what stays as long as it is found; null: said once */
+  /** key of a message that stays while the state lasts; null: a message that is shown once */
   key: string | null;
   warns: boolean;
   words: string;
   figures: string;
 }
 
-/** All that bleed are one warning, with their sums. */
+/** Returns one warning for all bleeding vessels, with the sums of their figures. */
 function bleeding(vessels: readonly VesselState[]): Finding[] {
   if (vessels.length === 0) return [];
   const names = vessels.map(({ name }) => name).join(', ');
@@ -42,17 +42,17 @@ function bleeding(vessels: readonly VesselState[]): Finding[] {
   return [{ key: 'bleeding', warns: true, words: `${names} ${vessels.length === 1 ? 'bleeds' : 'bleed'}:`, figures }];
 }
 
-/** Follows the vessels of a session. */
+/** Watches the vessels of a session and finds messages about them. */
 export class VesselWatch {
   private before = new Map<string, VesselState>();
-  /** when a seal began to hold, s of the page */
+  /** time at which a seal began to hold, s of the page */
   private readonly sealedS = new Map<string, number>();
 
-  /** newsS: how long the page says that a vessel is sealed */
+  /** newsS: how long the page shows that a vessel was sealed */
   constructor(private readonly newsS: number) {}
 
-  /** What is to be said at a time of the page. A vessel that bleeds is to be said from the start; that one is sealed, or
-   * bleeds no longer, only where it was otherwise before. */
+  /** Returns the messages at a time of the page. A bleeding vessel is reported from the start. A seal, or the end of a
+   * bleeding, is reported only after a change. */
   take(vessels: readonly VesselState[], nowS: number): Finding[] {
     const found = [...bleeding(vessels.filter(({ bleeds }) => bleeds)), ...vessels.flatMap((vessel) => this.news(vessel, nowS))];
     this.before = new Map(vessels.map((vessel) => [vessel.name, vessel]));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Session, tick and camera in the page's address, so that reloading and sharing come back to them.
+// Writes session, tick and camera into the address of the page, so that a reloaded or shared page shows the same.
 import type { Model } from '../model/model';
 import type { CameraPose } from '../scene/orbit';
 import type { Viewport } from '../scene/viewport';
 
 const LOOK_MS = 100;
-const WRITE_MS = 1000; // for a tick or camera that goes on; another session is written as soon as it is seen
+const WRITE_MS = 1000; // least time between two writes while tick or camera change; another session is written at once
 const DEGREES = 180 / Math.PI;
 const MM = 1000;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks before something is lost. Who does nothing, or presses Escape, keeps everything.
+// Asks the user before something is lost. Without an answer, or with Escape, nothing is lost.
 import { button, element } from './dom';
 
 export function ask(question: string, consequence: string, yes: string): Promise<boolean> {

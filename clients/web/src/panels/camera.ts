@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the camera looks from: standard views, and views that somebody has kept under a name.
+// Views of the camera: standard views, and views that the user has saved under a name.
 import type { CameraPose } from '../scene/orbit';
 import type { Viewport } from '../scene/viewport';
 import { cameraText, readCamera } from './address';
@@ -14,7 +14,7 @@ const KEPT = 'views';
 const VIEWS_MAX = 12;
 const NAME_MAX = 24;
 
-const FIELDS = [['trocar', 'by trocar'], ['open', 'open']] as const;
+const FIELDS = [['trocar', 'through a trocar'], ['open', 'open field']] as const;
 const FIELD_KEPT = 'field';
 
 /** The round picture of an endoscope, or the open field; the browser keeps the choice. One for each place that shows it. */
@@ -41,9 +41,9 @@ export function cameraButtons(viewport: Viewport): HTMLElement {
   const buttons = element(
     'div',
     { class: 'buttons' },
-    to('Home', () => orbit.reset()),
+    to('First view', () => orbit.reset()),
     to('From above', () => orbit.look(FROM_ABOVE)),
-    to('Along', () => orbit.look(ALONG)),
+    to('Low, along the tissue', () => orbit.look(ALONG)),
     to('From the left', () => orbit.look(ASIDE, -QUARTER)),
     to('From the right', () => orbit.look(ASIDE, QUARTER)),
     to('Nearer', () => orbit.zoom(NEARER)),
@@ -64,7 +64,7 @@ function keptViews(): View[] {
     if (!Array.isArray(kept)) return [];
     return (kept as Partial<View>[]).filter((view): view is View => typeof view.name === 'string' && typeof view.camera === 'string');
   } catch {
-    return []; // somebody else's, or damaged
+    return []; // stored by another program, or damaged
   }
 }
 
@@ -84,11 +84,11 @@ export function cameraViews(viewport: Viewport): HTMLElement {
         viewport.orbit.restore(pose);
         viewport.invalidate();
       });
-      const forget = button('×', () => put(keptViews().filter(({ name: other }) => other !== view.name)), { aria: { label: `Forget the view ${view.name}` } });
+      const forget = button('×', () => put(keptViews().filter(({ name: other }) => other !== view.name)), { aria: { label: `Delete the view ${view.name}` } });
       return [element('div', { class: 'choice' }, go, forget)];
     }));
   };
-  const keep = button('Keep this view', () => {
+  const keep = button('Save this view', () => {
     const views = keptViews();
     const called = name.value.trim() || `View ${views.length + 1}`;
     put([...views.filter((view) => view.name !== called), { name: called, camera: cameraText(viewport.orbit.here) }].slice(-VIEWS_MAX));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plane that cuts tissue away from the picture, to look inside; nothing of it reaches the simulation.
+// A plane that hides tissue in the picture, to look inside. It does not change the simulation.
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { element, field } from './dom';
 
-const AXES = [['', 'nothing'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
+const AXES = [['', 'nothing (whole tissue)'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
 const STEPS = 200;
 const MM = 1000;
 
-/** Returns the fields, and what gives the whole tissue back. */
+/** Returns the fields, and a function that shows the whole tissue again. */
 export function clipFields(control: Control, viewport: Viewport): { fields: HTMLElement; off: () => void } {
   const axis = element('select', { name: 'clip' }, ...AXES.map(([value, words]) => element('option', { value }, words)));
   const share = element('input', { type: 'range', name: 'clip-at', min: '0', max: String(STEPS), value: String(STEPS / 2) });
@@ -37,5 +37,5 @@ export function clipFields(control: Control, viewport: Viewport): { fields: HTML
     axis.value = '';
     apply();
   };
-  return { fields: element('div', { class: 'form' }, field('Cut away', axis), where), off };
+  return { fields: element('div', { class: 'form' }, field('Hide tissue', axis), where), off };
 }

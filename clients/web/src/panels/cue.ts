@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where to cut first: a ring that pulses on the tissue and a dot that shows the stroke. It is there until
-// somebody has heated or cut, and comes back with tissue that is whole again.
+// Shows where to cut first: a pulsing ring on the tissue, and a dot that shows the stroke. The cue disappears when tissue
+// was heated or cut, and comes back when the tissue is whole again.
 import { Vector3 } from 'three';
 
 import { pick } from '../model/pick';
@@ -9,7 +9,7 @@ import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { byId } from './dom';
 
-const REACH = 0.17; // of the tissue's width, to both sides of its middle
+const REACH = 0.17; // half length of the stroke, as a share of the width of the tissue
 const SVG = 'http://www.w3.org/2000/svg';
 const PROPERTIES = ['fx', 'fy', 'tx', 'ty'] as const;
 
@@ -82,7 +82,7 @@ export function showCue(control: Control, viewport: Viewport): () => void {
   });
   return () => {
     if (place.hidden || !stroke) return;
-    // Each picture of the animation has the browser put the whole page together anew.
+    // For each picture of the animation the browser composes the whole page again.
     const seldom = viewport.pace?.laboured === true;
     if (place.classList.contains('seldom') !== seldom) place.classList.toggle('seldom');
     const box = viewport.canvas.getBoundingClientRect();

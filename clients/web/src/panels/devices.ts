@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pedal, gamepad, 3D mouse: what the page knows of them, and how they are made known to it.
+// The section for pedal, gamepad and 3D mouse: their state, and buttons that connect them.
 import { keyWords, type Pedal } from '../hands/pedal';
 import type { SpaceMouse } from '../hands/space_mouse';
 import { attempt, button, element, problemPlace } from './dom';
@@ -19,7 +19,7 @@ function pedalPart(pedal: Pedal): HTMLElement {
   });
   const show = (): void => {
     const { code } = pedal;
-    words.textContent = code === null ? 'A foot pedal is a keyboard to the browser. Choose here which key it presses.' : `The pedal is ${keyWords(code)}: energy while it is down.`;
+    words.textContent = code === null ? 'The browser sees a foot pedal as a key. Choose that key here.' : `The pedal is the key ${keyWords(code)}. Energy is on while the pedal is down.`;
     forget.hidden = code === null;
   };
   show();
@@ -33,13 +33,13 @@ export function devicesSection(pedal: Pedal, makeMouse: (changed: () => void) =>
     words.textContent = !mouse.offered
       ? 'A 3D mouse needs a browser with WebHID, such as Chromium or Edge.'
       : mouse.name === null
-        ? 'A 3D mouse leads the tool with its cap; its first button is energy. The browser asks which device it may use: only a person can answer that.'
-        : `${mouse.name} leads the tool; its first button is energy while held.`;
+        ? 'The cap of a 3D mouse moves the tool, and its first button turns energy on. The browser asks which device it may use. Choose the mouse there.'
+        : `${mouse.name} moves the tool. Energy is on while its first button is held.`;
     choose.hidden = !mouse.offered;
   };
   const choose = button('Choose the 3D mouse', () => void attempt(problem, () => mouse.choose(), choose));
   const mouse = makeMouse(() => show());
-  const gamepad = element('p', { class: 'about' }, 'A gamepad works as soon as one of its buttons is pressed: sticks lead, the right trigger is energy.');
+  const gamepad = element('p', { class: 'about' }, 'A gamepad works as soon as you press one of its buttons. The sticks move the tool, and the right trigger turns energy on.');
   show();
   return element(
     'details',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements made short, and work whose failure is told where it was started.
+// Short functions that create elements, and `attempt`, which shows the failure of work where it was started.
 
 import { errorWords } from '../model/sentences';
 
@@ -76,7 +76,7 @@ export function check(words: string, name: string, change: (on: boolean) => void
 export function save(name: string, data: Blob): void {
   const link = element('a', { href: URL.createObjectURL(data), download: name });
   link.click();
-  // No browser says when it has taken the file: one that was given up at once is saved empty by some.
+  // No browser reports when it has saved the file. Some browsers save an empty file if the URL is revoked at once.
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 

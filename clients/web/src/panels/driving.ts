@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who drives the chosen tool, and taking it, asking for it, letting it go.
+// Shows the driver of the chosen tool, with buttons to take the tool, ask for it and release it.
 import type { Control } from '../model/control';
 import { nameOf } from '../model/person';
 import { ask } from './ask';
@@ -7,7 +7,7 @@ import { attempt, button, element } from './dom';
 
 function driverWords(control: Control, tool: string): string {
   const driver = control.model.drivers.get(tool);
-  if (!driver || driver.client === 0) return control.model.mayOperate ? `The ${tool} is free: use it, and it is yours.` : `The ${tool} is free. With your access you can watch.`;
+  if (!driver || driver.client === 0) return control.model.mayOperate ? `The ${tool} is free. Use it to become its driver.` : `The ${tool} is free. Your access allows you to watch only.`;
   if (driver.client === control.model.hello?.client) return `You use the ${tool}.`;
   return `${nameOf(driver)} uses the ${tool}.`;
 }
@@ -18,17 +18,17 @@ export function drivingButtons(control: Control, problem: HTMLElement): { place:
   const chosen = (): string => model.selectedTool ?? '';
   const take = button('Take the tool', () => {
     const driver = model.drivers.get(chosen());
-    const asked = driver && driver.client !== 0 ? ask(`Take the ${chosen()} from ${nameOf(driver)}?`, 'Its energy goes off, and it no longer follows its driver.', 'Take it') : Promise.resolve(true);
+    const asked = driver && driver.client !== 0 ? ask(`Take the ${chosen()} from ${nameOf(driver)}?`, `Its energy goes off, and ${nameOf(driver)} can no longer move the tool.`, 'Take it') : Promise.resolve(true);
     void asked.then((sure) => {
       if (sure) void attempt(problem, () => control.takeOver(chosen()), take);
     });
   }, { class: 'take' });
   const request = button('Ask its driver', () => {
     void attempt(problem, () => control.ask(chosen()), request).then((done) => {
-      if (done !== null) said.textContent = 'Asked. The driver may hand it over.';
+      if (done !== null) said.textContent = 'The driver was asked for the tool.';
     });
   });
-  const give = button('Give it up', () => void attempt(problem, () => control.handOver(chosen()), give), { class: 'give' });
+  const give = button('Release the tool', () => void attempt(problem, () => control.handOver(chosen()), give), { class: 'give' });
   const refresh = (): void => {
     const driver = model.drivers.get(chosen());
     const others = driver !== undefined && driver.client !== 0 && !model.driving;

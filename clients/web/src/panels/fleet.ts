@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps the list of what the other daemons of a fleet have.
+// Keeps the list of the sessions of the other daemons of a fleet.
 import type { Model } from '../model/model';
 import { fleetLabels, sessionsOf } from '../wire/fleet';
 import { newClientId } from '../wire/link';
 
-const REFRESH_MS = 10000; // a connection to each daemon: slower than the list of one's own
+const REFRESH_MS = 10000; // needs a connection to each daemon, so it is slower than for this daemon's sessions
 
 function labelOf(session: string): string {
   return session.split('-', 1)[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices held where they are or let go, and outer forces on them.
+// The section that pins and unpins vertices, and applies outer forces to them.
 import type { Control } from '../model/control';
 import type { Selection } from '../wire/messages.gen';
 import { attempt, button, element, field, problemPlace } from './dom';
@@ -8,7 +8,7 @@ type Vector = [number, number, number];
 
 const KINDS: readonly (readonly [Selection['kind'], string])[] = [
   ['sphere', 'in a sphere'],
-  ['nearest', 'nearest to a place'],
+  ['nearest', 'nearest to a point'],
   ['box', 'in a box'],
   ['rim', 'on the rim of a layer'],
 ];
@@ -38,17 +38,17 @@ function vectorField(label: string, name: string, unit: string, most: number): {
 
 const metres = (millimetres: Vector): Vector => millimetres.map((value) => value / MM) as Vector;
 
-/** A choice of vertices by where they are at rest. */
+/** Fields for a selection of vertices by their rest positions. */
 function selectionFields(control: Control): { fields: HTMLElement[]; read(): Selection; refresh(): void } {
   const { model } = control;
   const kind = element('select', { name: 'selection' }, ...KINDS.map(([value, words]) => element('option', { value }, words)));
   const layer = element('select', { name: 'selection-layer' });
-  const center = vectorField('Place', 'center', 'mm', 1e5);
+  const center = vectorField('Point', 'center', 'mm', 1e5);
   const radius = element('input', { type: 'number', name: 'radius', value: '5', min: '0', max: '100000', step: 'any' });
   const radiusField = field('Radius', radius, 'mm');
   const least = vectorField('From', 'least', 'mm', 1e5);
   const most = vectorField('To', 'most', 'mm', 1e5);
-  const atTip = button('Place at the tool’s tip', () => {
+  const atTip = button('Use the position of the tool’s tip', () => {
     const tip = model.toolState?.positionM;
     if (tip) center.show(tip.map((value) => value * MM) as Vector);
   });
@@ -72,7 +72,7 @@ function selectionFields(control: Control): { fields: HTMLElement[]; read(): Sel
       const of = layer.value === '' ? {} : { layer: layer.value };
       switch (kind.value as Selection['kind']) {
         case 'rim':
-          if (layer.value === '') throw new Error('a rim needs its layer');
+          if (layer.value === '') throw new Error('choose the layer for the rim');
           return { kind: 'rim', ...of };
         case 'box':
           return { kind: 'box', least_m: metres(least.read()), most_m: metres(most.read()), ...of };
@@ -90,7 +90,7 @@ export function forcesSection(control: Control): HTMLElement {
   const problem = problemPlace();
   const said = element('p', { class: 'about', aria: { role: 'status' } });
   const selection = selectionFields(control);
-  const force = vectorField('Force on each', 'force', 'N', FORCE_N_MAX);
+  const force = vectorField('Force on each vertex', 'force', 'N', FORCE_N_MAX);
   const doing = (words: string, told: string, work: () => Promise<unknown>): HTMLButtonElement => {
     const press = button(words, () => {
       said.textContent = '';
@@ -102,10 +102,10 @@ export function forcesSection(control: Control): HTMLElement {
   };
   const buttons = [
     doing('Pin', 'Pinned.', () => control.call('pin', { selection: selection.read() })),
-    doing('Unpin', 'Let go.', () => control.call('unpin', { selection: selection.read() })),
-    doing('Apply the force', 'The force acts until it is changed.', () =>
+    doing('Unpin', 'Unpinned.', () => control.call('unpin', { selection: selection.read() })),
+    doing('Apply the force', 'The force acts until you change it.', () =>
       control.call('force.set', { selection: selection.read(), force_n: force.read() })),
-    doing('No force', 'No force acts on them.', () => control.call('force.set', { selection: selection.read(), force_n: [0, 0, 0] })),
+    doing('No force', 'No outer force acts on these vertices.', () => control.call('force.set', { selection: selection.read(), force_n: [0, 0, 0] })),
   ];
   const refresh = (): void => {
     for (const one of buttons) one.disabled = !model.mayOperate || model.joined === null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In scenes with energy `tissue`: which instrument the tool in hand is, its mode, and the watts of its generator.
+// In scenes with energy `tissue`: a form for the instrument and mode of the tool in hand, and the power of its generator.
 import type { Control } from '../model/control';
 import { becoming, instrumentOf, modeNamed } from '../model/instruments';
 import type { Instrument, InstrumentMode } from '../wire/messages.gen';
@@ -52,7 +52,7 @@ export function generatorForm(control: Control): HTMLElement {
     apply.disabled = !model.driving;
     if (!tool || form.hidden) return;
     const next = JSON.stringify([tool.name, tool.shape, tool.power_w, tool.peak_v, tool.crest_factor]);
-    if (next === shown) return; // a choice that is not set yet stays
+    if (next === shown) return; // a choice that was not applied yet stays
     shown = next;
     const is = instrumentOf(model.instruments, tool);
     offer(instrument, model.instruments.map(({ name }) => name), is?.instrument ?? '');

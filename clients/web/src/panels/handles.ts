@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tool's buttons over the picture: what a press on the tissue does, energy while held, jaws, depth.
+// The buttons of the tool over the picture: the effect of a press, energy, jaws, depth.
 import { depthWords } from '../hands/depth';
 import { LATCH_S } from '../hands/energy';
 import { keyId, pointerId } from '../hands/holds';
@@ -11,11 +11,11 @@ import { button, byId, element } from './dom';
 
 const DEPTH_STEP_M = 0.001;
 const PRESSES: readonly (readonly [Press, string, string])[] = [
-  ['work', 'Cut', 'A press on the tissue cuts as long as it lasts'],
-  ['move', 'Move', 'A press on the tissue leads the tool there without energy'],
-  ['look', 'Look', 'A drag turns the view; the tool stays'],
-  ['measure', 'Measure', 'A drag over the tissue is a ruler; the tool stays'],
-  ['pin', 'Pin', 'A drag over the tissue holds it where it is, within 5 mm; the tool stays'],
+  ['work', 'Cut', 'Press on the tissue to cut; energy is on until you release'],
+  ['move', 'Move', 'Press on the tissue to move the tool there without energy'],
+  ['look', 'Look', 'Drag to turn the view; the tool does not move'],
+  ['measure', 'Measure', 'Drag over the tissue to measure a distance; the tool does not move'],
+  ['pin', 'Pin', 'Drag over the tissue to pin it within 5 mm of the pointer; the tool does not move'],
 ];
 
 const RESEARCH: readonly Press[] = ['measure', 'pin'];
@@ -48,11 +48,11 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   const press = (id: string): void => hand.take({ type: 'press', by: 'button', id, place: 'energy', ripe: true });
   energy.addEventListener('pointerdown', (event) => {
     if (event.button !== 0) return;
-    energy.focus(); // a second finger on the picture takes it away again, and that is no loss
+    energy.focus(); // a second finger on the picture moves the focus away again, which does not end the hold
     energy.setPointerCapture(event.pointerId);
     press(pointerId(event.pointerId));
   });
-  energy.addEventListener('mousedown', (event) => event.preventDefault()); // some browsers would take the focus away
+  energy.addEventListener('mousedown', (event) => event.preventDefault()); // some browsers would move the focus away
   energy.addEventListener('keydown', (event) => {
     if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) press(keyId(event.code));
   });
@@ -60,7 +60,7 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   model.on('tools', () => {
     energy.hidden = model.tool !== null && !hasHeat(model.tool.shape);
     energy.disabled = !hand.usable;
-    energy.title = hand.usable ? 'Hold for energy (Space)' : 'Only the user of the tool may';
+    energy.title = hand.usable ? 'Hold this button, or Space, to turn energy on' : 'Only the person who uses the tool can turn energy on';
   });
   const around = byId('picture').parentElement;
   model.on('frame', () => {
@@ -73,7 +73,7 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   return energy;
 }
 
-/** Energy without a hand on it, with a sign in the picture that says so, and for how long. */
+/** The button Keep on, with a sign in the picture that shows how long energy stays on. */
 function latchButton(control: Control, hand: ToolHand): HTMLButtonElement {
   const { model } = control;
   const sign = byId('latched');
@@ -84,13 +84,13 @@ function latchButton(control: Control, hand: ToolHand): HTMLButtonElement {
     if (latch.getAttribute('aria-pressed') !== String(on)) latch.setAttribute('aria-pressed', String(on));
     if (sign.hidden === on) sign.hidden = !on;
     if (!on) return;
-    const words = `Energy stays on for ${Math.ceil(hand.energy.latchedForS)} s. Keep on, L or Escape ends it.`;
+    const words = `Energy stays on for ${Math.ceil(hand.energy.latchedForS)} s. Press Keep on, L or Escape to turn energy off.`;
     if (sign.textContent !== words) sign.textContent = words;
   };
   model.on('tools', () => {
     latch.hidden = model.tool !== null && !hasHeat(model.tool.shape);
     latch.disabled = !hand.usable;
-    latch.title = hand.usable ? `Energy without holding, for ${LATCH_S} s at most (L)` : 'Only the user of the tool may';
+    latch.title = hand.usable ? `Keep energy on without holding, for at most ${LATCH_S} s (L)` : 'Only the person who uses the tool can turn energy on';
     show();
   });
   model.on('frame', show);
@@ -101,11 +101,11 @@ function depthGroup(control: Control, hand: ToolHand): HTMLElement {
   const { model } = control;
   const nearer = button('−', () => hand.nudge(0, 0, DEPTH_STEP_M), { aria: { label: 'Nearer' }, title: 'Nearer (S)' });
   const deeper = button('+', () => hand.nudge(0, 0, -DEPTH_STEP_M), { aria: { label: 'Deeper' }, title: 'Deeper (W)' });
-  const depth = button('', () => hand.resetDepth(), { id: 'depth', title: 'How deep the tool works; press for: at the surface' });
+  const depth = button('', () => hand.resetDepth(), { id: 'depth', title: 'Depth of the tool. Press to return the tool to the surface.' });
   const refresh = (): void => {
     const words = depthWords(hand.depthM);
     depth.textContent = words;
-    depth.setAttribute('aria-label', `Depth: ${words}. Press for: at the surface.`);
+    depth.setAttribute('aria-label', `Depth: ${words}. Press to return to the surface.`);
     for (const one of [nearer, depth, deeper]) one.disabled = !model.driving;
   };
   model.on('tools', refresh);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is under the pointer: layer, vertex, place, temperature, stress, heat taken up.
+// Shows values under the pointer: layer, vertex, position, temperature, stress, heat exposure.
 import { pick } from '../model/pick';
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import type { VertexState } from '../wire/worker_messages';
 import { byId, check, short } from './dom';
 
-const AGAIN_MS = 200; // while the pointer rests, as tissue goes on
+const AGAIN_MS = 200; // refresh while the pointer rests, because the tissue changes
 const AWAY_PX = 18;
 const MM = 1000;
 
 interface Found {
   layer: string;
-  /** the daemon tells stress of fat, which its membrane shares vertices with */
+  /** whether stress is known: the daemon sends stress of fat, whose membrane has the same vertices */
   stressed: boolean;
   vertex: number;
 }
@@ -30,12 +30,12 @@ function find(viewport: Viewport, x: number, y: number): Found | null {
 function words({ layer, vertex, stressed }: Found, state: VertexState, position: ArrayLike<number>): string {
   const at = [0, 1, 2].map((c) => (MM * position[3 * vertex + c]).toFixed(1)).join(', ');
   const temperature = state.temperatureC === null ? '' : `${state.temperatureC.toFixed(1)} °C`;
-  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress: only of fat';
-  const heat = `${Math.round(100 * state.exposure)} % of the heat that parts it`;
+  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress is shown for fat only';
+  const heat = `${Math.round(100 * state.exposure)} % of the heat exposure at which this tissue parts`;
   return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
 }
 
-/** Returns the switch for it, and what switches it off. */
+/** Returns the switch, and a function that turns it off. */
 export function showInspected(control: Control, viewport: Viewport): { switch: HTMLElement; off: () => void } {
   const { canvas } = viewport;
   const place = byId('inspected');
@@ -50,7 +50,7 @@ export function showInspected(control: Control, viewport: Viewport): { switch: H
     asking = true;
     const state = found && (await control.link.inspect(found.vertex));
     asking = false;
-    // The pointer may have left, or the switch gone off, while the answer was on its way.
+    // Meanwhile the pointer may have left the tissue, or the user turned the switch off.
     place.hidden = !on || !pointer || !found || !state || !viewport.tissue;
     if (place.hidden || !found || !state || !viewport.tissue) return;
     place.textContent = words(found, state, viewport.tissue.position.array);

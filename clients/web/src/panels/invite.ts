@@ -6,7 +6,7 @@ import { tokenFragment } from '../model/kept_token';
 import type { Model } from '../model/model';
 import { button, element } from './dom';
 
-const EDGE = 2; // modules of white around the code, for cameras
+const EDGE = 2; // white modules around the code, which cameras need
 
 function joinLink(model: Model, token: string | undefined): string {
   const link = new URL(window.location.pathname, window.location.href);
@@ -38,9 +38,9 @@ export function inviteButton(model: Model, token: () => string | undefined): HTM
     const said = element('p', { class: 'about', aria: { role: 'status' } });
     const copy = button('Copy the link', () => {
       text.select();
-      void navigator.clipboard.writeText(link).then(() => (said.textContent = 'Copied.'), () => (said.textContent = 'This browser does not let pages copy: press Ctrl+C.'));
+      void navigator.clipboard.writeText(link).then(() => (said.textContent = 'Copied.'), () => (said.textContent = 'This browser does not allow pages to copy. Press Ctrl+C.'));
     }, { autofocus: true });
-    const warning = own === undefined ? 'Whoever opens it comes to this session.' : 'It holds your access token: whoever has it can do what you can. Give it only to people you trust.';
+    const warning = own === undefined ? 'Anyone who opens this link joins this session.' : 'This link contains your access token. Anyone who has the link can do what you can. Give it only to people you trust.';
     const dialog = element('dialog', { class: 'ask', id: 'invite', aria: { label: 'Invite others' } },
       element('p', { class: 'question' }, 'Invite others'), element('p', {}, warning), picture(link), text, said,
       element('div', { class: 'buttons' }, copy, button('Close', () => dialog.close())));

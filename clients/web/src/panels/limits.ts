@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a material has besides its plain numbers: models and limits to choose from, and values for each
+// Inputs for the members of a material that are not single numbers: models and limits to choose, and values for each
 // direction of the material.
 import { LIMITS, MODELS, PROJECTIONS, type Layer } from '../wire/messages.gen';
 import { element, field } from './dom';
@@ -38,7 +38,7 @@ const FAT: Choice[] = [
 const CHOICES: Readonly<Record<Kind, readonly Choice[]>> = { fascia: SHEET, membrane: SHEET, fat: FAT, links: [] };
 
 const AXES = ['along fibres', 'across', 'through'];
-const SHEAR = ['shear', 'shear, through along', 'shear, through across'];
+const SHEAR = ['shear along/across', 'shear along/through', 'shear across/through'];
 
 function directions(count: 2 | 3): readonly Directions[] {
   const axes = AXES.slice(0, count);
@@ -55,12 +55,12 @@ const DIRECTIONS: Readonly<Record<Kind, readonly Directions[]>> = {
   fascia: directions(2), membrane: directions(2), fat: directions(3), links: [],
 };
 
-/** Members of a material of this kind that have inputs here. */
+/** Returns the members of a material of this kind that have inputs in this module. */
 export const limitMembers = (kind: Kind): string[] => [...CHOICES[kind], ...DIRECTIONS[kind]].map(({ name }) => name);
 
 export interface LimitInputs {
   fields: HTMLElement[];
-  /** all members; throws a sentence if one is out of range */
+  /** Returns all members. Throws a sentence if a number is out of range. */
   read(): Record<string, string | number[]>;
   show(values: Values): void;
 }
@@ -73,10 +73,10 @@ export function limitInputs(kind: Kind): LimitInputs {
   const vectors = DIRECTIONS[kind].map((vector) => {
     const inputs = vector.entries.map((entry) =>
       element('input', {
-        type: 'number', name: `${vector.name}-${entry.replaceAll(/[ ,]+/g, '-')}`, step: 'any', min: String(vector.least), max: String(vector.most),
+        type: 'number', name: `${vector.name}-${entry.replaceAll(/[ /]+/g, '-')}`, step: 'any', min: String(vector.least), max: String(vector.most),
       }),
     );
-    const title = vector.name === 'shrink' ? 'squared stretch of cut rims; 1: none' : vector.name === 'target' ? 'of F^T F: a squared stretch' : '';
+    const title = vector.name === 'shrink' ? 'squared stretch to which the rims of cuts shrink; 1: no shrinking' : vector.name === 'target' ? 'squared stretch to which the limit pulls the tissue (target of F^T F)' : '';
     return { vector, inputs, labels: inputs.map((input, i) => field(`${vector.words} ${vector.entries[i]}`, input, '', title)) };
   });
   const limit = choices.find(({ choice }) => choice.name === 'limit');

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operate: instrument, power, time and camera, for who trains. Research: sessions, materials, limits, plots
-// and tables beside them. The choice is kept by the browser.
+// The two modes of the page. Operate has instrument, power, time and camera, for trainees. Research also has sessions,
+// materials, limits and plots. The browser stores the choice.
 import { button, byId } from './dom';
 
 export type Mode = 'operate' | 'research';
 
 const MODES: readonly (readonly [Mode, string, string])[] = [
   ['operate', 'Operate', 'Instrument, power, time and camera'],
-  ['research', 'Research', 'Also sessions, materials, limits and plots'],
+  ['research', 'Research', 'All of Operate, and sessions, tools, materials, view and plots'],
 ];
 const KEPT = 'mode';
 
-/** Returns what chooses one. */
+/** Returns a function that chooses a mode. */
 export function modeSwitch(changed: (mode: Mode) => void): (mode: Mode) => void {
   const place = byId('mode');
   const show = (mode: Mode): void => {

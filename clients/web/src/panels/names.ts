@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inputs for the names of sessions, tools and snapshots, which say in a sentence what a name may be.
+// Inputs for the names of sessions, tools and snapshots, with the rule for names in a sentence.
 import { NAME_RULE } from '../model/sentences';
 import { element } from './dom';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a trainee needs: instrument, power, camera, and a name for the others. Time is along the foot.
+// The panel for trainees: instrument, power, camera, and the own name. The time bar is at the foot of the page.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
 import { NAME_MAX, nameOf, ownName, setOwnName } from '../model/person';
@@ -14,14 +14,14 @@ import { inviteButton } from './invite';
 import { vesselList } from './vessels';
 
 const POWER_LEAST_C = 60;
-const POWER_MOST_C = 400; // a spark's heat is beyond what tissue shows
+const POWER_MOST_C = 400; // tissue looks the same above this
 const POWER_STEP_C = 10;
 
 function instrument(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
   const choose = element('select', { name: 'instrument' });
   choose.addEventListener('change', () => model.selectTool(choose.value));
-  const chosen = field('In hand', choose);
+  const chosen = field('Instrument in hand', choose);
   const driving = drivingButtons(control, problem);
   model.on('tools', () => {
     choose.replaceChildren(...model.tools.map(({ name }) => element('option', { value: name }, name)));
@@ -36,7 +36,7 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   const { model } = control;
   const usual = PARAMETERS.tool.find(({ name }) => name === 'temperature_c')!.default;
   const slider = element('input', {
-    type: 'range', name: 'power', min: String(POWER_LEAST_C), max: String(POWER_MOST_C), step: String(POWER_STEP_C), aria: { label: 'Power: temperature of the tip' },
+    type: 'range', name: 'power', min: String(POWER_LEAST_C), max: String(POWER_MOST_C), step: String(POWER_STEP_C), aria: { label: 'Power: temperature of the hot tip' },
   });
   const shown = element('output', { class: 'now-power' });
   const tell = (): void => {
@@ -55,9 +55,9 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   const section = element('section', { aria: { label: 'Power' } }, element('h2', {}, 'Power'), slider, shown);
   model.on('tools', () => {
     const { tool } = model;
-    section.hidden = !tool || !hasHeat(tool.shape) || model.joined?.description.definition.energy === 'tissue'; // there a generator gives power
+    section.hidden = !tool || !hasHeat(tool.shape) || model.joined?.description.definition.energy === 'tissue'; // with a generator, the power is set in its form
     slider.disabled = !hand.driving;
-    slider.title = hand.driving ? '' : 'Use the instrument first';
+    slider.title = hand.driving ? '' : 'Take the tool first';
     if (held || !tool) return;
     slider.value = String(tool.temperature_c ?? usual);
     tell();
@@ -83,7 +83,7 @@ function person(control: Control, self: Self): HTMLElement {
     const named = [...control.model.drivers.values()].filter(({ client, tool }) => client !== 0 && !control.model.drives(tool));
     others.textContent = named.map((driver) => `${nameOf(driver)} uses the ${driver.tool}.`).join(' ');
   });
-  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as others in the session see it'), others, element('div', { class: 'buttons' }, inviteButton(control.model, self.token)));
+  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'other people in the session see this name'), others, element('div', { class: 'buttons' }, inviteButton(control.model, self.token)));
 }
 
 function session(control: Control): HTMLElement {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies over the picture: connection, help, messages, requests of others, and the reading that
-// screen readers hear.
+// The elements over the picture: connection, help, messages, requests of other users, and a text for screen readers.
 import { KEY_HELP } from '../hands/keys';
 import { nameOf } from '../model/person';
 import type { Control } from '../model/control';
@@ -37,17 +36,17 @@ export function showLink(control: Control): void {
 }
 
 const MOUSE_HINT = [
-  'Move the mouse over the tissue to lead the tool; press to cut.',
-  'Go slowly: tissue takes a few seconds of heat before it parts.',
-  'Drag beside the tissue to turn the view; the timeline below takes you back.',
+  'Move the mouse over the tissue to move the tool. Press to cut.',
+  'Go slowly. Tissue needs a few seconds of heat before it parts.',
+  'Drag beside the tissue to turn the view. Use the timeline below to view an earlier time.',
 ];
 const FINGER_HINT = [
-  'Touch the tissue to cut; choose Move to lead the tool without heat.',
-  'Go slowly: tissue takes a few seconds of heat before it parts.',
-  'Two fingers turn the view; the timeline takes you back.',
+  'Touch the tissue to cut. Choose Move to move the tool without heat.',
+  'Go slowly. Tissue needs a few seconds of heat before it parts.',
+  'Use two fingers to turn the view. Use the timeline to view an earlier time.',
 ];
 
-/** All that the hands can do, when somebody asks: the cue on the tissue is enough to begin. */
+/** Adds the button Help, which lists all controls. The cue on the tissue is enough to begin. */
 export function showHelp(): void {
   const hint = byId('hint');
   const open = (): void => {
@@ -88,7 +87,7 @@ export function showNotices(control: Control): void {
 
 const READING_MS = 1500;
 
-/** A line for those who cannot see the picture: what is left of each layer and where the tool is. */
+/** Updates a text for users who cannot see the picture: the remaining faces of each layer, and the position of the tool. */
 export function showReading(control: Control): void {
   const { model } = control;
   const place = byId('reading');

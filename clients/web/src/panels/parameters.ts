@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers of a table as inputs with unit, range and meaning.
+// Inputs for the numbers of a table, with unit, range and meaning.
 import { memberWords, unitText } from '../model/sentences';
 import type { Parameter } from '../wire/messages.gen';
 import { element, field, short } from './dom';
 
 export interface ParameterInputs {
   fields: HTMLElement[];
-  /** all members, those that nobody touched with all their digits; throws a sentence if one is out of range */
+  /** Returns all members; unchanged members keep all their digits. Throws a sentence if a number is out of range. */
   read(): Record<string, number>;
-  /** what is in force; a number that somebody has typed and not applied yet stays */
+  /** Shows the present values. A number that was typed and not applied yet stays. */
   show(values: Readonly<Record<string, unknown>>): void;
-  /** hides parameters that the shown tool does not have; they keep their values */
+  /** Hides parameters that the shown tool does not have; they keep their values. */
   offer(makesSense: (name: string) => boolean): void;
-  /** forgets what was typed */
+  /** Discards typed numbers. */
   clear(): void;
 }
 
 interface Shown {
   unit: string;
-  /** shown over told */
+  /** shown value over the value of the daemon */
   scale: number;
 }
 
-/** Lengths in millimetres, angles in degrees; the rest as the daemon has it. */
+/** Shown units: lengths in millimetres, angles in degrees, others as in the protocol. */
 const SHOWN: Readonly<Record<string, Shown>> = {
   'm': { unit: 'mm', scale: 1000 },
   'm/s': { unit: 'mm/s', scale: 1000 },
@@ -34,8 +34,8 @@ const SHOWN: Readonly<Record<string, Shown>> = {
   'kg/m^3': { unit: 'kg/m³', scale: 1 },
   '1': { unit: '', scale: 1 },
 };
-const DIGITS = 9; // what a number keeps there and back: more than anybody types
-const SHOWN_DIGITS = 5; // of an unchanged number, which is applied with all its digits
+const DIGITS = 9; // digits that a number keeps when it is converted and back; more than users type
+const SHOWN_DIGITS = 5; // shown digits of an unchanged number, which is applied with all its digits
 
 const rounded = (value: number): number => Number(value.toPrecision(DIGITS));
 

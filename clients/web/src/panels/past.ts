@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking back: where the timeline is held the picture shows that time, read-only. A sign over the picture
-// says so, how far the daemon is in fetching it, and how to come back.
+// Past views: while the timeline is held, the picture shows that time, read-only. A sign over the picture says so. It shows
+// the progress of loading, and has a button to return.
 import type { Control } from '../model/control';
 import { errorWords } from '../model/sentences';
 import { RpcError } from '../wire/connection';
 import { button, byId, element } from './dom';
 
-const SETTLED_MS = 250; // a hand that drags along the timeline asks for where it rests
+const SETTLED_MS = 250; // time without motion of the timeline after which the view is requested
 
-const STAGE_WORDS = { building: 'a second tissue is made for it', reading: 'it is read', restoring: 'it is restored', replaying: 'the commands are replayed' };
+const STAGE_WORDS = { building: 'preparing a second copy of the tissue', reading: 'reading the stored state', restoring: 'restoring the stored state', replaying: 'replaying the commands' };
 
 export function showPast(control: Control): void {
   const { model } = control;
   const place = byId('past');
   const words = element('p');
-  const bar = element('progress', { max: 1, aria: { label: 'On the way there' } });
+  const bar = element('progress', { max: 1, aria: { label: 'Loading the past view' } });
   place.append(words, bar, button('Return to live', () => model.hold(null), { id: 'live' }));
   let timer: ReturnType<typeof setTimeout> | undefined;
   let wanted: number | null = null;
@@ -27,13 +27,13 @@ export function showPast(control: Control): void {
   };
   const there = (): boolean => wanted !== null && model.frame?.past?.tick === wanted;
   const tell = (): void => {
-    if (wanted !== null && there()) say(`Viewing ${at(wanted)}. The session goes on.`, false);
+    if (wanted !== null && there()) say(`You see the past at ${at(wanted)}. The session continues.`, false);
   };
   const ask = async (tick: number): Promise<void> => {
     try {
       await control.lookAt(tick);
     } catch (error) {
-      if (tick !== wanted) return; // given up for another
+      if (tick !== wanted) return; // replaced by another request
       const later = error instanceof RpcError && error.status === 'bad_state';
       say(`${at(tick)} cannot be shown${later ? ' now' : ''}. ${errorWords(error)}`, false);
     }
@@ -46,7 +46,7 @@ export function showPast(control: Control): void {
       control.lookAtPresent();
       return;
     }
-    say(`Fetching ${at(tick)}…`, true);
+    say(`Loading ${at(tick)}…`, true);
     timer = setTimeout(() => void ask(tick), SETTLED_MS);
   };
 
@@ -54,11 +54,11 @@ export function showPast(control: Control): void {
   model.on('frame', tell);
   model.on('looking', ({ tick, stage, from_tick: from, at_tick: now }) => {
     if (tick !== wanted || there()) return;
-    say(`Fetching ${at(tick)}: ${STAGE_WORDS[stage]}…`, true);
+    say(`Loading ${at(tick)}: ${STAGE_WORDS[stage]}…`, true);
     if (stage === 'replaying' && tick > from) bar.value = (now - from) / (tick - from);
     else bar.removeAttribute('value');
   });
-  // Who joins again (other channels, a connection that was lost) holds the newest.
+  // After joining again (for other channels, or after a lost connection) the stream shows the newest state.
   model.on('joined', (joined) => {
     if (joined && wanted !== null) look(wanted);
   });

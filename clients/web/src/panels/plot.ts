@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plot in the page's colours.
+// Creates a plot with the colours of the page.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 
 const HEIGHT = 120;
 const LEAST_WIDTH = 200;
-// Okabe and Ito's palette: told apart by colour-blind eyes.
+// Palette of Okabe and Ito, which colour-blind people can distinguish.
 const COLOURS = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#f0e442', '#999999'];
 
 export function plotColour(series: number): string {

@@ -22,17 +22,17 @@ interface Plot {
 
 const PLOTS: readonly Plot[] = [
   {
-    title: 'Step by stage, ms',
+    title: 'Time of each stage of a step, ms',
     series: [...STAGES],
     values: ({ statistics }) => STAGES.map((_, i) => (statistics ? 1000 * statistics.stageS[i] : null)),
   },
   {
-    title: 'Rate of simulated to wall time',
+    title: 'Simulated time over real time',
     series: ['rate'],
     values: ({ statistics }) => [statistics ? statistics.realtimeFactor : null],
   },
-  { title: 'Latency and decoding, ms', series: ['latency', 'decoding'], values: (s) => [s.latencyMs, s.decodeMs] },
-  { title: 'Frame, KB', series: ['frame'], values: (s) => [s.bytes / 1000] },
+  { title: 'Latency of frames, and time to decode one, ms', series: ['latency', 'decoding'], values: (s) => [s.latencyMs, s.decodeMs] },
+  { title: 'Size of a frame, KB', series: ['frame'], values: (s) => [s.bytes / 1000] },
 ];
 
 export function plotsPanel(model: Model): Panel {
@@ -64,7 +64,7 @@ export function plotsPanel(model: Model): Panel {
     });
     const seconds = last.atS - (recent[0]?.atS ?? last.atS);
     const bytes = recent.reduce((sum, sample) => sum + sample.bytes, 0);
-    const rate = seconds > 0 ? [`${(recent.length / seconds).toFixed(0)} frames/s`, `${(bytes / seconds / 1000).toFixed(0)} KB/s`] : ['no frames in this time'];
+    const rate = seconds > 0 ? [`${(recent.length / seconds).toFixed(0)} frames/s`, `${(bytes / seconds / 1000).toFixed(0)} KB/s`] : ['no frames received'];
     counts.value = [...rate, `${model.frame?.framesSkipped ?? 0} skipped`].join(', ');
   };
   setInterval(draw, DRAW_MS);

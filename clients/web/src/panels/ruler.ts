@@ -7,7 +7,7 @@ import { button, byId, element } from './dom';
 const SVG = 'http://www.w3.org/2000/svg';
 const MM = 1000;
 
-/** Returns what keeps it in its place; called once per animation frame. */
+/** Returns a function that updates the ruler; called once per animation frame. */
 export function showRuler(ruler: Ruler, viewport: Viewport): () => void {
   const place = byId('ruler');
   const svg = document.createElementNS(SVG, 'svg');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words at the tool, or where somebody points: why it does not move, why it went dark, what brings it back.
+// Messages at the tool or at the pointer: why the tool does not move, why energy went off, how to continue.
 import type { Pointer } from '../hands/pointer';
 import type { Model, Said } from '../model/model';
 import type { Viewport } from '../scene/viewport';
@@ -10,7 +10,7 @@ const LINES_MAX = 3;
 const AWAY_PX = 26; // from the tip, so that a finger or the tool does not cover the words
 const MARGIN_PX = 8;
 
-/** Returns what places the words anew; called once per animation frame. */
+/** Returns a function that updates the position of the messages; called once per animation frame. */
 export function showSaid(model: Model, viewport: Viewport, pointer: Pointer): () => void {
   const place = byId('said');
   const lines = new Map<string, HTMLElement>();
@@ -30,7 +30,7 @@ export function showSaid(model: Model, viewport: Viewport, pointer: Pointer): ()
     lines.get(key)?.remove();
     lines.delete(key);
   };
-  /** Whether the words stood there already, under their key: then only their figures are changed. */
+  /** Returns whether a message with this key and text is already shown; then only its figures are changed. */
   const changeFigures = ({ words, key, figures }: Said): boolean => {
     const line = key === undefined ? undefined : lines.get(key);
     const place_ = line?.querySelector('.figures');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is seen, as an MCAP file for Foxglove and other players: the scene itself, ten times a second.
+// Records the shown scene ten times a second as an MCAP file, for Foxglove and other players.
 import type { Model } from '../model/model';
 import type { LayerFaces, SeenMoment } from '../model/scene_update';
 import type { TissueView } from '../scene/tissue_view';
@@ -16,12 +16,12 @@ interface Recording {
   timer: ReturnType<typeof setInterval>;
   session: string | null;
   startedMs: number;
-  /** steps since the beginning, of the last moment that was looked at */
+  /** number of the last recorded step since the beginning */
   step: number;
   seen: Frame | null;
 }
 
-/** Present faces by layer, hidden layers as well. */
+/** Returns the present faces by layer, also of hidden layers. */
 function facesOf(tissue: TissueView): LayerFaces[] {
   const layers = new Map<string, Uint32Array[]>();
   tissue.joined.batches.forEach(({ layer }, b) => {
@@ -33,7 +33,7 @@ function facesOf(tissue: TissueView): LayerFaces[] {
   return [...layers].map(([layer, lists]) => ({ layer, lists }));
 }
 
-/** A button that begins and ends a recording; `problem`: where is said that it cannot. */
+/** Returns a button that begins and ends a recording; `problem` shows why it cannot. */
 export function sceneRecordingButton(model: Model, viewport: Viewport, problem: HTMLElement): HTMLButtonElement {
   let going: Recording | null = null;
   const press = button('Record as MCAP', () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'mcap', ariaPressed: 'false' });
@@ -43,7 +43,7 @@ export function sceneRecordingButton(model: Model, viewport: Viewport, problem: 
   };
   const send = (recording: Recording, message: ToMcap): void => recording.worker.postMessage(message);
 
-  // Times are those of a grid of STEP_MS; what a busy page missed stays out.
+  // Times are multiples of STEP_MS. A busy page leaves steps out.
   const take = (recording: Recording): void => {
     const { frame } = model;
     const { tissue } = viewport;
@@ -78,11 +78,11 @@ export function sceneRecordingButton(model: Model, viewport: Viewport, problem: 
       step: -1,
       seen: null,
     };
-    worker.addEventListener('error', () => finish(recording, 'The recording has failed: its worker stopped.'));
+    worker.addEventListener('error', () => finish(recording, 'The recording has failed: a part of this page stopped. Reload the page to record again.'));
     worker.addEventListener('message', ({ data }: MessageEvent<FromMcap>) => {
       if (data.type === 'failure') finish(recording, `The recording has failed: ${data.message}`);
       if (data.type === 'full') {
-        model.notice('warning', 'The recording has reached 1 GB, the most. It has been saved.');
+        model.notice('warning', 'The recording has reached its limit of 1 GB and was saved.');
         end();
       }
       if (data.type !== 'file') return;

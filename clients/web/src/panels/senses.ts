@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is seen and heard besides tissue and instruments: each can be turned off, and the browser keeps that.
+// Switches for smoke and sounds; the browser stores them.
 import type { Sound, Sounds } from '../scene/sound';
 import type { Viewport } from '../scene/viewport';
 import { check, element } from './dom';
 
 type Sense = Sound | 'smoke';
-const SENSES: readonly (readonly [Sense, string])[] = [['smoke', 'Smoke'], ['tone', 'Activation tone'], ['sizzle', 'Sizzle'], ['alarm', 'Alarm: no heartbeat']];
-const KEPT = 'off'; // names of those that are off, by commas
+const SENSES: readonly (readonly [Sense, string])[] = [['smoke', 'Smoke'], ['tone', 'Activation tone'], ['sizzle', 'Sizzle'], ['alarm', 'Alarm when the connection fails']];
+const KEPT = 'off'; // key of the names that are off, separated by commas
 
 export function sensesSection(viewport: Viewport, sounds: Sounds): HTMLElement {
   const off = new Set((localStorage.getItem(KEPT) ?? '').split(','));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature, force and energy of each tool over the session, with one cursor in all of them: the time that
-// is pointed at, else the one that the timeline is held at. A press holds the timeline there.
+// Plots temperature, force and energy of each tool over the session. All plots have one cursor: the time under the
+// pointer, else the time at which the timeline is held. A press holds the timeline at that time.
 import type uPlot from 'uplot';
 
 import type { ToolMoment } from '../model/history';
@@ -11,10 +11,10 @@ import { makePlot, plotColour, resizePlot } from './plot';
 const PLOTS: readonly (readonly [string, string, (moment: ToolMoment) => number])[] = [
   ['Temperature of the tip, °C', '°C', ({ temperatureC }) => temperatureC],
   ['Force, N', 'N', ({ forceN }) => forceN],
-  ['Energy taken up, J', 'J', ({ energyJ }) => energyJ],
+  ['Energy taken up by the tissue, J', 'J', ({ energyJ }) => energyJ],
 ];
 const CURSOR = 'session';
-/** More are not told apart in a panel's width. */
+/** Largest number of points; more cannot be distinguished in the width of a panel. */
 const POINTS_MAX = 1500;
 
 export interface SessionPlots {
@@ -26,7 +26,7 @@ export interface SessionPlots {
 export function sessionPlots(model: Model): SessionPlots {
   const figures = PLOTS.map(([title]) => element('div', { class: 'plot', aria: { role: 'img', label: `${title}, over the session` } }, element('p', { class: 'of' }, title)));
   const told = element('output', { class: 'state', id: 'at-cursor' });
-  const place = element('section', { class: 'form', aria: { label: 'Over the session' } }, element('h2', {}, 'Over the session'), told, ...figures);
+  const place = element('section', { class: 'form', aria: { label: 'Tools over the session' } }, element('h2', {}, 'Tools over the session'), told, ...figures);
   let plots: uPlot[] = [];
   let tools = '';
   let pointed: number | null = null;
@@ -36,11 +36,11 @@ export function sessionPlots(model: Model): SessionPlots {
     const tick = pointed ?? model.held;
     const moment = tick === null ? model.history.moments.at(-1) : model.history.at(tick);
     const each = [...(moment?.tools ?? [])].map(([name, { temperatureC, forceN, energyJ }]) => `${name} ${temperatureC.toFixed(0)} °C, ${short(forceN, 2)} N, ${short(energyJ, 3)} J`);
-    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'No values of that time';
+    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'No values are known for this time';
     const words = `${when}${moment ? ': ' : ''}${each.join('; ')}`;
     if (told.value !== words) told.value = words;
   };
-  /** A line where the timeline is held. */
+  /** Draws a line at the time at which the timeline is held. */
   const drawHeld = (plot: uPlot): void => {
     if (model.held === null || !plot.ctx) return;
     const x = plot.valToPos(model.held * step(), 'x', true);

@@ -10,7 +10,7 @@ import { snapshotSection } from './snapshots';
 import type { Panel } from './tabs';
 import { uploadForm } from './upload';
 
-const REFRESH_MS = 5000; // of states and counts, while the list is looked at
+const REFRESH_MS = 5000; // refresh of states and counts while the list is visible
 
 function row(control: Control, summary: SessionSummary, problem: HTMLElement): HTMLElement {
   const here = summary.session === control.model.session;
@@ -21,7 +21,7 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
     aria: here ? { current: 'true' } : {},
   });
   const destroy = button('Destroy', () => {
-    const lost = `This deletes its tissue, its ${summary.time_s.toFixed(1)} s of history, snapshots and script, for everyone.`;
+    const lost = `This deletes the session for everyone: the tissue, ${summary.time_s.toFixed(1)} s of history, all snapshots and the script.`;
     void ask(`Destroy ${summary.session}?`, lost, 'Destroy').then((sure) => {
       if (sure) void attempt(problem, () => control.destroy(summary.session), destroy);
     });
@@ -31,25 +31,25 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
   return element('li', { class: here ? 'session here' : 'session' }, join, element('small', {}, details), destroy);
 }
 
-/** A session of another daemon: the page opens anew, since its connection serves one of them. */
+/** A session of another daemon. The link loads the page again, because a connection reaches only one daemon. */
 function rowElsewhere(summary: SessionSummary): HTMLElement {
   const details = `${summary.scene}, ${summary.state}, ${summary.time_s.toFixed(1)} s, ${summary.subscriber_count} watching`;
-  const link = element('a', { class: 'session-name', title: `Watch ${summary.session}, at another daemon` }, summary.session);
+  const link = element('a', { class: 'session-name', title: `Watch ${summary.session}, on another server` }, summary.session);
   link.href = `?session=${encodeURIComponent(summary.session)}`;
   return element('li', { class: 'session' }, link, element('small', {}, details));
 }
 
-/** Scene members that are worth choosing before a session is made. */
+/** The form for a new session, with the most useful members of the scene. */
 function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const { model, link } = control;
   const scene = element('select', { name: 'scene' });
-  const name = nameInput({ name: 'name', maxLength: 40, placeholder: 'made up' });
+  const name = nameInput({ name: 'name', maxLength: 40, placeholder: 'automatic' });
   const iterations = element('input', { type: 'number', name: 'iterations', min: '1', max: '1000', step: '1' });
   const step = element('input', { type: 'number', name: 'step', min: '1', max: '33.3', step: 'any' });
   const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
   const seed = element('input', { type: 'number', name: 'seed', min: '0', step: '1' });
   const about = element('p', { class: 'about' });
-  const unread = problemPlace(); // its own: the page also loads a scene unasked, and must not hide another problem
+  const unread = problemPlace(); // separate, because the page also loads scenes by itself, which must not hide another problem
   const submit = element('button', { type: 'submit' }, 'Create');
   let definition: Scene | null = null;
   const load = async (): Promise<void> => {
@@ -75,10 +75,10 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
     unread,
     about,
     field('Name', name),
-    field('Iterations', iterations, '', 'of a step: more is stiffer and slower'),
-    field('Step', step, 'ms', 'simulated time of one tick'),
-    field('Gravity', gravity, 'm/s²', 'along z'),
-    field('Seed', seed, '', 'of everything drawn at random'),
+    field('Iterations', iterations, '', 'iterations per step: more iterations make tissue stiffer and the step slower'),
+    field('Step', step, 'ms', 'simulated time of one step'),
+    field('Gravity', gravity, 'm/s²', 'acceleration along z (negative: down)'),
+    field('Seed', seed, '', 'seed of all random numbers: the same seed gives the same tissue'),
     submit,
   );
   form.addEventListener('submit', (event) => {
@@ -97,7 +97,7 @@ interface CreateFields {
   seed: HTMLInputElement;
 }
 
-/** A scene by name if nothing in it was changed, else whole. */
+/** Returns the request: the name of the scene if no member was changed, else the whole scene. */
 function request(definition: Scene | null, fields: CreateFields): { scene?: string; definition?: Scene; name?: string } {
   const name = fields.name.value === '' ? {} : { name: fields.name.value };
   if (!definition) return { scene: fields.scene.value, ...name };
@@ -117,13 +117,13 @@ function request(definition: Scene | null, fields: CreateFields): { scene?: stri
 function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
   const name = nameInput({ name: 'fork', maxLength: 40, placeholder: 'name' });
-  name.setAttribute('aria-label', 'Name of the fork');
-  const fork = button('Fork this session', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork' });
+  name.setAttribute('aria-label', 'Name of the new session');
+  const fork = button('Fork this session into a new one', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork', title: 'Create a new session from the present state of this one' });
   const exported = (format: 'vtu' | 'obj'): HTMLButtonElement => {
     const press = button(`Save as .${format}`, () => void attempt(problem, () => control.call('session.export', { format }), press));
     return press;
   };
-  const log = button('Save the script', () => void attempt(problem, () => control.call('session.log', {}), log));
+  const log = button('Save the commands as a script', () => void attempt(problem, () => control.call('session.log', {}), log));
   const buttons = [fork, exported('vtu'), exported('obj'), log];
   const refresh = (): void => {
     for (const one of buttons) one.disabled = model.joined === null || model.link.state !== 'online';
@@ -139,13 +139,13 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
   const { model } = control;
   const problem = problemPlace();
   const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
-  const stale = problemPlace(); // its own: the page refreshes the list unasked
+  const stale = problemPlace(); // separate, because the page refreshes the list by itself
   const about = element('p', { class: 'about' });
   const show = (): void => {
     list.replaceChildren(
       ...model.sessions.map((summary) => row(control, summary, problem)),
       ...model.elsewhere.map(rowElsewhere),
-      ...model.silent.map((label) => element('li', {}, `${label} does not answer: its sessions are not in this list.`)),
+      ...model.silent.map((label) => element('li', {}, `The server ${label} does not answer. Its sessions are not in this list.`)),
     );
     if (list.childElementCount === 0) list.replaceChildren(element('li', {}, 'No sessions yet. Create one below.'));
   };

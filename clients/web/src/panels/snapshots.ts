@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Snapshots: the state under a name, and back to it.
+// The section that stores the state under a name and restores it.
 import type { Control } from '../model/control';
 import { attempt, button, element, field, problemPlace } from './dom';
 import { nameInput } from './names';
 
-/** Names in the timeline's words: `name=half-way branch=1 ...`. */
+/** Returns the names in the events of the timeline, as in `name=half-way branch=1 ...`. */
 function namesIn(control: Control): string[] {
   const events = control.model.timeline?.events ?? [];
   return events.filter(({ kind }) => kind === 'snapshot').flatMap(({ detail }) => /^name=(\S+)/.exec(detail ?? '')?.[1] ?? []);
@@ -14,10 +14,10 @@ export function snapshotSection(control: Control): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
   const said = element('p', { class: 'about', aria: { role: 'status' } });
-  const name = nameInput({ name: 'snapshot', maxLength: 48, placeholder: 'made up' });
+  const name = nameInput({ name: 'snapshot', maxLength: 48, placeholder: 'automatic' });
   const known = element('datalist', { id: 'snapshots' });
   name.setAttribute('list', known.id);
-  /** those of other branches are not in the timeline, but can be gone back to */
+  /** names of snapshots; those of other branches are not in the timeline, but can be restored */
   let taken: string[] = [];
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 0)).toFixed(2)} s`;
   const showKnown = (): void => {
@@ -27,9 +27,9 @@ export function snapshotSection(control: Control): HTMLElement {
   const take = element('button', { type: 'submit' }, 'Take a snapshot');
   const back = button('Restore it', () => {
     const work = async (): Promise<void> => {
-      if (name.value === '') throw new Error('name the snapshot to restore');
+      if (name.value === '') throw new Error('enter the name of the snapshot to restore');
       const tick = await control.restore(name.value);
-      said.textContent = `Restored ${name.value}, ${seconds(tick)}; energy is off.`;
+      said.textContent = `Restored ${name.value} at ${seconds(tick)}. Energy is off.`;
       await control.loadTimeline();
     };
     void attempt(problem, work, back);
@@ -41,7 +41,7 @@ export function snapshotSection(control: Control): HTMLElement {
       const made = await control.call('session.snapshot', name.value === '' ? {} : { name: name.value });
       taken.push(made.name);
       name.value = made.name;
-      said.textContent = `${made.name} holds ${seconds(made.tick)}.`;
+      said.textContent = `${made.name} was saved at ${seconds(made.tick)}.`;
       showKnown();
     };
     void attempt(problem, work, take);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Panels behind tabs, by the keyboard pattern of tab lists.
+// Panels behind tabs, with the usual keyboard pattern of tab lists.
 import { byId, element } from './dom';
 
 export interface Panel {
   id: string;
   title: string;
   body: HTMLElement;
-  /** told when it is shown or hidden */
+  /** called when the panel is shown or hidden */
   shown?: (visible: boolean) => void;
 }
 
-/** Returns what shows or hides them all, and what brings one to the front. */
+/** Returns a function that shows or hides all tabs, and a function that opens one. */
 export function makeTabs(panels: readonly Panel[]): { show(visible: boolean): void; open(id: string): void } {
   const list = byId('tabs');
   const place = byId('panels');

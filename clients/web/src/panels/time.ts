@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time: pause, step, speed, and the timeline with its events, along which a session goes back.
+// The time bar: pause, step, speed, and the timeline with its events, from which a session can be rewound.
 import type { Control } from '../model/control';
 import { EVENT_WORDS, momentsOf } from '../model/moments';
 import type { TimelineEvent } from '../wire/messages.gen';
@@ -9,7 +9,7 @@ import { attempt, button, byId, element, problemPlace } from './dom';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 const REFRESH_MS = 2000;
-/** A running session's time is written this often: each change has the browser lay the page out anew. */
+/** Interval in which the time of a running session is written. Each change makes the browser compute the layout again. */
 const WRITE_MS = 100;
 
 const research = (): boolean => document.body.dataset['mode'] === 'research';
@@ -37,7 +37,7 @@ function nameMoments(place: HTMLSelectElement, events: readonly TimelineEvent[],
   if (place.dataset['last'] === last && place.dataset['count'] === String(events.length)) return;
   Object.assign(place.dataset, { last, count: String(events.length) });
   const options = momentsOf(events, seconds).map(({ tick, words }) => element('option', { value: String(tick) }, words));
-  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'What happened'), ...options);
+  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'Events'), ...options);
 }
 
 export function timeBar(control: Control, shared: number | null): void {
@@ -52,7 +52,7 @@ export function timeBar(control: Control, shared: number | null): void {
     void ask('Start over?', 'This resets the tissue for everyone in the session.', 'Start over').then((sure) => {
       if (sure) void attempt(problem, () => control.reset(), reset);
     });
-  }, { id: 'reset', title: 'Whole tissue, from the start' });
+  }, { id: 'reset', title: 'Return to the whole tissue at time 0' });
   const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
   speed.value = '1';
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
@@ -60,11 +60,11 @@ export function timeBar(control: Control, shared: number | null): void {
   const track = element('div', { class: 'track' }, slider);
   const rewind = button('Rewind here', () => {
     const tick = slider.valueAsNumber;
-    void ask(`Rewind to ${seconds(tick)}?`, 'This rewinds the session for everyone. Later history stays on the old branch.', 'Rewind').then((sure) => {
+    void ask(`Rewind to ${seconds(tick)}?`, 'This rewinds the session for everyone. The later history is kept as a branch.', 'Rewind').then((sure) => {
       if (sure) void attempt(problem, () => control.rewind(tick).then(() => model.hold(null)), rewind);
     });
   }, { id: 'rewind', hidden: true });
-  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: 'What happened: show when' } });
+  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: 'Events: choose one to view its time' } });
   moments.addEventListener('change', () => model.hold(Number(moments.value)));
   const now = element('output', { class: 'now', id: 'now' });
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
@@ -97,7 +97,7 @@ export function timeBar(control: Control, shared: number | null): void {
   const enable = (): void => {
     const usable = model.mayOperate && model.joined !== null;
     for (const control_ of [pause, reset, speed, rewind]) control_.disabled = !usable;
-    slider.disabled = model.joined === null; // whoever may look may look back
+    slider.disabled = model.joined === null; // every user who may watch may also view the past
     step.disabled = !usable || model.frame?.paused !== true;
   };
   model.on('timeline', () => {
@@ -110,8 +110,8 @@ export function timeBar(control: Control, shared: number | null): void {
     enable();
     if (joined) void attempt(problem, () => control.loadTimeline());
   });
-  // A link's moment is shown, not gone to: going back moves everybody in the session. Whichever comes last,
-  // the timeline or the first frame, says whether it is there.
+  // A shared moment is only viewed, because a rewind would affect everyone in the session. When both the timeline and the
+  // first frame are known, it is clear whether the moment can be reached.
   const showShared = (): void => {
     const { timeline, frame } = model;
     if (shared === null || !timeline || !frame) return;
@@ -125,7 +125,7 @@ export function timeBar(control: Control, shared: number | null): void {
     if (!frame.paused && frame.paused === paused && performance.now() - writtenMs < WRITE_MS) return;
     writtenMs = performance.now();
     const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
-    const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · faulted' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
+    const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · stopped by an error' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
     if (now.value !== text) now.value = text;
   };
   model.on('frame', (frame) => {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks for the access token, says what was wrong with it where one types, and can be opened again: whoever
-// closes it is not locked out. Password managers find a name and a password.
+// The dialog for the access token. It shows beside the input why a token was not accepted. The user can open the dialog
+// again after closing it. Password managers find a name and a password in it.
 import type { Model } from '../model/model';
 import { button, element, field, problemPlace } from './dom';
 
-/** Returns what opens the dialog. */
+/** Returns a function that opens the dialog. */
 export function askForToken(model: Model, connect: (token: string) => void): () => void {
   const token = element('input', { type: 'password', name: 'password', id: 'token-input', autocomplete: 'current-password', required: true });
   const user = element('input', { type: 'text', name: 'username', value: 'cautery', autocomplete: 'username', readOnly: true, class: 'unseen', tabIndex: -1, aria: { hidden: 'true' } });
   const problem = problemPlace();
   const submit = element('button', { type: 'submit' }, 'Connect');
   const form = element('form', { class: 'form' }, user, field('Access token', token), problem, element('div', { class: 'buttons' }, submit, button('Close', () => dialog.close())));
-  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation needs a token. Ask its administrator for one.'), form);
+  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation needs an access token. Ask its administrator for one.'), form);
   document.body.append(dialog);
   let given = false;
   const open = (): void => {
@@ -41,7 +41,7 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
     if (link.state !== 'refused' || link.status !== 'unauthorized') return;
     open();
     if (!given) return;
-    say('This token was not accepted. Check that it is complete and not expired.');
+    say('This token was not accepted. Check that the token is complete and has not expired.');
     token.select();
   });
   const say = (words: string): void => {

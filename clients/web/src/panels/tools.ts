@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
+// The panel of tools: the tool in hand, its driver, its shape and sizes, and new tools.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
 import { hasHeat, hasJaws, type Shape } from '../model/tool_parts';
@@ -18,11 +18,11 @@ const OF_JAWS = ['jaw_open_rad'];
 const OF_HEAT = ['temperature_c', 'hot_radius_m'];
 const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
 const OFF_WORDS = {
-  never_enabled: 'off',
-  commanded: 'off',
-  watchdog: 'off: no heartbeat from the driver',
-  restored: 'off: the session was rewound',
-  taken_over: 'off: taken over',
+  never_enabled: 'energy off',
+  commanded: 'energy off',
+  watchdog: 'energy off: no signal from the driver',
+  restored: 'energy off: the session was rewound',
+  taken_over: 'energy off: another user took the tool',
 } as const;
 
 function shapeSelect(): HTMLSelectElement {
@@ -36,7 +36,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
   const apply = element('button', { type: 'submit' }, 'Apply');
   const remove = button('Remove', () => {
     const tool = model.selectedTool ?? '';
-    void ask(`Remove the ${tool}?`, 'This removes it for everyone in the session.', 'Remove').then((sure) => {
+    void ask(`Remove the ${tool}?`, 'This removes the tool for everyone in the session.', 'Remove').then((sure) => {
       if (sure) void attempt(problem, () => control.removeTool(tool), remove);
     });
   });
@@ -90,7 +90,7 @@ function addForm(control: Control): HTMLElement {
     void attempt(problem, () => control.addTool({ name: name.value, shape: shape.value as Shape, position_m: [0.03, 0, 0.05] }), add);
   });
   model.on('tools', () => (add.disabled = !model.mayOperate || !model.joined));
-  return element('details', { class: 'section' }, element('summary', {}, 'Another tool'), form);
+  return element('details', { class: 'section' }, element('summary', {}, 'Add a tool'), form);
 }
 
 export function toolsPanel(control: Control, hand: ToolHand): Panel {
@@ -101,13 +101,13 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
   const guide = element(
     'select',
     { name: 'guide' },
-    element('option', { value: 'surface' }, 'over the surface'),
-    element('option', { value: 'plane' }, 'in the view plane'),
+    element('option', { value: 'surface' }, 'along the tissue surface'),
+    element('option', { value: 'plane' }, 'parallel to the screen'),
   );
   guide.addEventListener('change', () => (hand.guide = guide.value === 'plane' ? 'plane' : 'surface'));
   const jaw = element('input', { type: 'range', min: '0', max: '1', step: '0.01', name: 'jaw' });
   jaw.addEventListener('input', () => hand.setJaw(jaw.valueAsNumber));
-  const jawField = field('Jaws', jaw, '', 'closed to open');
+  const jawField = field('Jaws', jaw, '', 'jaw opening, closed to open');
   const state = element('output', { class: 'state' });
   const driving = drivingButtons(control, problem);
   const edit = editForm(control, problem);
@@ -129,6 +129,6 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
     const text = `${energy}${power}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
     if (state.value !== text) state.value = text;
   });
-  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, vesselList(model), field('Moves', guide), jawField, generatorForm(control), edit.form, addForm(control));
+  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, vesselList(model), field('Tool moves', guide), jawField, generatorForm(control), edit.form, addForm(control));
   return { id: 'tools', title: 'Tools', body };
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Your own mesh, chosen or dropped on the page: the file travels in chunks, the daemon reports what became
-// of it, and a session is made of the scene that the daemon puts around it.
+// Uploads a mesh file that the user chose or dropped on the page. The file is sent in chunks. The daemon returns a report
+// and a scene around the mesh, from which a session is created.
 import type { Control } from '../model/control';
 import { meshWords } from '../model/sentences';
 import type { Link } from '../wire/link';
@@ -8,18 +8,18 @@ import type { MeshRead, MeshReading } from '../wire/messages.gen';
 import { attempt, button, check, element, field, problemPlace } from './dom';
 
 const TISSUES: readonly (readonly [string, string])[] = [
-  ['', 'by the file'],
+  ['', 'decided from the file'],
   ['fat', 'fat (tetrahedra)'],
   ['fascia', 'fascia (triangles)'],
 ];
 const SIDES: readonly (readonly [string, string])[] = [
-  ['', 'by the file'],
+  ['', 'automatic'],
   ...['bottom', 'top', 'left', 'right', 'front', 'back', 'left,right', 'front,back', 'none'].map((side) => [side, side.replace(',', ' and ')] as const),
 ];
 
 const UPLOAD_NAME = 'mesh';
 
-/** The chosen file; the two that TetGen writes as one, the points first. */
+/** Returns the chosen file. The two files of TetGen are joined, with the points first. */
 function chosen(files: FileList | null): File {
   const [first, second, ...more] = [...(files ?? [])].sort((a, b) => Number(b.name.endsWith('.node')) - Number(a.name.endsWith('.node')));
   if (!first) throw new Error('choose a mesh file first');
@@ -29,7 +29,7 @@ function chosen(files: FileList | null): File {
   return new File([first, '\n', second], first.name);
 }
 
-/** The report and the note of a reading, in the words of the form. */
+/** Returns the report and the note of a reading, in the words of the form. */
 function reportWords({ report, note }: MeshReading): string {
   return meshWords(note === undefined ? report.text : `${report.text}note: ${note}\n`);
 }
@@ -43,22 +43,22 @@ interface WishFields {
   read(): MeshRead;
 }
 
-/** How the file is to be read. */
+/** Returns the fields with the options for reading the file. */
 function wishFields(): WishFields {
   const kind = choice('kind', TISSUES);
-  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guess', min: '1e-6', max: '1000000', step: 'any' });
-  const edge = element('input', { type: 'number', name: 'edge', placeholder: 'choose', min: '0.001', max: '10000', step: 'any' });
+  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guessed', min: '1e-6', max: '1000000', step: 'any' });
+  const edge = element('input', { type: 'number', name: 'edge', placeholder: 'automatic', min: '0.001', max: '10000', step: 'any' });
   const labels = element('input', { type: 'text', name: 'labels', placeholder: 'all', maxLength: 255 });
   const pin = choice('pin', SIDES);
   let strict = false;
   return {
     fields: [
-      field('Tissue', kind, '', 'by the file: fat where there are tetrahedra or an inside'),
-      field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres; guessed where its size is clear'),
-      field('Edge', edge, 'mm', 'length of an edge of the tetrahedra that fill a surface or a segmentation'),
-      field('Labels', labels, '', 'of a segmentation, as in 1,3'),
-      field('Pinned', pin, '', 'by the file: the bottom, or the rim of a sheet; more pins with the press Pin on the picture'),
-      check('Strict: refuse a mesh that needs repair', 'strict', (on) => (strict = on)),
+      field('Tissue', kind, '', 'decided from the file: fat if the file has tetrahedra or a closed surface, else fascia'),
+      field('One unit is', size, 'mm', 'length of one unit of the file: 1 for millimetres, 1000 for metres. Empty: guessed from the size of the mesh.'),
+      field('Edge length', edge, 'mm', 'edge length of the tetrahedra that fill a surface or a segmentation'),
+      field('Labels', labels, '', 'labels of the segmentation to use, for example 1,3'),
+      field('Pinned', pin, '', 'automatic: the bottom, or the rim of a sheet. Add pins with Pin in the picture.'),
+      check('Strict: refuse a mesh with errors instead of repairing it', 'strict', (on) => (strict = on)),
     ],
     read: () => ({
       upload: UPLOAD_NAME,
@@ -72,12 +72,12 @@ function wishFields(): WishFields {
   };
 }
 
-/** A file that is dropped anywhere on the page goes where `take` puts it. */
+/** Calls `take` for files that are dropped anywhere on the page. */
 function watchDrops(may: () => boolean, take: (files: FileList) => void): void {
   const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') === true;
   window.addEventListener('dragover', (event) => {
     if (!holdsFiles(event)) return;
-    event.preventDefault(); // else the browser opens the file in the page's place
+    event.preventDefault(); // otherwise the browser opens the file instead of the page
     if (event.dataTransfer) event.dataTransfer.dropEffect = may() ? 'copy' : 'none';
   });
   window.addEventListener('drop', (event) => {
@@ -88,7 +88,7 @@ function watchDrops(may: () => boolean, take: (files: FileList) => void): void {
   });
 }
 
-/** `reveal` brings the panel to the front. */
+/** Returns the section for uploads; `reveal` opens its panel. */
 export function uploadForm(control: Control, link: Link, reveal: () => void): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
@@ -103,10 +103,10 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   };
   const cancel = button('Cancel', () => {
     cancelled = true;
-    discard(); // what fills it on the daemon ends with it
+    discard(); // this also ends the meshing on the daemon
   }, { hidden: true });
 
-  /** A refusal names no member of a message: the form has words of its own. */
+  /** Reads the mesh. Error messages use the words of the form instead of member names. */
   const read = async (): Promise<MeshReading> => {
     try {
       return await link.call('mesh.read', wish.read());
@@ -117,14 +117,14 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   const create = async (mesh: File): Promise<void> => {
     await link.upload(UPLOAD_NAME, mesh, (sent, total) => (bar.value = sent / total));
     try {
-      bar.removeAttribute('value'); // how long filling takes is not known
+      bar.removeAttribute('value'); // the duration of filling is unknown
       const reading = await read();
       report.textContent = reportWords(reading);
       report.hidden = false;
       await control.create({ definition: reading.definition });
     } finally {
-      // The session has its own copy, and another attempt sends the file again. If this is lost, the
-      // next upload takes the place of this one, and the last goes with the connection.
+      // The session has its own copy, and another attempt sends the file again. If this request is lost, the
+      // next upload replaces this one, and the connection removes the last upload when it ends.
       discard();
     }
   };
@@ -144,7 +144,7 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   const form = element(
     'form',
     { class: 'form' },
-    field('Mesh file', file, '', 'Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, NRRD, NIfTI, or both files of TetGen'),
+    field('Mesh file', file, '', 'formats: Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, NRRD, NIfTI, or both files of TetGen'),
     ...wish.fields,
     element('div', { class: 'buttons' }, submit, cancel),
     bar,

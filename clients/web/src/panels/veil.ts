@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over a picture that is not what it seems: nothing to draw with, nobody to talk to, a session that is being
-// made or brought elsewhere in time, or a daemon that has fallen silent. Words, and that something goes on.
+// A veil over a picture that is not up to date: without WebGL, without a connection, while a session is built, rewound or
+// restored, or if the daemon sends nothing. It shows a text, and a progress bar while something is under way.
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { button, byId, element } from './dom';
 
 const LOOK_MS = 250;
-const SILENT_MS = 2000; // of a session that runs
-const QUICK_MS = 300; // what is done sooner is not worth words
+const SILENT_MS = 2000; // without frames of a running session
+const QUICK_MS = 300; // shorter work is not shown
 
 interface Veil {
   words: string;
-  /** something is under way */
+  /** whether something is under way */
   busy: boolean;
   action?: { words: string; press: () => void };
 }
@@ -22,11 +22,11 @@ function graphics(viewport: Viewport): Veil | null {
   switch (viewport.graphics) {
     case 'none':
       return {
-        words: 'This browser offers no WebGL 2, which the picture needs. Turn on hardware acceleration in its settings, or use another browser. Everything but the picture works.',
+        words: 'The picture needs WebGL 2, which this browser does not offer. Turn on hardware acceleration in the browser’s settings, or use another browser. Everything but the picture works.',
         busy: false,
       };
     case 'lost':
-      return { words: 'The graphics card has lost the picture. It is being drawn again.', busy: true, action: RELOAD };
+      return { words: 'The graphics card lost the picture. The page is drawing the picture again.', busy: true, action: RELOAD };
     case 'ready':
       return null;
   }
@@ -35,9 +35,9 @@ function graphics(viewport: Viewport): Veil | null {
 function connection({ model }: Control, enterToken: () => void): Veil | null {
   const { link } = model;
   if (link.state === 'connecting') return { words: 'Connecting to the simulation…', busy: true };
-  if (link.state === 'lost') return { words: `No connection: ${link.words}. Trying again. What you see is from before.`, busy: true };
+  if (link.state === 'lost') return { words: `No connection: ${link.words}. Trying again. The picture is old.`, busy: true };
   if (link.state !== 'refused') return null;
-  if (link.status === 'unauthorized') return { words: 'This simulation asks for an access token.', busy: false, action: { words: 'Enter the token', press: enterToken } };
+  if (link.status === 'unauthorized') return { words: 'This simulation needs an access token.', busy: false, action: { words: 'Enter the token', press: enterToken } };
   return { words: link.words, busy: false, action: RELOAD };
 }
 
@@ -50,7 +50,7 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
   place.append(element('div', { class: 'veil-card' }, words, bar, action));
   let framedAt = performance.now();
   let joinedAt = framedAt;
-  let everShown = false; // an empty picture is never bare
+  let everShown = false; // an empty picture always has a veil
   // A hidden page draws nothing.
   const shows = (session: string): boolean => viewport.shown.session === session || document.hidden;
   let busySince: number | null = null;
@@ -69,7 +69,7 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
     }
     everShown = true;
     if (model.frame.paused || model.frame.faulted || document.hidden || now - framedAt < SILENT_MS) return null;
-    return { words: `Nothing new from the simulation for ${((now - framedAt) / 1000).toFixed(0)} s. What you see is from before.`, busy: true };
+    return { words: `The simulation has sent nothing for ${((now - framedAt) / 1000).toFixed(0)} s. The picture is old.`, busy: true };
   };
   const show = (): void => {
     const veil = graphics(viewport) ?? connection(control, enterToken) ?? waiting();

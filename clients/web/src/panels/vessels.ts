@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blood vessels for people: a warning while one bleeds, news of a seal, and a list of all of them.
+// Shows blood vessels: a warning while a vessel bleeds, a message about a new seal, and a list of all vessels.
 import type { Model } from '../model/model';
 import { figuresOf, stateWords, VesselWatch } from '../model/vessel_words';
 import { element } from './dom';
@@ -7,7 +7,7 @@ import { element } from './dom';
 const REFRESH_MS = 250; // numbers that change faster cannot be read
 const NEWS_S = 6;
 
-/** Has work done with the newest frame: at once, or where it was done a moment ago, a moment later. */
+/** Returns a function that calls `work` at most every REFRESH_MS: at once, or a moment later. */
 function unhurried(work: () => void): () => void {
   let next = 0;
   let waits = false;
@@ -25,7 +25,7 @@ function unhurried(work: () => void): () => void {
   };
 }
 
-/** Says at the tool which vessels bleed, and for some seconds which one is sealed. */
+/** Shows at the tool which vessels bleed, and for some seconds which vessel was sealed. */
 export function watchVessels(model: Model): void {
   const watch = new VesselWatch(NEWS_S);
   const said = new Set<string>();
@@ -38,7 +38,7 @@ export function watchVessels(model: Model): void {
     }
   };
   model.on('frame', ({ vessels, tick }) => {
-    if (tick < last) watch.clear(); // the session went back: what was is no news
+    if (tick < last) watch.clear(); // after a rewind the old states do not count
     last = tick;
     if (vessels.length > 0 || said.size > 0) tell();
   });
@@ -52,7 +52,7 @@ export function watchVessels(model: Model): void {
       model.say(warns ? 'warning' : 'info', words, { figures, ...(key === null ? {} : { key }) });
     }
     unsay(stays);
-    if (said.size > 0) setTimeout(tell, REFRESH_MS); // news ends in a paused session too, which sends no frames
+    if (said.size > 0) setTimeout(tell, REFRESH_MS); // messages must also end in a paused session, which sends no frames
   });
   model.on('joined', (joined) => {
     if (joined && joined.description.summary.session === model.frame?.session) return;
@@ -61,7 +61,7 @@ export function watchVessels(model: Model): void {
   });
 }
 
-/** A list of the session's vessels, hidden where it has none. */
+/** Returns a list of the vessels of the session, hidden if there are none. */
 export function vesselList(model: Model): HTMLElement {
   const list = element('ul', { class: 'vessels' });
   const section = element('section', { hidden: true, aria: { label: 'Blood vessels' } }, element('h2', {}, 'Blood vessels'), list);

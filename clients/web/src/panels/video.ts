@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is seen, as a video: the browser's own recorder takes the pictures as they are drawn, and what it made
-// is saved when it is stopped.
+// Records the picture as a video, with the recorder of the browser. The file is saved when the recording is stopped.
 import type { Model } from '../model/model';
 import type { Viewport } from '../scene/viewport';
 import { attempt, button, save } from './dom';
 
 const PICTURES_A_SECOND = 30;
 const BITS_A_SECOND = 8_000_000; // tissue is full of fine detail
-const STILL_MS = 500; // a picture at which nothing changes is drawn again after this, so that it has its length
-/** The first that the browser can write is taken. WebM goes before MP4: its pictures may change their size. */
+const STILL_MS = 500; // an unchanged picture is drawn again after this time, so that its duration is recorded
+/** Formats; the first that the browser can write is used. WebM comes first, because its pictures may change in size. */
 const KINDS = [
   { type: 'video/webm;codecs=vp9', ending: 'webm' },
   { type: 'video/webm;codecs=vp8', ending: 'webm' },
@@ -20,7 +19,7 @@ interface Recording {
   still: ReturnType<typeof setInterval>;
 }
 
-/** A button that begins and ends a recording; `problem`: where is said that it cannot. */
+/** Returns a button that begins and ends a recording; `problem` shows why it cannot. */
 export function videoButton(model: Model, viewport: Viewport, problem: HTMLElement): HTMLButtonElement {
   let going: Recording | null = null;
   const press = button('Record a video', () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'video', ariaPressed: 'false' });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the picture is drawn: layers, wireframe, scalars as colour with a legend, force, light or dark.
+// The panel with options of the picture: layers, wireframe, scalars as colours with a legend, force, theme.
 import type { Control } from '../model/control';
 import { colourAt, MAP_OF, type ColourMap, type Scalar } from '../model/colour_maps';
 import type { ViewOptions, Viewport } from '../scene/viewport';
@@ -11,15 +11,15 @@ import type { Panel } from './tabs';
 import { videoButton } from './video';
 
 const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
-  ['tissue', 'as tissue'],
+  ['tissue', 'colour of the tissue'],
   ['exposure', 'heat exposure'],
-  ['charring', 'char'],
+  ['charring', 'charring'],
   ['stress', 'stress'],
   ['temperature', 'temperature'],
 ];
 const TITLES: Readonly<Record<Scalar, string>> = {
-  exposure: 'Heat exposure over ignition',
-  charring: 'Char: share of parted edges',
+  exposure: 'Heat exposure (1: tissue parts)',
+  charring: 'Charring: share of edges that heat has parted',
   stress: 'Von Mises stress',
   temperature: 'Temperature',
 };
@@ -33,7 +33,7 @@ function paint(canvas: HTMLCanvasElement, map: ColourMap): void {
   }
 }
 
-/** What the ends of the colours stand for. */
+/** Returns the values at both ends of the colours. */
 function endsOf(scalar: Scalar, frame: Frame | null): readonly [string, string] {
   if (scalar === 'stress') return ['0', `${short(frame?.stressScalePa ?? 0, 2)} Pa`];
   if (scalar !== 'temperature') return ['0', '1'];
@@ -71,7 +71,7 @@ function themes(viewport: Viewport): HTMLElement {
   const choose = element(
     'select',
     { name: 'theme' },
-    ...['as the system', 'dark', 'light'].map((words) => element('option', { value: words }, words)),
+    ...['as the system', 'dark', 'light'].map((value) => element('option', { value }, value === 'as the system' ? 'same as the system' : value)),
   );
   const system = window.matchMedia('(prefers-color-scheme: dark)');
   const apply = (): void => {
@@ -86,7 +86,7 @@ function themes(viewport: Viewport): HTMLElement {
   });
   system.addEventListener('change', apply);
   apply();
-  return field('Light', choose);
+  return field('Theme', choose);
 }
 
 export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: HTMLElement, clip: HTMLElement): Panel {
@@ -124,7 +124,7 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     field('Colour', colouring),
     layers,
     check('Wireframe', 'wireframe', (on) => set({ wireframe: on })),
-    check('Force on the tool', 'force', (on) => set({ forceArrow: on })),
+    check('Show the force on the tool', 'force', (on) => set({ forceArrow: on })),
     inspectSwitch,
     clip,
     cameraViews(viewport),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An arrow at the first instrument that tissue presses on, as long as the force is strong.
+// An arrow at the first instrument that tissue presses on; its length shows the force.
 import { ArrowHelper, Vector3 } from 'three';
 
 import type { ToolState } from '../wire/records';

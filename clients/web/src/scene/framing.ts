@@ -6,7 +6,7 @@ import { Vector3 } from 'three';
 import type { Extent } from '../model/field_shape';
 import type { ToolState } from '../wire/records';
 
-const SHAFT_SHOWN = 0.12; // of the tissue's diagonal
+const SHAFT_SHOWN = 0.12; // shown length of a shaft, as a share of the diagonal of the tissue
 
 export function framedPoints({ least, most }: Extent, tools: readonly ToolState[], round: boolean): Vector3[] {
   const [min, max] = [new Vector3(...least), new Vector3(...most)];
@@ -17,7 +17,7 @@ export function framedPoints({ least, most }: Extent, tools: readonly ToolState[
   );
   const tips = tools
     .map(({ positionM }) => new Vector3(...positionM))
-    .filter((tip) => tip.distanceTo(middle) < reach) // one that is far away would make the tissue small
+    .filter((tip) => tip.distanceTo(middle) < reach) // a tool far away would make the tissue small
     .flatMap((tip) => [tip, tip.clone().setZ(tip.z + SHAFT_SHOWN * reach)]);
   const sides = [[min.x, middle.y], [max.x, middle.y], [middle.x, min.y], [middle.x, max.y]].map(([x, y]) => new Vector3(x, y, max.z));
   return [...(round ? sides : corners), ...tips];

@@ -4,10 +4,10 @@
 import type { Orbit } from './orbit';
 import type { SharedUniforms } from './tissue_view';
 
-/** To the right of the camera and above it, in distances to what is looked at. */
+/** Offset of the lamp to the right of the camera and above it, over the distance to the target. */
 const BESIDE = [-0.55, 0.75] as const;
 const AT_LENS = [-0.05, 0.07] as const;
-/** What comes from all around: next to nothing in a closed body. */
+/** Ambient light; very little in a closed body. */
 const AROUND = { lens: 0.16, dark: 0.4, light: 0.52 } as const;
 
 export function placeLamp(shared: SharedUniforms, orbit: Orbit, trocar: boolean, dark: boolean): void {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera that looks at a point and turns around it; z is up. Its home shows everything that was framed,
-// whatever the picture's shape.
+// A camera that looks at a point and turns around it; z is up. Its first view (home) shows everything that was framed, for
+// any shape of the picture.
 import { PerspectiveCamera, Vector3 } from 'three';
 
-const FIELD_OF_VIEW = 38; // degrees, of the height
+const FIELD_OF_VIEW = 38; // degrees, over the height of the picture
 const HOME_ELEVATION = 0.85; // rad
 const STEEPEST = 1.5; // rad above or below the horizon
 const NEAREST_M = 0.01;
 const FARTHEST_M = 5;
-/** Of the picture, on each side of its middle, that what is framed may fill. */
+/** Share of the picture, on each side of its middle, that the framed points may fill. */
 const FREE = { side: 0.94, top: 0.92, bottom: 0.94 };
 const FITTING_STEPS = 24;
 
@@ -26,11 +26,11 @@ export class Orbit {
   private elevation = HOME_ELEVATION;
   private distance = 0.25;
   private framed: readonly Vector3[] = [];
-  /** nobody has turned or moved the camera since it was at home */
+  /** whether the camera has not been moved since its first view */
   private atHome = true;
-  /** of the picture's height, at its foot, that buttons cover */
+  /** share of the height of the picture that buttons cover at its foot */
   private covered = 0;
-  /** of the round picture that what is framed goes into, in halves of the picture's height; null: all of it is seen */
+  /** radius of the round picture for the framed points, over half the height of the picture; null: the picture is not round */
   private circle: number | null = null;
 
   constructor() {
@@ -38,7 +38,7 @@ export class Orbit {
     this.place();
   }
 
-  /** Looks at all of some points, from the surgeon's side. */
+  /** Looks at all given points, from the side of the surgeon. */
   frame(points: readonly Vector3[]): void {
     this.framed = points;
     this.reset();
@@ -51,7 +51,7 @@ export class Orbit {
     this.fit();
   }
 
-  /** null: it is at home */
+  /** Returns the pose of the camera; null: the first view. */
   get pose(): CameraPose | null {
     return this.atHome ? null : this.here;
   }
@@ -61,7 +61,7 @@ export class Orbit {
     return { azimuth, elevation, distance, target: target.toArray() };
   }
 
-  /** Looks from where a link says. */
+  /** Sets the pose of a link or a saved view. */
   restore({ azimuth, elevation, distance, target }: CameraPose): void {
     this.azimuth = azimuth;
     this.distance = Math.min(Math.max(distance, NEAREST_M), FARTHEST_M);
@@ -99,20 +99,20 @@ export class Orbit {
     this.place();
   }
 
-  /** The picture's right, up, and towards the eye, in the world. */
+  /** Returns the directions right, up, and towards the eye, in the world. */
   axes(): { x: Vector3; y: Vector3; z: Vector3 } {
     const [x, y, z] = [new Vector3(), new Vector3(), new Vector3()];
     this.camera.matrixWorld.extractBasis(x, y, z);
     return { x, y, z };
   }
 
-  /** From the eye through a place of the picture, both coordinates from -1 to 1. */
+  /** Returns the ray from the eye through a point of the picture, both coordinates from -1 to 1. */
   ray(x: number, y: number): { origin: Vector3; direction: Vector3 } {
     const origin = new Vector3().setFromMatrixPosition(this.camera.matrixWorld);
     return { origin, direction: new Vector3(x, y, 0.5).unproject(this.camera).sub(origin).normalize() };
   }
 
-  /** Where a point is in the picture, both coordinates from -1 to 1. */
+  /** Returns the position of a point in the picture, both coordinates from -1 to 1. */
   picturePlace(point: Vector3): { x: number; y: number } {
     const { x, y } = point.clone().project(this.camera);
     return { x, y };
@@ -126,7 +126,7 @@ export class Orbit {
     if (this.atHome) this.fit();
   }
 
-  /** The distance and the height of the target at which what is framed fills the free part of the picture. */
+  /** Sets distance and height of the target so that the framed points fill the free part of the picture. */
   private fit(): void {
     if (this.framed.length === 0) {
       this.place();

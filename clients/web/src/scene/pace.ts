@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps the page quick where drawing is slow: no picture is asked for while the last one is still being
-// made, so that the page's own thread never waits for it, and pictures lose detail until they take
-// less than a twentieth of a second. After one that took longer it rests as long, up to a fifth of a
-// second: such pictures are made by the processor, and half of it is left to the page and the machine.
+// Keeps the page responsive if drawing is slow. A new picture is ordered only when the last one is finished, so that the
+// main thread never waits for it. Detail is reduced until pictures take less than a twentieth of a second. After a slower
+// picture, drawing pauses as long as the picture took, up to a fifth of a second: the processor draws such pictures, and
+// half of its time is left to the page and the machine.
 
-/** How much there is in a picture. */
+/** Level of detail of a picture. */
 export interface Detail {
-  /** of the screen's resolution */
+  /** resolution of the picture over that of the screen */
   scale: number;
-  /** several samples a pixel, which smooth edges */
+  /** whether each pixel has several samples, which smooth edges */
   smooth: boolean;
 }
 
 const SLOW_MS = 50;
-const REST_MS = 200; // at most, after a slow picture
+const REST_MS = 200; // longest pause after a slow picture
 const QUICK_MS = 12;
-/** Samples go first: in software they are more than half of a picture's cost. */
+/** Steps of detail. Samples are reduced first: without a graphics card they are more than half of the cost of a picture. */
 export const STEPS: readonly Detail[] = [
   { scale: 1, smooth: true },
   { scale: 1, smooth: false },
@@ -24,8 +24,8 @@ export const STEPS: readonly Detail[] = [
   { scale: 0.4, smooth: false },
 ];
 export const FULL = STEPS[0];
-const PATIENCE = 12; // pictures before the detail changes; one that is far too slow counts as several
-const FAR = 4; // times too slow, or more: such a picture counts as that many, and two steps are taken at once
+const PATIENCE = 12; // pictures before the detail changes; a far too slow picture counts as several
+const FAR = 4; // a picture that is this many times too slow counts as this many, and detail falls by two steps
 
 export class Pace {
   private fence: WebGLSync | null = null;
@@ -35,7 +35,7 @@ export class Pace {
   private slow = 0;
   private quick = 0;
   private held = false;
-  /** milliseconds of the last picture, from the order until it was there */
+  /** time of the last picture from the order until it was finished, ms */
   pictureMs = 0;
 
   constructor(
@@ -43,12 +43,12 @@ export class Pace {
     private readonly setDetail: (detail: Detail) => void,
   ) {}
 
-  /** Whether drawing is work here: pictures take long, or have less detail so that they do not. */
+  /** Whether drawing is slow on this machine: pictures take long, or detail was reduced. */
   get laboured(): boolean {
     return this.level > 0 || this.pictureMs > SLOW_MS;
   }
 
-  /** Whether the last picture is there, and its rest over; asked once per animation frame. */
+  /** Whether the last picture is finished and the pause is over; called once per animation frame. */
   ready(): boolean {
     if (!this.fence) return performance.now() >= this.restsUntil;
     const status = this.gl.getSyncParameter(this.fence, this.gl.SYNC_STATUS) as number;
@@ -62,18 +62,18 @@ export class Pace {
     return now >= this.restsUntil;
   }
 
-  /** Full detail, however long pictures take, until that is over: for pictures that are kept. */
+  /** Keeps full detail while `held`, however long pictures take; for pictures that are saved. */
   holdFull(held: boolean): void {
     this.held = held;
     if (held && this.level > 0) this.change(-this.level);
   }
 
-  /** The graphics came back anew: fences of before never come true. */
+  /** Starts again after the graphics context was restored, because old fences never complete. */
   reset(): void {
     this.fence = null;
   }
 
-  /** After the drawing commands of a picture. */
+  /** Notes that the drawing commands of a picture were given. */
   drawn(started: number): void {
     this.started = started;
     this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -86,7 +86,7 @@ export class Pace {
     this.quick = this.pictureMs < QUICK_MS ? this.quick + 1 : 0;
     const last = STEPS.length - 1;
     if (this.slow >= PATIENCE && this.level < last) this.change(Math.min(this.pictureMs > FAR * SLOW_MS ? 2 : 1, last - this.level));
-    // Going back up waits ten times as long: a picture that flickers between two looks is worse.
+    // Raising the detail waits ten times as long, because flickering between two levels is worse.
     else if (this.quick >= 10 * PATIENCE && this.level > 0) this.change(-1);
   }
 

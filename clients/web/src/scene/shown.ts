@@ -2,12 +2,12 @@
 // The session whose tissue the screen shows. A picture appears on it some frames after its drawing commands.
 
 export class Shown {
-  /** null: no tissue yet */
+  /** session whose tissue the screen shows; null: no tissue yet */
   session: string | null = null;
   private finished: string | null = null;
   private drawn: string | null = null;
 
-  /** Drawing commands of a picture were given, with the tissue of a session or without. */
+  /** Notes that the drawing commands of a picture were given, with or without the tissue of a session. */
   draw(session: string | null): void {
     this.drawn = session;
   }

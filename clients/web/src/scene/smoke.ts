@@ -60,7 +60,7 @@ export class Smoke {
     this.points.renderOrder = 5;
   }
 
-  /** How many puffs are in the air. */
+  /** Number of puffs in the air. */
   get count(): number {
     return this.puffs.count;
   }
@@ -74,14 +74,14 @@ export class Smoke {
     this.points.material.uniforms['scale'].value = pixelHeight / 2;
   }
 
-  /** Faces that are removed smoke; a past view does not. */
+  /** Starts smoke where faces are removed; a past view has no smoke. */
   watch(frame: Frame): void {
     const faces = Object.values(frame.drawnFaces).reduce((sum, count) => sum + count, 0);
     if (!frame.past && faces < this.faces) this.puffs.burst(this.faces - faces);
     this.faces = faces;
   }
 
-  /** Lets puffs rise and drift, and starts new ones at tips that burn tissue. True where the picture changes. */
+  /** Lets puffs rise and drift, and starts new ones at tips that burn tissue. Returns true if the picture changes. */
   advance(seconds: number, states: readonly ToolState[], views: ReadonlyMap<string, ToolView>): boolean {
     const burning = this.wanted && !this.reduced.matches ? states.filter(({ energized, touchedLayers }) => energized && touchedLayers !== 0) : [];
     const at = burning.flatMap(({ name }) => {

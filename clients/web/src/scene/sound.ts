@@ -9,13 +9,13 @@ export type Sound = 'tone' | 'sizzle' | 'alarm';
 const TONE_GAIN = 0.05;
 const SIZZLE_GAIN = 0.10;
 const ALARM_GAIN = 0.14;
-const ALARM_HZ = [1180, 880, 1180, 880] as const; // no activation tone, and never one alone
+const ALARM_HZ = [1180, 880, 1180, 880] as const; // no frequency of an activation tone, and always several tones
 const BEEP_S = 0.16;
-const FADE_S = 0.012; // on and off without a click
+const FADE_S = 0.012; // fade time, so that sounds begin and end without a click
 const NOISE_S = 2;
 const SIZZLE_HZ = 5200;
-const SILENT_MS = 400; // without a frame energy is not known to be on
-const REST_MS = 5000; // of silence, after which the browser computes no sound
+const SILENT_MS = 400; // time without frames after which it is unknown whether energy is on
+const REST_MS = 5000; // silence after which the browser stops computing sound
 
 interface Voices {
   context: AudioContext;
@@ -24,7 +24,7 @@ interface Voices {
   sizzleGain: GainNode;
 }
 
-/** Noise whose loudness jumps about, as drops that boil do. */
+/** Returns noise whose loudness jumps, like boiling drops. */
 function crackle(context: AudioContext): AudioBufferSourceNode {
   const buffer = context.createBuffer(1, NOISE_S * context.sampleRate, context.sampleRate);
   const samples = buffer.getChannelData(0);
@@ -52,12 +52,12 @@ function makeVoices(): Voices {
 export class Sounds {
   /** what sounds now: the instruments' sounds that the user's settings allow */
   heard: Heard = { toneHz: 0, sizzle: 0 };
-  /** since the page came up */
+  /** number of alarms since the page was loaded */
   alarms = 0;
   private voices: Voices | null = null;
   private readonly on: Record<Sound, boolean> = { tone: true, sizzle: true, alarm: true };
   private before: readonly ToolState[] = [];
-  /** the instrument that this page drove at the last frame: without a connection it drives none */
+  /** instrument that this page drove at the last frame; null without a connection */
   private led: string | null = null;
   private faces: number | null = null;
   private framedAt = 0;

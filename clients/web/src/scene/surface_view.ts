@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface that is drawn beside the mesh's own faces, in three.js: a layer's lips, their edge, fibres that fray from
-// it, or a sheet's border. Records of the model as they come.
+// A surface in three.js that is drawn besides the faces of the mesh: lips of a layer, their edge, frayed fibres, or the
+// border of a sheet. It draws the records of the model.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -19,7 +19,7 @@ import { FRAGMENTS, type SurfaceKind } from './tissue_shader';
 import type { SharedUniforms } from './tissue_view';
 
 const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['burn', 4, 9], ['tip', 1, 13]] as const;
-const GROWTH = 1.5; // of the arrays on the card, so that a cut does not make them anew with every face
+const GROWTH = 1.5; // growth of the arrays on the card, so that a cut does not create new arrays with every face
 
 export class SurfaceView {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;

@@ -143,7 +143,7 @@ export class TissueView {
     });
   }
 
-  /** Takes a frame over; returns the arrays that were drawn before, to be given back. */
+  /** Applies a frame. Returns the arrays that were drawn before. */
   take(frame: Frame): Frame['buffers'] {
     const before = {
       position: this.position.array as Float32Array,
@@ -177,12 +177,12 @@ export class TissueView {
     });
   }
 
-  /** Indices of what can be seen, for picking. */
+  /** Returns the indices of visible faces, for picking. */
   visibleIndices(): (Uint32Array | null)[] {
     return this.indices.map((index, b) => (this.meshes[b].visible ? index : null));
   }
 
-  /** Whether a drawn face of a layer lies over or under a point of the ground. */
+  /** Returns whether a drawn face of a layer lies above or below a point of the plane z = 0. */
   covers(layer: string, x: number, y: number): boolean {
     const at = this.position.array as Float32Array;
     return this.joined.batches.some((batch, b) => {
@@ -193,7 +193,7 @@ export class TissueView {
     });
   }
 
-  /** The stream's scalar over its range, 0 to 1, at the vertex nearest to a point. */
+  /** Returns the shown scalar over its range, 0 to 1, at the vertex nearest to a point. */
   scalarAt(point: readonly [number, number, number]): number {
     const at = this.position.array as Float32Array;
     let nearest = 0;
@@ -207,7 +207,7 @@ export class TissueView {
     return this.burn.array[BURN_BYTES * nearest + SCALAR] / 255;
   }
 
-  /** Place and shown scalar, 0 to 255, of each vertex. */
+  /** Returns the position and shown scalar, 0 to 255, of each vertex. */
   scalars(): { at: number[]; byte: number }[] {
     const { array } = this.position;
     return Array.from({ length: array.length / 3 }, (_, v) => ({ at: [...array.slice(3 * v, 3 * v + 3)], byte: this.burn.array[BURN_BYTES * v + SCALAR] }));
@@ -221,19 +221,19 @@ export class TissueView {
     });
   }
 
-  /** What is drawn of a batch beside its own faces. */
+  /** Returns the surfaces that are drawn for a batch besides its faces. */
   private beside(batch: number): SurfaceView[] {
     const lips = this.lips[batch];
     const edge = this.edges[batch];
     return [...(lips ? [lips.band, lips.wall, lips.fringe] : []), ...(edge ? [edge] : [])];
   }
 
-  /** `plain`: how many of the faces are drawn as they are. */
+  /** Sets the indices of a batch. `plain` is the number of faces that are drawn unrefined. */
   private setIndex(batch: number, index: Uint32Array, plain: number): void {
     this.indices[batch] = index;
     const { geometry } = this.meshes[batch];
     const attribute = geometry.getIndex()!;
-    // A batch's index mostly shrinks: the buffer on the card is kept and only its first part drawn.
+    // The index of a batch usually shrinks. The buffer on the card is kept, and only its first part is drawn.
     if (index.length > attribute.array.length) {
       geometry.setIndex(new BufferAttribute(index.slice(), 1).setUsage(DynamicDrawUsage));
     } else {
@@ -248,7 +248,7 @@ function surfaceKind(batch: Joined['batches'][number]): SurfaceKind {
   return batch.bared ? 'bared' : batch.kind === 'links' ? 'membrane' : batch.kind;
 }
 
-/** Whether a point is inside a triangle seen along z. */
+/** Returns whether a point is inside a triangle, seen along z. */
 function insideOf(at: Float32Array, index: Uint32Array, first: number, x: number, y: number): boolean {
   let turns = 0;
   for (let c = 0; c < 3; c++) {

@@ -6,10 +6,10 @@ import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js
 
 import type { ToolPart } from '../model/tool_parts';
 
-/** Sides of what is round: 0.01 of the radius off at most. */
+/** Number of sides of round parts; they deviate by at most 0.01 of the radius. */
 const AROUND = 28;
-const RINGS = 8; // of a quarter
-const EDGE = 4; // lines in each half of a plate's rounding
+const RINGS = 8; // number of rings of a quarter
+const EDGE = 4; // lines in each half of the rounding of a plate
 
 class QuarterArc extends Curve<Vector3> {
   constructor(
@@ -37,14 +37,14 @@ function capsule(part: ToolPart & { solid: 'capsule' }): BufferGeometry {
   return geometry.translate(from.x + along.x / 2, from.y + along.y / 2, from.z + along.z / 2);
 }
 
-/** A rounded box: a cube's grid with most of its lines in the rounding, pushed onto the hull. */
+/** Returns a rounded box: the grid of a cube with most of its lines in the rounding, moved onto the surface. */
 function plate(part: ToolPart & { solid: 'plate' }): BufferGeometry {
   const [least, most] = [new Vector3(...part.least), new Vector3(...part.most)];
   const center = least.clone().add(most).multiplyScalar(0.5);
   const core = most.clone().sub(least).multiplyScalar(0.5).addScalar(-part.rounding).max(new Vector3());
   const lines = 2 * EDGE + 1;
   const geometry = new BoxGeometry(lines, lines, lines, lines, lines, lines);
-  /** Where a line of the grid is: those of the rounding turn by equal angles. */
+  /** Returns the position of a line of the grid; lines of the rounding differ by equal angles. */
   const place = (line: number, flat: number): number => {
     const beyond = Math.max(Math.abs(line) - 0.5, 0) / EDGE;
     return Math.sign(line) * (flat + part.rounding * Math.tan((Math.PI / 4) * beyond));
@@ -63,7 +63,7 @@ function plate(part: ToolPart & { solid: 'plate' }): BufferGeometry {
   return geometry.translate(center.x, center.y, center.z);
 }
 
-/** A bent wire with round ends: what its bend is too narrow for lies inside. */
+/** Returns a bent wire with round ends. */
 function arc(part: ToolPart & { solid: 'arc' }): BufferGeometry {
   const curve = new QuarterArc(part.center, part.bend);
   const ends = [curve.getPoint(0), curve.getPoint(1)].map((end) =>

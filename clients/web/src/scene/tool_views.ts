@@ -7,7 +7,7 @@ import type { Tool } from '../wire/messages.gen';
 import type { ToolState } from '../wire/records';
 import { ToolView } from './tool_view';
 
-const GHOST_M = 3e-4; // nearer than this the two would be one picture
+const GHOST_M = 3e-4; // distance from which a ghost is drawn; nearer it would coincide with the tool
 
 interface ToolPose {
   positionM: readonly number[];
@@ -24,7 +24,7 @@ export class ToolViews {
     private readonly light: IUniform<Vector3>,
   ) {}
 
-  /** Definitions of the instruments, when they come, go or change. */
+  /** Sets the definitions of the instruments, when they are added, removed or changed. */
   setTools(tools: readonly Tool[]): void {
     for (const [name, view] of this.solid) {
       const kept = tools.find((tool) => tool.name === name);

@@ -46,7 +46,7 @@ function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer | null {
   try {
     return new WebGLRenderer({ canvas, antialias: false, powerPreference: 'high-performance' });
   } catch {
-    return null; // the page says so in its picture's place
+    return null; // the page shows a message instead of the picture
   }
 }
 
@@ -58,12 +58,12 @@ export class Viewport {
   tissue: TissueView | null = null;
   picturesDrawn = 0;
   readonly shown = new Shown();
-  private taken = false; // a frame of the session has come
+  private taken = false; // whether a frame of the session has arrived
   readonly pace: Pace | null;
   private contextLost = false;
-  /** of moving pictures, from pace */
+  /** detail of moving pictures, from Pace */
   private moving: Detail = FULL;
-  private detail: Detail = FULL; // of the picture that is drawn
+  private detail: Detail = FULL; // detail of the drawn picture
   private changedAt = 0;
   private readonly scene = new Scene();
   private readonly shared = makeSharedUniforms();
@@ -84,9 +84,9 @@ export class Viewport {
   private states: ToolState[] = [];
   private dirty = true;
   private framed = false;
-  /** the session that the camera is for: who joins it again finds it where it was */
+  /** session for which the camera was set; joining the session again keeps the camera */
   private session: string | null = null;
-  /** a camera to begin with instead of home */
+  /** first pose of the camera, instead of the first view */
   wantedPose: CameraPose | null = null;
   private lastDrawn = performance.now();
 
@@ -116,7 +116,7 @@ export class Viewport {
     this.setTheme(true);
   }
 
-  /** Whether there is anything to draw with. */
+  /** State of the graphics context. */
   get graphics(): 'ready' | 'lost' | 'none' {
     if (!this.renderer) return 'none';
     return this.contextLost ? 'lost' : 'ready';
@@ -141,7 +141,7 @@ export class Viewport {
     if (home) this.frameTissue();
   }
 
-  /** Whether a place of the picture, both coordinates from -1 to 1, shows anything. */
+  /** Returns whether a point of the picture, both coordinates from -1 to 1, shows the scene. */
   sees(x: number, y: number): boolean {
     return !this.throughTrocar || inCircle(x, y, this.orbit.camera.aspect);
   }
@@ -171,13 +171,13 @@ export class Viewport {
     this.invalidate();
   }
 
-  /** Definitions of the instruments, when they come, go or change. */
+  /** Sets the definitions of the instruments, when they are added, removed or changed. */
   setTools(tools: readonly Tool[]): void {
     this.tools.setTools(tools);
     this.invalidate();
   }
 
-  /** Draws a frame next; returns arrays to give back. */
+  /** Takes the next frame to draw; returns the arrays of the last one. */
   takeFrame(frame: Frame): FrameBuffers | null {
     this.states = frame.past?.tools ?? frame.tools;
     this.taken = this.tissue !== null;
@@ -193,12 +193,12 @@ export class Viewport {
     return this.tissue.take(frame);
   }
 
-  /** Whether an instrument is drawn where it is led to, too. */
+  /** Returns whether the ghost of an instrument is drawn at its commanded pose. */
   ghostOf(name: string): boolean {
     return this.tools.ghostOf(name);
   }
 
-  /** Where instruments are drawn. */
+  /** Sets the poses at which instruments are drawn. */
   poseTools(poses: ReadonlyMap<string, Pose>): void {
     let changed = false;
     for (const state of this.states)
@@ -208,7 +208,7 @@ export class Viewport {
     this.invalidate();
   }
 
-  /** The rest of the way that a tool has still to go. */
+  /** Shows the remaining path of a tool. */
   showWay(way: readonly Vector3[]): void {
     if (this.way.show(way)) this.invalidate();
   }
@@ -253,12 +253,12 @@ export class Viewport {
     this.pace.drawn(now);
   }
 
-  /** Nothing is left to draw, and what is drawn is in full detail. */
+  /** Whether the picture is up to date and in full detail. */
   get idle(): boolean {
     return !this.dirty && this.pace !== null && this.pace.ready() && this.detail === FULL;
   }
 
-  /** A picture that stands still is drawn once more in full, however little detail moving ones have. */
+  /** Draws an unchanged picture once more in full detail. */
   private sharpen(now: number): void {
     if (this.detail === FULL || now - this.changedAt < SHARPEN_MS) return;
     this.setDetail(FULL);
@@ -284,21 +284,21 @@ export class Viewport {
     this.scope.resize(this.canvas.width, this.canvas.height);
   }
 
-  /** milliseconds that the last picture took to be there */
+  /** time of the last picture, ms */
   get pictureMs(): number {
     return this.pace?.pictureMs ?? 0;
   }
 
-  /** Where a point of the world is in the page, in CSS pixels. */
+  /** Returns the position of a point of the world in the page, CSS pixels. */
   project(point: readonly [number, number, number]): { x: number; y: number } {
     const at = new Vector3(...point).project(this.orbit.camera);
     const box = this.canvas.getBoundingClientRect();
     return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
   }
 
-  /** The picture as PNG. */
+  /** Returns the picture as PNG. */
   async png(): Promise<Blob> {
-    if (this.graphics !== 'ready') throw new Error('there is no picture to save');
+    if (this.graphics !== 'ready') throw new Error('there is no picture to save yet');
     this.setDetail(FULL);
     this.render();
     return new Promise<Blob>((resolve, reject) =>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The way that a hand has drawn ahead of its tool: dots that the tool will pass, or that go when the rest
-// of the way is dropped.
+// Shows the path that the hand has drawn ahead of the tool, as dots. The dots disappear when the tool passes them, or when
+// the rest of the path is dropped.
 import { BufferAttribute, BufferGeometry, Points, PointsMaterial, type Vector3 } from 'three';
 
 const DOTS_MAX = 400;
 const DOT_PX = 4;
-const SPACING_M = 0.002; // of dots where the hand was quick
+const SPACING_M = 0.002; // distance of dots where the hand was fast
 
 export class WayView {
   readonly points: Points<BufferGeometry, PointsMaterial>;
@@ -20,7 +20,7 @@ export class WayView {
     this.points.visible = false;
   }
 
-  /** Says whether the picture is another than before. */
+  /** Shows a path. Returns whether the picture changed. */
   show(way: readonly Vector3[]): boolean {
     if (way.length === 0 && this.shown === 0) return false;
     const position = this.points.geometry.getAttribute('position') as BufferAttribute;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One lasting connection to a daemon: hello, requests and answers, and coming back after a loss with
-// back-off, the same client identity and the resume token. Knows no page: sockets are given to it.
+// One lasting connection to a daemon, with hello, requests and answers. After a loss it connects again with back-off, the
+// same client identity and the resume token. It uses no page: the caller creates the sockets.
 import { CHANGING_METHODS, CLOSE_REASONS, SUBPROTOCOL, WIRE_VERSION } from './messages.gen';
 import type { HelloResult, Notices, Pushes, Requests } from './messages.gen';
 
@@ -32,14 +32,14 @@ export interface ConnectionEvents {
   binary(bytes: Uint8Array): void;
 }
 
-/** An answer that is an error, in the server's words; path is the offending member. */
+/** An error answer, with the message of the server; `path` is the wrong member. */
 export class RpcError extends Error {
   constructor(
     readonly status: string,
     message: string,
     readonly path?: string,
     readonly reason?: string,
-    /** status moved: the session's id where it is now, and that daemon's address if it is another */
+    /** for status moved: the new id of the session, and the address of its daemon if that is another */
     readonly movedTo?: string,
     readonly url?: string,
   ) {
@@ -70,7 +70,7 @@ const REFUSALS: Readonly<Record<number, 'version' | 'unauthorized' | 'replaced'>
   4007: 'replaced',
 };
 
-/** Commands to a tool mean the moment in which they are given: after a loss they are not sent again. */
+/** Whether a request is sent again after a loss. Commands to a tool are not, because they are meant for their moment. */
 function outlivesLoss(method: string): boolean {
   return !method.startsWith('tool.') && !method.startsWith('upload.') && !method.startsWith('stream.') && method !== 'heartbeat';
 }
@@ -84,7 +84,7 @@ export class Connection {
   private retries = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private url: string;
-  /** of the daemon that had the session, until it is found where it is now */
+  /** resume token of the daemon that had the session, until the session is found on its new daemon */
   private keptResume: string | null = null;
   private following = false;
 
@@ -106,7 +106,7 @@ export class Connection {
     socket.onclose = (event) => this.closed(event);
   }
 
-  /** Ends for good. */
+  /** Ends the connection for good. */
   stop(): void {
     clearTimeout(this.timer);
     const { socket } = this;
@@ -118,7 +118,7 @@ export class Connection {
     this.abandon(() => true, 'the connection was closed');
   }
 
-  /** Goes after a session to where it is now: the same client, who gets its tools back there. */
+  /** Follows a session to another daemon, as the same client, which gets its tools back there. */
   follow(url: string): void {
     this.url = url;
     this.keptResume ??= this.lastResume;
@@ -126,17 +126,17 @@ export class Connection {
     this.comeBack();
   }
 
-  /** Connects anew, as after a loss. */
+  /** Closes the socket and connects again, as after a loss. */
   comeBack(): void {
     const { socket } = this;
-    if (!socket) return; // it is about to
+    if (!socket) return; // a new connection is already planned
     socket.onclose = null;
     socket.onmessage = null;
     socket.close();
-    this.lost('the session has moved');
+    this.lost('the session has moved to another server');
   }
 
-  /** The session that was followed has been found. */
+  /** Notes that the followed session was found. */
   found(): void {
     this.keptResume = null;
     this.following = false;
@@ -153,7 +153,7 @@ export class Connection {
       const sequenced = CHANGING_METHODS.has(method) ? { ...params, client_sequence: ++this.clientSequence } : params;
       const text = JSON.stringify({ jsonrpc: '2.0', id, method, params: sequenced });
       if (!this.online && method !== 'hello' && !outlivesLoss(method)) {
-        reject(new RpcError('lost', 'the daemon cannot be reached at the moment'));
+        reject(new RpcError('lost', 'the server cannot be reached at the moment'));
         return;
       }
       this.pending.set(id, { method, text, resolve: resolve, reject });
@@ -204,7 +204,7 @@ export class Connection {
 
   private end(status: 'version' | 'unauthorized' | 'replaced', words: string): void {
     this.stop();
-    const versions = `This page speaks wire version ${WIRE_VERSION}, and the daemon does not: reload the page, or update the daemon.`;
+    const versions = `This page and the server have different versions (this page: ${WIRE_VERSION}). Reload the page. If that does not help, update the server.`;
     this.events.state({ state: 'refused', status, words: status === 'version' ? versions : words });
   }
 
@@ -232,7 +232,7 @@ export class Connection {
   private closed(event: CloseEvent): void {
     this.socket = null;
     this.hello = null;
-    const words = CLOSE_REASONS[event.code] ?? (event.reason || 'the daemon cannot be reached');
+    const words = CLOSE_REASONS[event.code] ?? (event.reason || 'the server cannot be reached');
     const refusal = REFUSALS[event.code];
     if (refusal) {
       this.end(refusal, words);

@@ -2,27 +2,27 @@
 // Records of the contact of tools in a frame: "Contact record" in protocol/README.md.
 import { viewOf, WireError } from './header';
 
-/** A plane in which tissue touches a tool, or is near it. */
+/** A plane of tissue that touches a tool or is near it. */
 export interface ContactPlane {
   normal: number[]; // out of the tissue
-  offsetM: number; // it touches where normal . place is less
+  offsetM: number; // in contact if normal . position is less
   velocityMS: number; // of the tissue, along the normal
 }
 
-/** The contact of a tool, linear about the frame's tick. */
+/** A linear model of the contact of a tool at the tick of the frame. */
 export interface ContactState {
   name: string; // of the tool
-  valid: boolean; // false: nothing but the poses is known
+  valid: boolean; // false: only the poses are known
   askedPositionM: number[]; // commanded
   askedRotation: number[]; // w, x, y, z
   positionM: number[]; // actual
   rotation: number[];
   forceN: number[]; // raw, of the tissue on the tool
-  complianceMN: number[]; // at the commanded place, m/N: xx, yy, zz, xy, xz, yz
+  complianceMN: number[]; // at the commanded position, m/N: xx, yy, zz, xy, xz, yz
   friction: number;
   dampingNsM: number;
   graspNM: number; // stiffness of what the jaws hold; 0: nothing
-  graspAnchorM: number[]; // commanded place at which that pulls with 0 N
+  graspAnchorM: number[]; // commanded position at which the grasped tissue pulls with 0 N
   planes: ContactPlane[];
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds a stream's state and takes frames into it: the rules of "Streams" in protocol/README.md.
+// Holds the state of a stream and applies frames to it, by the rules of "Streams" in protocol/README.md.
 import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
 import { SCALARS, SECTION, type ScalarName } from './messages.gen';
@@ -14,11 +14,11 @@ export interface StreamShape {
   face_count: number;
 }
 
-/** One number a vertex, in steps as SCALARS tells them, by the scalar's name. */
+/** One number for each vertex, in steps of SCALARS, by the name of the scalar. */
 export type ScalarArrays = Record<ScalarName, Int32Array>;
 
 export interface StreamState extends ScalarArrays {
-  /** false: nothing to draw yet, or damaged; a key frame is needed */
+  /** false: there is no state yet, or it is damaged; a key frame is needed */
   synced: boolean;
   epoch: bigint;
   sequence: number;
@@ -27,19 +27,19 @@ export interface StreamState extends ScalarArrays {
   publishedUs: number;
   paused: boolean;
   faulted: boolean;
-  /** steps from the origin (vertices x 3); like the scalars, of this tick where a drawn face uses the vertex */
+  /** steps from the origin (vertices x 3); like the scalars, valid for vertices that a drawn face uses */
   quantised: Int32Array;
-  /** words of 32 faces; a set bit: not drawn */
+  /** words of 32 faces; a set bit: the face is not drawn */
   mask: Int32Array;
   tools: ToolState[];
-  /** in the scene's order; none where the stream does not have the channel */
+  /** in the order of the scene; empty if the stream does not have the channel */
   vessels: VesselState[];
-  /** by tool; none where the stream does not have the channel `tool_contact` */
+  /** by tool; empty if the stream does not have the channel `tool_contact` */
   contacts: ContactState[];
   statistics: Statistics | null;
 }
 
-/** What the last frame changed; whole: anything may have. */
+/** What the last frame changed. `whole`: everything may have changed. */
 export interface Changes {
   whole: boolean;
   moved: Runs;
@@ -137,7 +137,7 @@ export class FrameDecoder {
     return changes;
   }
 
-  /** What a key frame leaves out is zero. */
+  /** Sets everything to zero, because a key frame leaves zeros out. */
   private clear(): void {
     const { state } = this;
     state.mask.fill(0);

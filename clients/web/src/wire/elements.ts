@@ -11,7 +11,7 @@ const CODING_MESHOPT = 1;
 const REFERENCE_PREVIOUS = 1;
 const REFERENCE_HELD = 2;
 
-/** Awaited once before the first frame: the codec is compiled then. */
+/** Resolves when the codec is compiled; must be awaited before the first frame. */
 export const decoderReady: Promise<void> = MeshoptDecoder.ready;
 
 /** Start and length of each run of changed elements, one after the other. */

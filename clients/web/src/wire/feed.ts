@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From decoded frames to what the page draws: every frame goes into the tissue, the newest is handed
-// over as soon as the page has given the last one's buffers back. So the page can never fall behind.
+// Prepares decoded frames for drawing. Every frame updates the tissue. The newest state is handed over as soon as the page
+// has returned the buffers of the last one, so the page can never fall behind.
 import { materialCoordinates } from '../model/fibres';
 import { surroundingsOf } from '../model/field_shape';
 import { BURN_BYTES, Tissue, type ShownScalar } from '../model/tissue';
@@ -11,10 +11,10 @@ import type { Frame, FrameBuffers, Joined, Sample, VertexState } from './worker_
 
 const SAMPLES_MAX = 600;
 const WHOLE: Changes = { whole: true, moved: [], maskWords: [], scalars: true };
-/** After lips the next frame waits so many times as long as these took: decoding comes first. On a machine with time to
- * spare that is less than a frame lasts. */
+/** After the lips of cuts were computed, the next frame waits this many times as long, because decoding has priority. On a
+ * fast machine this is less than the time of a frame. */
 const REST = 4;
-const BYTE = 255; // exposure and charring of one
+const BYTE = 255; // byte of the value 1 in exposure and charring
 
 export class Feed {
   readonly joined: Joined;
@@ -26,7 +26,7 @@ export class Feed {
   private spare: FrameBuffers | null;
   private newest: StreamState | null = null;
   private last: StreamState | null = null;
-  /** shown in place of the newest */
+  /** past state that is shown instead of the newest */
   private past: StreamState | null = null;
   private changed = true;
   private samples: Sample[] = [];
@@ -35,7 +35,7 @@ export class Feed {
     description: SessionDescription,
     private readonly stream: StreamDescription,
     topology: Topology,
-    /** which of them is drawn */
+    /** scalar that is drawn as colour */
     private readonly scalar: ShownScalar,
   ) {
     const { vertex_count: vertexCount, face_count: faceCount, origin_m: originM, step_m: stepM } = stream;
@@ -77,7 +77,7 @@ export class Feed {
     this.changed ||= changes.whole || changes.scalars || changes.moved.length > 0 || changes.maskWords.length > 0;
   }
 
-  /** What the frame that is shown tells of a vertex. */
+  /** Returns the values of a vertex in the shown frame. */
   vertex(vertex: number): VertexState | null {
     const { stream } = this;
     const last = this.past ?? this.last;
@@ -96,12 +96,12 @@ export class Feed {
     if (buffers.position.length === this.tissue.position.length) this.spare = buffers;
   }
 
-  /** How long the next frame should wait. */
+  /** Time that the next frame should wait, ms. */
   get restMs(): number {
     return this.restUntilMs - performance.now();
   }
 
-  /** The newest state if it was not handed over yet and buffers are here; the caller transfers them. */
+  /** Returns the newest state, if it was not handed over yet and the buffers are here. The caller transfers them. */
   handOver(framesDecoded: number, framesSkipped: number): Frame | null {
     const { newest: state, spare: buffers, tissue, past } = this;
     if (!state || !buffers) return null;
@@ -146,7 +146,7 @@ export class Feed {
     return this.tissue.edges.flatMap((edge, batch) => (edge ? [{ batch, ...edge.shape() }] : []));
   }
 
-  /** Of all batches that have any, or had when they were last handed over. */
+  /** Returns the lips of all batches that have lips now, or had lips at the last handing over. */
   private lips(): Frame['lips'] {
     const beganMs = performance.now();
     const shapes = this.lipShapes();

@@ -7,7 +7,7 @@ import { RpcError } from './connection';
 import type { Transfer, UploadResult } from './messages.gen';
 
 async function sha256(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
-  // Pages beyond loopback without TLS have no SubtleCrypto.
+  // A page from another machine without TLS has no SubtleCrypto.
   if (typeof crypto === 'undefined' || !('subtle' in crypto) || !crypto.subtle)
     throw new RpcError('unsupported', 'uploads need a secure page: use https, or the daemon on this machine');
   const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
@@ -27,7 +27,7 @@ export async function upload(
   for (let offset = 0; offset < bytes.byteLength; offset += most) {
     connection.sendBytes(writeChunk({ transfer, offset, data: bytes.subarray(offset, offset + most) }));
     progress(Math.min(offset + most, bytes.byteLength));
-    // lets answers in between, and the progress be seen
+    // gives other answers and the progress bar a chance
     await new Promise((resolve) => setTimeout(resolve));
   }
   return connection.request('upload.end', { transfer, sha256: hash });
@@ -37,7 +37,7 @@ export interface ReceivedFile {
   name: string;
   mediaType: string;
   bytes: Uint8Array<ArrayBuffer>;
-  /** the hash is as announced */
+  /** whether the hash is the announced one */
   sound: boolean;
 }
 
@@ -50,13 +50,13 @@ interface Download {
   done: Done;
 }
 
-/** Chunks of announced transfers, until they are whole. */
+/** Collects the chunks of announced transfers until the files are complete. */
 export class Downloads {
   private readonly open = new Map<number, Download>();
 
   constructor(private readonly done: Done) {}
 
-  /** `done`: who gets it, instead of who gets all others */
+  /** Expects a transfer. `done` receives this file instead of the common receiver. */
   announce(transfer: Transfer, done = this.done): void {
     const download = { transfer, bytes: new Uint8Array(transfer.byte_count), got: 0, done };
     if (transfer.byte_count === 0) void this.finish(download);

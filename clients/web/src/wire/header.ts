@@ -2,7 +2,7 @@
 // The fixed start of every frame and the walk over its sections; layouts in protocol/README.md.
 import { FRAME_KIND, WIRE_VERSION } from './messages.gen';
 
-/** Bytes that break the format; what was held may be lost. */
+/** The bytes violate the format; the held state may be lost. */
 export class WireError extends Error {}
 
 export type FrameKind = 'key' | 'delta' | 'topology';
@@ -72,7 +72,7 @@ export function readHeader(bytes: Uint8Array): FrameHeader {
   };
 }
 
-/** The payloads by section type, ascending. Types nobody knows are kept; readers skip them. */
+/** Returns the payloads by section type, ascending. Unknown types are kept; readers skip them. */
 export function readSections(bytes: Uint8Array, count: number): Map<number, Uint8Array> {
   const view = viewOf(bytes);
   const sections = new Map<number, Uint8Array>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's end of the worker: calls with answers, and events.
+// The interface of the page to the worker: calls with answers, and events.
 import type { ShownScalar } from '../model/tissue';
 import type { LinkState } from './connection';
 import { RpcError } from './connection';
@@ -10,7 +10,7 @@ export interface LinkEvents {
   state(state: LinkState): void;
   joined(joined: Joined): void;
   notJoined(session: string, message: string): void;
-  /** url: of the daemon that has it now; empty where the same address leads there. */
+  /** The session has moved. `url` is the address of its daemon; empty if the same address leads there. */
   moved(session: string, to: string, url: string): void;
   frame(frame: Frame): void;
   push<M extends keyof Pushes>(method: M, params: Pushes[M]): void;
@@ -23,7 +23,7 @@ interface Call {
   progress?: (sent: number, total: number) => void;
 }
 
-/** Another identity than any other connection has. */
+/** Returns a new identity that no other connection has. */
 export function newClientId(): string {
   return Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, '0')).join('');
 }
@@ -38,18 +38,18 @@ export class Link {
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
   }
 
-  /** A new connection, under a new identity: answers of an earlier one are of no use to it. */
+  /** Opens a new connection with a new identity, because it does not need answers of an earlier connection. */
   connect(url: string, client: string, token?: string): void {
     this.send({ type: 'connect', url, client, clientId: newClientId(), ...(token === undefined ? {} : { token }) });
   }
 
-  /** The same client goes to another daemon, after a session. */
+  /** Follows a session to another daemon, as the same client. */
   follow(url: string): void {
     this.send({ type: 'follow', url });
   }
 
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
-    if (method === 'tool.energize') this.heartbeat(true); // its clock says how fresh the request is
+    if (method === 'tool.energize') this.heartbeat(true); // the clock in the heartbeat shows how fresh the request is
     return new Promise((resolve, reject) => {
       const call = this.remember({ resolve: resolve, reject });
       this.send({ type: 'call', call, method, params });
@@ -74,12 +74,12 @@ export class Link {
     });
   }
 
-  /** Shows a past tick in place of the newest, once the daemon has fetched it; nobody is rewound. */
+  /** Shows a past tick instead of the newest, when the daemon has sent it. The session is not rewound. */
   past(session: string, tick: number): Promise<unknown> {
     return new Promise((resolve, reject) => this.send({ type: 'past', call: this.remember({ resolve, reject }), session, tick }));
   }
 
-  /** Shows the newest again. */
+  /** Shows the newest state again. */
   present(): void {
     this.send({ type: 'present' });
   }
@@ -94,7 +94,7 @@ export class Link {
     );
   }
 
-  /** Gives a frame's arrays back; the worker answers with the next. */
+  /** Returns the arrays of a frame to the worker, which answers with the next frame. */
   giveBack(buffers: FrameBuffers): void {
     const { position, normal, burn } = buffers;
     this.send({ type: 'return', buffers }, [position.buffer, normal.buffer, burn.buffer]);

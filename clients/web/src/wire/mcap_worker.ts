@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A worker for as long as a recording lasts: writes what is seen into an MCAP file in memory.
+// A worker that exists while a recording runs. It writes the shown scene into an MCAP file in memory.
 import { SceneUpdate } from '@foxglove/schemas/jsonschema';
 import { McapWriter } from '@mcap/core';
 
 import { sceneUpdate, type SeenMoment } from '../model/scene_update';
 
 export type ToMcap = { type: 'moment'; moment: SeenMoment } | { type: 'end' };
-/** full: no more is taken, and what there is should be saved */
+/** `full`: the file has reached its limit and should be saved */
 export type FromMcap = { type: 'full' } | { type: 'file'; file: Blob; messages: number } | { type: 'failure'; message: string };
 
 interface WorkerScope {
@@ -15,8 +15,8 @@ interface WorkerScope {
 }
 const scope = self as unknown as WorkerScope;
 
-const FILE_BYTES_MAX = 1_000_000_000n; // four minutes of a scene of 12 000 faces; other players read no more from a page
-const PART_BYTES = 8 << 20; // one Blob each: browsers keep those on the disk where memory gets short
+const FILE_BYTES_MAX = 1_000_000_000n; // four minutes of a scene of 12 000 faces; players in a page read no larger files
+const PART_BYTES = 8 << 20; // size of each Blob; browsers move Blobs to the disk if memory runs short
 
 const parts: Blob[] = [];
 let loose: Uint8Array<ArrayBuffer>[] = [];
@@ -69,7 +69,7 @@ async function end(): Promise<void> {
   scope.postMessage({ type: 'file', file: new Blob(parts, { type: 'application/octet-stream' }), messages });
 }
 
-// The writer takes one thing at a time.
+// The writer handles one message at a time.
 let last: Promise<unknown> = begin();
 const channel = last as Promise<number>;
 scope.onmessage = ({ data }) => {

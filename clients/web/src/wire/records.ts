@@ -13,7 +13,7 @@ export interface ToolName {
   shape: ToolShape;
 }
 
-/** Force and torque of the frame's tick, without filter and bound, and the time constant of the filter; 0: no filter. */
+/** Force and torque in the tick of the frame, without filter and limit; time constant of the filter, 0: no filter. */
 export interface RawForce {
   forceN: Vector;
   torqueNm: Vector;
@@ -24,23 +24,23 @@ export interface ToolState extends ToolName {
   sequence: number;
   positionM: Vector;
   rotation: Quaternion;
-  asked: { positionM: Vector; rotation: Quaternion }; // where it is led to: elsewhere where tissue stops it
-  jaw: number; // what the jaws hold keeps it so
-  askedJaw: number; // where it is led to
-  jawForceN: number; // with which the jaws press what they hold; 0 from servers that do not tell it
-  forceN: Vector; // of the tissue on the tool, filtered, force_max_n at most
-  torqueNm: Vector; // about the tip, filtered likewise
+  asked: { positionM: Vector; rotation: Quaternion }; // commanded pose; tissue can hold the tool back
+  jaw: number; // actual opening; held tissue can stop the jaws
+  askedJaw: number; // commanded opening
+  jawForceN: number; // force of the jaws on what they hold; 0 from servers that do not send it
+  forceN: Vector; // of the tissue on the tool, filtered, at most force_max_n
+  torqueNm: Vector; // about the tip, filtered as forceN
   raw: RawForce | null; // null from servers that do not send it
   tipTemperatureC: number;
   energyJ: number;
-  deliveredW: number; // into tissue in the last step; 0 from servers that do not tell it
-  loadOhm: number; // that its generator finds; 0: no current flows
+  deliveredW: number; // power given to tissue in the last step; 0 from servers that do not send it
+  loadOhm: number; // load of the generator; 0: no current flows
   driver: number;
   energized: boolean;
   grasping: boolean;
   frozen: boolean;
   energyOff: EnergyOff;
-  slipping: boolean; // some of what its jaws hold slid in the last step; false from servers that do not tell it
+  slipping: boolean; // whether grasped points slid in the last step; false from servers that do not send it
   graspedVertices: number;
   contactVertices: number;
   touchedLayers: number;
@@ -64,12 +64,12 @@ export interface Statistics {
   contacts: number;
   frozenVertices: number;
   refusedCommands: number;
-  energyGainJ: number; // that the last step made out of nothing; 0 from servers that do not tell it
-  resting: boolean; // steps change nothing until something wakes the tissue; false from servers that do not tell it
-  error: number; // of the last step, estimated, relative to its own motion; 0 from servers that do not tell it
-  contactsLeftOut: number; // vertices that the last step's contact had no place for; 0 from servers that do not tell it
-  elementsTorn: number; // of those removed, by being stretched beyond what they bear; 0 from servers that do not tell it
-  touchingCutShort: number; // times in the last step that tissue touching tissue found no room; 0 from servers that do not tell it
+  energyGainJ: number; // energy that the last step gained without a source; 0 from servers that do not send it
+  resting: boolean; // whether steps are skipped because the tissue is at rest; false from servers that do not send it
+  error: number; // estimated error of the last step, relative to its motion; 0 from servers that do not send it
+  contactsLeftOut: number; // vertices beyond the contact capacity of the last step; 0 from servers that do not send it
+  elementsTorn: number; // removed elements that tore; 0 from servers that do not send it
+  touchingCutShort: number; // times in the last step that tissue contact exceeded its capacity; 0 from servers that do not send it
 }
 
 const TOOL_BYTES = 84;
@@ -77,7 +77,7 @@ const ASKED_BYTES = 28;
 const JAW_BYTES = 8;
 const POWER_BYTES = 8;
 const FORCE_BYTES = 28;
-const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn, touchingCutShort
+const STATISTICS_BYTES = 88; // without the members that later servers added: energyGainJ, resting, error, contactsLeftOut, elementsTorn, touchingCutShort
 const TOOLS_MAX = 8;
 
 export function readToolNames(payload: Uint8Array): ToolName[] {
@@ -145,21 +145,21 @@ export function readTools(payload: Uint8Array, names: readonly ToolName[]): Tool
   return names.map((name, i) => readTool(view, i * TOOL_BYTES, name));
 }
 
-/** Without the section jaws are where they are asked to be: see readTools. */
+/** Reads the section of jaws. Without it readTools assumes that jaws have their commanded opening. */
 export function readJaws(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * JAW_BYTES) throw new WireError('jaws do not match their tools');
   const view = viewOf(payload);
   return tools.map((tool, i) => ({ ...tool, askedJaw: view.getFloat32(i * JAW_BYTES, true), jawForceN: view.getFloat32(i * JAW_BYTES + 4, true) }));
 }
 
-/** Without the section no generator gives power: see readTools. */
+/** Reads the section of power. Without it readTools assumes that no generator gives power. */
 export function readPower(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * POWER_BYTES) throw new WireError('power does not match the tools');
   const view = viewOf(payload);
   return tools.map((tool, i) => ({ ...tool, deliveredW: view.getFloat32(i * POWER_BYTES, true), loadOhm: view.getFloat32(i * POWER_BYTES + 4, true) }));
 }
 
-/** Without the section raw forces are not known: see readTools. */
+/** Reads the section of raw forces. Without it they are unknown. */
 export function readForces(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * FORCE_BYTES) throw new WireError('raw forces do not match their tools');
   const view = viewOf(payload);
@@ -169,7 +169,7 @@ export function readForces(payload: Uint8Array, tools: readonly ToolState[]): To
   });
 }
 
-// Without the section every tool is where it is asked to be, as readTools tells.
+// Reads the section of commanded poses. Without it readTools assumes that every tool is at its commanded pose.
 export function readAsked(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
   if (payload.byteLength !== tools.length * ASKED_BYTES) throw new WireError('poses asked do not match their tools');
   const view = viewOf(payload);

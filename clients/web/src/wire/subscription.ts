@@ -62,7 +62,7 @@ export class Subscription {
     if (this.ended) return;
     this.ended = true;
     const leaving = this.connection.online ? this.connection.request('session.leave', { session: this.session }) : null;
-    leaving?.catch(() => undefined); // the session may be gone already, which is what was wanted
+    leaving?.catch(() => undefined); // the session may already be gone, so a failure does not matter
   }
 
   private stopped(): boolean {
@@ -114,7 +114,7 @@ export class Subscription {
     if (now - this.lastKeyRequest < KEY_FRAME_MS) return;
     this.lastKeyRequest = now;
     this.keyFramesAsked++;
-    // Refused or lost: the next gap asks again.
+    // If the request fails, the next gap asks again.
     this.connection.request('stream.key_frame', { session: this.session }).catch(() => undefined);
   }
 }

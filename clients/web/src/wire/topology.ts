@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame that says what never changes: faces, their layers, texture, rest positions.
+// Reads the topology frame, which has what never changes: faces, their layers, texture, rest positions.
 import type { StreamShape } from './decoder';
 import { applyElements } from './elements';
 import { readHeader, readSections, WireError } from './header';

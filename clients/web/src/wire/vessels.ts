@@ -5,15 +5,15 @@ import { viewOf, WireError } from './header';
 /** A vessel after a step. */
 export interface VesselState {
   name: string;
-  parted: boolean; // somewhere
-  pierced: boolean; // its wall has a hole
-  shut: boolean; // pressed shut somewhere
-  sealed: boolean; // a seal withstands the pressure of the blood
+  parted: boolean; // whether it is parted somewhere
+  pierced: boolean; // whether the wall has a hole
+  shut: boolean; // whether it is pressed shut somewhere
+  sealed: boolean; // whether a seal withstands the blood pressure
   bleeds: boolean;
   radiusM: number; // outer radius of the undeformed tube
-  bleedingM3S: number; // blood that left it in the last step, by time
-  shedM3: number; // blood that has left it since the session began
-  burstPa: number; // predicted pressure at which its best seal opens; 0: no seal
+  bleedingM3S: number; // flow of blood out of the vessel in the last step
+  shedM3: number; // volume of blood that has left the vessel since the session began
+  burstPa: number; // predicted pressure at which the best seal opens; 0: no seal
   /** of its middle line, four numbers a point: position in m, and the share of the lumen that is open; below 0: parted here */
   points: Float32Array;
 }

@@ -24,7 +24,7 @@ const CLOCK_US = 2e6;
 let connection: Connection | null = null;
 let subscription: Subscription | null = null;
 let feed: Feed | null = null;
-let clockOffsetUs = 0; // the daemon's clock minus this one's
+let clockOffsetUs = 0; // clock of the daemon minus the clock of this worker
 let leastDelayUs = Infinity;
 let nextMeasureUs = 0;
 let shown: ShownScalar = 'blood';
@@ -142,7 +142,7 @@ function watch({ session, channels, scalar }: ToWorker & { type: 'watch' }): voi
         tellMoved(session, error.movedTo, error.url);
         return;
       }
-      if (status === 'not_here' && performance.now() < arrivesUntilMs) { // on its way here still
+      if (status === 'not_here' && performance.now() < arrivesUntilMs) { // the session is still moving here
         connection?.comeBack();
         return;
       }
@@ -160,7 +160,7 @@ let takeBytes: (bytes: Uint8Array) => void = () => undefined;
 
 function connect(message: ToWorker & { type: 'connect' }): void {
   connection?.stop();
-  subscription = null; // it belongs to the old connection; the page says anew what it watches
+  subscription = null; // belongs to the old connection; the page subscribes again
   feed = null;
   const { url, client, clientId, token } = message;
   const options = { url, client, clientId, ...(token === undefined ? {} : { token }) };
@@ -208,7 +208,7 @@ function download(found: PastFrame): Promise<StreamState> {
     downloads.announce(found, ({ bytes, sound }) => {
       const decoder = new FrameDecoder(found);
       if (sound && decoder.decode(bytes).kind === 'applied') resolve(decoder.state);
-      else reject(new RpcError('corrupt', 'the frame was damaged on its way'));
+      else reject(new RpcError('corrupt', 'a frame was damaged in transfer'));
     });
   });
 }
@@ -226,7 +226,7 @@ async function showPast({ call: number, session, tick }: ToWorker & { type: 'pas
   const wish = ++wished;
   const of = feed;
   if (!connection || !of) {
-    fail(number, new RpcError('bad_state', 'no session is open'));
+    fail(number, new RpcError('bad_state', 'no session is open; choose or create one'));
     return;
   }
   const { channels, step_m } = of.joined.stream;
@@ -258,7 +258,7 @@ async function receive(message: ToWorker): Promise<void> {
       connection?.notify(message.method, message.params as never);
       break;
     case 'heartbeat':
-      await heartbeat(message.visible, message.atUs).catch(() => undefined); // lost: the link's state says so
+      await heartbeat(message.visible, message.atUs).catch(() => undefined); // a loss is reported by the state of the link
       break;
     case 'watch':
       watch(message);

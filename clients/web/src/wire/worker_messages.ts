@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What page and worker say to each other.
+// The messages between page and worker.
 import type { Surroundings } from '../model/field_shape';
 import type { Moment } from '../model/history';
 import type { LipShape } from '../model/lips';

@@ -102,7 +102,7 @@ describe('energy that is held', () => {
     const bench = new Bench();
     await bench.lit(by);
     bench.frame(40, false, 'watchdog');
-    expect(bench.said.get('energy')).toContain('Energy is off: this page sent no heartbeat in time');
+    expect(bench.said.get('energy')).toContain('Energy is off: the server did not hear from this page in time');
     expect(bench.said.get('energy')).toContain(again);
     expect(bench.energy.alive).toBe(false);
     bench.energy.enable('hook', false); // a key that goes on being held brings nothing back
@@ -200,7 +200,7 @@ describe('energy that is latched', () => {
     bench.frame(11 + TICKS - 60, true);
     expect(bench.energy.latchedForS).toBe(1);
     bench.frame(11 + TICKS, false);
-    expect(bench.said.get('')).toBe(`Energy is off: it stays on for ${LATCH_S} s at most. Press Keep on for more.`);
+    expect(bench.said.get('')).toBe(`Energy is off: Keep on lasts ${LATCH_S} s at most. Press Keep on again to continue.`);
     expect([bench.energy.latched, bench.energy.wanted, bench.energy.alive]).toEqual([false, false, false]);
     expect(bench.ends).toBe(1);
   });
@@ -228,7 +228,7 @@ describe('energy that is latched', () => {
     const bench = new Bench();
     await bench.lit('latch');
     bench.frame(40, false, 'watchdog');
-    expect(bench.said.get('')).toContain('this page sent no heartbeat in time, which a busy machine can cause. Press Keep on for more.');
+    expect(bench.said.get('')).toContain('the server did not hear from this page in time. A busy computer can cause this. Press Keep on again to continue.');
     expect(bench.energy.latched).toBe(false);
     bench.press('space');
     bench.release('space');

@@ -126,7 +126,7 @@ describe('a connection', () => {
     await Promise.resolve();
     expect(states.at(-1)).toMatchObject({ state: 'refused', status: 'version' });
     const state = states.at(-1)!;
-    expect(state.state === 'refused' && state.words).toContain('wire version 1');
+    expect(state.state === 'refused' && state.words).toContain('different versions');
     vi.advanceTimersByTime(60_000);
     expect(sockets).toHaveLength(1);
   });
