@@ -49,20 +49,20 @@ ERROR_CODES = {
 CLOSE_REASONS = {
     1000: "done",
     1001: "the server is shutting down",
-    1002: "the WebSocket protocol was broken",
-    1003: "a binary message that is no chunk of an upload",
-    1007: "a text message that is not UTF-8",
-    1009: "a message beyond the limit",
-    1011: "the server met an error of its own",
-    1013: "too many connections",
-    4001: "no hello within 5 s",
-    4002: "the token is missing or not known",
-    4003: "no common version",
-    4004: "frames were not read fast enough",
-    4005: "too many messages a second",
-    4006: "pings were not answered",
-    4007: "another connection resumed this one",
-    4008: "too many malformed messages",
+    1002: "the client violated the WebSocket protocol",
+    1003: "a binary message was not a chunk of an upload",
+    1007: "a text message was not UTF-8",
+    1009: "a message was longer than the limit",
+    1011: "the server has an internal error",
+    1013: "the server has too many connections",
+    4001: "the client sent no hello within 5 s",
+    4002: "the token is missing or unknown",
+    4003: "client and server support no common version of the protocol",
+    4004: "the client did not read its frames fast enough",
+    4005: "the client sends too many messages a second",
+    4006: "the client did not answer pings",
+    4007: "another connection took over this one",
+    4008: "the client sent too many malformed messages",
 }
 
 FRAME_KIND = {"key": 1, "delta": 2, "topology": 3}
@@ -168,13 +168,13 @@ class Scalar(NamedTuple):
 
 
 SCALARS = {
-    # the largest of the vertex's edges': heat taken up over what ignites it, 0 to 1
+    # largest heat exposure of the vertex's edges, over the exposure that parts the edge, 0 to 1
     "exposure": Scalar(3, 0, 0.00392156862745098, 255, "1"),
     # share of the vertex's edges that have parted, 0 to 1
     "charring": Scalar(4, 0, 0.00392156862745098, 255, "1"),
     # von Mises stress of fat, volume weighted
     "stress": Scalar(5, 0, 0, 65535, "Pa"),
-    # what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c
+    # temperature of the tools' heat grids at the vertex; outside of the grids ambient_c of the scene
     "temperature": Scalar(9, -20, 0.25, 65535, "degC"),
     # depth of blood on the surface
     "blood": Scalar(11, 0, 2e-05, 255, "m"),
@@ -194,59 +194,59 @@ class Hello(TypedDict):
     # name and version of the client program, for logs and other users
     client: str
 
-    # the client's own lasting identity, among those of its token's owner; names the stored answers of client_sequence
+    # lasting identity of the client, unique among the clients of the token's owner; the stored answers of client_sequence belong to it
     client_id: NotRequired[str]
 
-    # access token, where the server asks for one
+    # access token, if the server needs one
     token: NotRequired[str]
 
-    # token of an earlier hello: takes back the tools driven within 10 s of the loss, energy off
+    # resume token of an earlier hello: takes back the tools of that connection within 10 s of its loss, energy off
     resume: NotRequired[str]
 
-    # role wanted; the token's by default and at most
+    # wanted role, at most the role of the token (default: that role)
     role: NotRequired[Literal["view", "operate", "admin"]]
 
 
 class Limits(TypedDict):
-    """what the server accepts; beyond it are errors or a close code"""
+    """limits of the server; a client that exceeds one gets an error or a close code"""
 
-    # of a text message (1 to 9007199254740991 B)
+    # largest text message (1 to 9007199254740991 B)
     message_bytes_max: int
 
-    # of one upload (0 to 9007199254740991 B)
+    # largest upload (0 to 9007199254740991 B)
     upload_bytes_max: int
 
-    # of all uploads of the connection; one below 64 KiB counts for that (0 to 9007199254740991 B)
+    # largest size of all uploads of the connection; an upload below 64 KiB counts as 64 KiB (0 to 9007199254740991 B)
     uploads_bytes_max: NotRequired[int]
 
-    # of data in one binary chunk (1 to 9007199254740991 B)
+    # largest data of one binary chunk (1 to 9007199254740991 B)
     chunk_bytes_max: int
 
-    # sessions of the daemon (0 to 9007199254740991)
+    # largest number of sessions of the daemon (0 to 9007199254740991)
     sessions_max: int
 
-    # connections of the daemon (0 to 9007199254740991)
+    # largest number of connections of the daemon (0 to 9007199254740991)
     subscribers_max: int
 
-    # different stream profiles of a session (1 to 4)
+    # largest number of different stream profiles of a session (1 to 4)
     profiles_max: int
 
-    # streams of a connection (1 to 64)
+    # largest number of streams of a connection (1 to 64)
     streams_max: NotRequired[int]
 
-    # tools of a session (1 to 8)
+    # largest number of tools of a session (1 to 8)
     tools_max: int
 
-    # requests of a connection (1 to 9007199254740991 1/s)
+    # largest number of requests of a connection in a second (1 to 9007199254740991 1/s)
     requests_per_s_max: int
 
-    # tool.move notifications of a connection (1 to 9007199254740991 1/s)
+    # largest number of tool.move notifications of a connection in a second (1 to 9007199254740991 1/s)
     motions_per_s_max: int
 
-    # frames unsent before some are skipped (1 to 9007199254740991 B)
+    # bytes of unsent frames above which frames are skipped (1 to 9007199254740991 B)
     bytes_in_flight_max: int
 
-    # longest pause between a driver's messages before energy is cut (0.01 to 60 s)
+    # longest time between two messages of a driver before its energy goes off (0.01 to 60 s)
     heartbeat_s: float
 
 
@@ -262,16 +262,16 @@ class HelloResult(TypedDict):
     # the daemon's label; session ids start with it
     daemon: str
 
-    # role granted
+    # role of this connection
     role: Literal["view", "operate", "admin"]
 
-    # the connection's number: the driver number in frames (1 to 4294967295)
+    # number of the connection, which frames give as the number of the driver (1 to 4294967295)
     client: int
 
-    # as given, or one made up by the server
+    # as given, or chosen by the server
     client_id: str
 
-    # token for a later hello
+    # resume token for a later hello
     resume: str
 
     # what this server can do
@@ -288,9 +288,9 @@ class HelloResult(TypedDict):
 
 
 class Heartbeat(TypedDict):
-    """sign of life of a driver; a notification, or a request to measure the clock"""
+    """reports to the server that a driver is alive; a notification, or a request to measure the clock offset"""
 
-    # false: the page is hidden or blurred, energy is cut at once
+    # false: the page is hidden or another window has the focus; energy goes off at once
     visible: bool
 
     # the client's clock, one that is never set, from any origin; returned. Once it was sent, only heartbeats with it are signs of life on this connection (0 to 9007199254740991 us)
@@ -298,255 +298,255 @@ class Heartbeat(TypedDict):
 
 
 class HeartbeatResult(TypedDict):
-    """for the offset of the clocks"""
+    """clocks from which the client computes their offset"""
 
     # the server's monotonic clock (0 to 9007199254740991 us)
     server_time_us: int
 
-    # as given (0 to 9007199254740991 us)
+    # as given in the heartbeat (0 to 9007199254740991 us)
     client_time_us: NotRequired[int]
 
 
 class SceneSummary(TypedDict):
-    """a scene that sessions can be made from"""
+    """a scene from which sessions can be created"""
 
-    # its name
+    # name of the scene
     name: str
 
-    # in words
+    # description in words
     description: str
 
 
 class SceneList(TypedDict):
-    """all of them"""
+    """all scenes of the daemon"""
 
-    # by name
+    # sorted by name
     scenes: Sequence[SceneSummary]
 
 
 class SceneRef(TypedDict):
     """names a scene"""
 
-    # its name
+    # name of the scene
     scene: str
 
 
 class SceneResult(TypedDict):
-    """a scene whole, to change and send back to session.create"""
+    """a whole scene, which can be changed and sent to session.create"""
 
-    # every member, defaults too
+    # the scene with every member, also defaults
     definition: Scene
 
 
 class InstrumentMode(TypedDict):
-    """how the generator of an instrument is set in a mode; the members are those of a tool"""
+    """settings of the generator in a mode of an instrument; the members are those of a tool"""
 
-    # its name
+    # name of the mode
     mode: str
 
-    # in words
+    # description in words
     description: str
 
-    # power, where no other is named (0 to 400 W)
+    # power, if no other power is given (0 to 400 W)
     power_w: float
 
-    # least power that the mode has (0 to 400 W)
+    # least power of the mode (0 to 400 W)
     power_least_w: float
 
-    # most power that the mode has (0 to 400 W)
+    # largest power of the mode (0 to 400 W)
     power_most_w: float
 
-    # most voltage, peak (1 to 10000 V)
+    # largest peak voltage (1 to 10000 V)
     peak_v: float
 
-    # of the voltage; its duty is 2 / crest_factor^2 (1.4 to 20)
+    # peak voltage over root mean square voltage; the duty cycle is 2 / crest_factor^2 (1.4 to 20)
     crest_factor: float
 
-    # most current, root mean square (0.01 to 10 A)
+    # largest current, root mean square (0.01 to 10 A)
     current_max_a: float
 
-    # power ends when the load is so many times its least; 0: never (0 to 100)
+    # power ends when the load reaches this multiple of its minimum; 0: never (0 to 100)
     load_rise_off: float
 
 
 class Instrument(TypedDict):
-    """a profile of an instrument, which a tool of a scene, tool.add and tool.configure may name"""
+    """profile of an instrument, which a tool of a scene, tool.add and tool.configure can name"""
 
-    # its name
+    # name of the instrument
     name: str
 
-    # in words
+    # description in words
     description: str
 
     # shape of the tool
     shape: str
 
-    # the first is the default
+    # modes; the first is the default
     modes: Sequence[InstrumentMode]
 
 
 class InstrumentList(TypedDict):
-    """all of them"""
+    """all profiles of instruments"""
 
-    # by name
+    # sorted by name
     instruments: Sequence[Instrument]
 
 
 class SessionRef(TypedDict):
     """names a session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
 
 class SessionChange(TypedDict):
     """names a session to change"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991)
+    # number of this change among those of the client_id; a repeated number returns the first answer (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
 
 class SessionSummary(TypedDict):
     """a session in a list"""
 
-    # its id
+    # id of the session
     session: str
 
-    # the scene it was made from
+    # scene from which the session was created
     scene: str
 
-    # what it does
+    # state of the session
     state: Literal["starting", "running", "paused", "faulted"]
 
     # steps since creation, along the present branch (0 to 9007199254740991)
     tick: int
 
-    # simulated (0 to 1000000000000 s)
+    # simulated time (0 to 1000000000000 s)
     time_s: float
 
-    # one tick (0.0001 to 1 s)
+    # length of one tick (0.0001 to 1 s)
     step_s: float
 
-    # simulated over wall time that is aimed at (0 to 100)
+    # wanted simulated time over wall time (0 to 100)
     speed: float
 
-    # what is reached, over the last second (0 to 1000000)
+    # reached simulated time over wall time, in the last second (0 to 1000000)
     realtime_factor: float
 
-    # vertices (0 to 16777216)
+    # number of vertices (0 to 16777216)
     vertex_count: int
 
-    # faces, drawn and not (0 to 16777216)
+    # number of faces, drawn or not (0 to 16777216)
     face_count: int
 
-    # tools (0 to 8)
+    # number of tools (0 to 8)
     tool_count: int
 
-    # streams joined (0 to 9007199254740991)
+    # number of streams (0 to 9007199254740991)
     subscriber_count: int
 
-    # of its frames; another after rewind, reset, restore and restart
+    # epoch of the frames; it changes with each rewind, reset, restore and restart
     epoch: str
 
-    # why it is faulted
+    # reason why the session is faulted
     fault: NotRequired[str]
 
-    # false: the session is ephemeral; or, in an answer to session.pause, the store was full, and the session pauses all the same
+    # false: the session is ephemeral; in an answer to session.pause: the store was full, but the session pauses
     stored: NotRequired[bool]
 
-    # while it is starting or is rewound or restored: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying)
+    # stage of the builder while the session starts, is rewound or restored (meshing, ordering, factoring, settling; reading, restoring, replaying)
     stage: NotRequired[str]
 
 
 class SessionList(TypedDict):
     """all sessions of the daemon"""
 
-    # by id
+    # sorted by id
     sessions: Sequence[SessionSummary]
 
 
 class SessionCreate(TypedDict):
-    """makes a session from a scene of the daemon or from one given whole"""
+    """creates a session from a scene of the daemon or from a given scene"""
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # wanted id, without the daemon's label; made up by default
+    # name of the session, without the daemon's label (default: chosen by the server)
     name: NotRequired[str]
 
-    # a scene of the daemon; either this or definition
+    # a scene of the daemon; give either this or definition
     scene: NotRequired[str]
 
-    # the scene itself; meshes of source bytes name an upload in file
+    # the scene itself; a mesh of source bytes names an upload in file
     definition: NotRequired[Scene]
 
-    # starts paused; false by default
+    # the session starts paused (default: false)
     paused: NotRequired[bool]
 
-    # is never on a disk, and ends with its maker's connection or the daemon; false by default
+    # the session is never stored; it ends with the connection that created it, or with the daemon (default: false)
     ephemeral: NotRequired[bool]
 
 
 class LayerDescription(TypedDict):
     """a layer and its range in the face list"""
 
-    # of the scene
+    # name of the layer in the scene
     name: str
 
-    # of tissue
+    # kind of tissue
     kind: Literal["fascia", "membrane", "fat", "links"]
 
-    # index of its first face (0 to 16777216)
+    # index of the first face of the layer (0 to 16777216)
     first_face: int
 
-    # faces; 0 for links (0 to 16777216)
+    # number of faces; 0 for links (0 to 16777216)
     face_count: int
 
-    # triangles, tetrahedra or links (0 to 16777216)
+    # number of triangles, tetrahedra or links (0 to 16777216)
     element_count: int
 
 
 class Driver(TypedDict):
-    """who moves a tool"""
+    """the client that drives a tool"""
 
-    # the tool
+    # name of the tool
     tool: str
 
-    # the driving connection's number; 0: no driver (0 to 4294967295)
+    # number of the connection that drives the tool; 0: no driver (0 to 4294967295)
     client: int
 
-    # the client's name in its hello, or the DDS participant's
+    # name that the client gave in hello, or name of the DDS participant
     name: str
 
-    # whether its energy is on
+    # whether the energy of the tool is on
     energized: bool
 
-    # why it is off; meaningless while on
+    # reason why energy is off; without meaning while energy is on
     energy_off: Literal["never_enabled", "commanded", "watchdog", "restored", "taken_over"]
 
 
 class SessionDescription(TypedDict):
-    """what a client must know of a session"""
+    """everything that a client must know about a session"""
 
-    # as in the list
+    # as in session.list
     summary: SessionSummary
 
-    # of the scene, in words
+    # description of the scene in words
     description: str
 
-    # chosen by this machine; determinism holds within one
+    # instruction set that this machine uses; results are equal to the bit only within one
     instruction_set: str
 
-    # of sheets (0 to 9007199254740991)
+    # number of triangles of sheets (0 to 9007199254740991)
     triangle_count: int
 
-    # of fat (0 to 9007199254740991)
+    # number of tetrahedra of fat (0 to 9007199254740991)
     tetrahedron_count: int
 
-    # trusses (0 to 9007199254740991)
+    # number of links (0 to 9007199254740991)
     link_count: int
 
     # in the order of the scene
@@ -555,586 +555,586 @@ class SessionDescription(TypedDict):
     # one for each tool, in the order of frames
     drivers: Sequence[Driver]
 
-    # the scene with its present materials, tools and gravity
+    # the scene with the present materials, tools and gravity
     definition: Scene
 
 
 class SessionStep(TypedDict):
     """advances a paused session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # steps; 1 by default (1 to 100000)
+    # number of steps (default: 1) (1 to 100000)
     ticks: NotRequired[int]
 
 
 class AdvanceCommand(TypedDict):
-    """a command about a tool, before the first tick; it has the members of the method that it names"""
+    """a command to a tool, before the first tick; the members are those of the method that it names"""
 
-    # which
+    # method of the command
     method: Literal["tool.move", "tool.energize", "tool.grasp", "tool.release", "tool.hold"]
 
-    # one that the client drives; to turn energy off, any
+    # a tool that the client drives; any tool to turn energy off
     tool: str
 
-    # the driver's own count; frames show the last one applied (0 to 9007199254740991)
+    # number that the driver gives the command; frames show the number of the last command applied (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # tool.move: place of the tip (-100 to 100 m)
+    # tool.move: position of the tip (-100 to 100 m)
     position_m: NotRequired[Sequence[float]]
 
     # tool.move: unit quaternion w, x, y, z (-1.001 to 1.001)
     rotation: NotRequired[Sequence[float]]
 
-    # tool.move: 0 closed, the default, to 1 open (0 to 1)
+    # tool.move: opening of the jaws, 0 closed (default) to 1 open (0 to 1)
     jaw: NotRequired[float]
 
-    # tool.energize: on or off
+    # tool.energize: whether energy is turned on or off
     energized: NotRequired[bool]
 
-    # tool.energize on: energy is off again after so many ticks; 0, the default: no limit (0 to 2147483647)
+    # tool.energize: energy goes off after this many ticks; 0 (default): no limit (0 to 2147483647)
     ticks: NotRequired[int]
 
 
 class ObservedRegion(TypedDict):
-    """a box (least_m, most_m) or a ball (center_m, radius_m): the elements whose middle is in it while the tissue is at rest"""
+    """a box (least_m, most_m) or a ball (center_m, radius_m); it contains the elements whose middle is inside while the tissue is at rest"""
 
-    # given back
+    # name of the region, which the answer repeats
     name: str
 
-    # the box's corner of its least coordinates (-100 to 100 m)
+    # least corner of the box (-100 to 100 m)
     least_m: NotRequired[Sequence[float]]
 
-    # of its largest (-100 to 100 m)
+    # largest corner of the box (-100 to 100 m)
     most_m: NotRequired[Sequence[float]]
 
-    # the ball's middle (-100 to 100 m)
+    # centre of the ball (-100 to 100 m)
     center_m: NotRequired[Sequence[float]]
 
-    # of the ball (0 to 100 m)
+    # radius of the ball (0 to 100 m)
     radius_m: NotRequired[float]
 
 
 class Observe(TypedDict):
-    """what session.advance is to answer with, besides tick and time"""
+    """what the answer to session.advance contains, besides tick and time"""
 
-    # positions, mask, tools, vessels, and scalars by their names; `statistics` is in frames alone
+    # positions, mask, tools, vessels, and scalars by their names; not `statistics`, which is only in frames
     channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]]
 
-    # of positions and scalars: these alone, in this order; all by default (0 to 16777215)
+    # vertices of positions and scalars, in this order (default: all) (0 to 16777215)
     vertices: NotRequired[Sequence[int]]
 
-    # where removed volume and damage are reported
+    # regions for which removed volume and damage are reported
     regions: NotRequired[Sequence[ObservedRegion]]
 
-    # whether the energy of instruments is reported; false by default
+    # whether the energy of instruments is reported (default: false)
     energy: NotRequired[bool]
 
 
 class SessionAdvance(TypedDict):
-    """makes ticks of a paused session in lock-step"""
+    """advances a paused session in lock-step"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # how many; 1 by default, 0 to observe alone (0 to 100000)
+    # number of ticks; 0: only observe (default: 1) (0 to 100000)
     ticks: NotRequired[int]
 
-    # commands about tools, before the first tick; if one is refused none acts, but energy is still turned off where one asks for it
+    # commands to tools, before the first tick; if one is refused, none takes effect, except that requests to turn energy off do
     commands: NotRequired[Sequence[AdvanceCommand]]
 
-    # nothing by default
+    # what the answer contains (default: nothing)
     observe: NotRequired[Observe]
 
 
 class ObservedScalar(TypedDict):
-    """a scalar channel"""
+    """values of a scalar channel"""
 
-    # which
+    # name of the channel
     channel: Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]
 
-    # of the vertices, in the channel's unit (-1e+300 to 1e+300)
+    # value of each vertex, in the unit of the channel (-1e+300 to 1e+300)
     values: Sequence[float]
 
 
 class ObservedTool(TypedDict):
-    """a tool as it is"""
+    """present state of a tool"""
 
-    # its name
+    # name of the tool
     tool: str
 
-    # of the tip: the actual pose, which tissue can stop (-1000000 to 1000000 m)
+    # position of the tip in the actual pose, which tissue can hold back (-1000000 to 1000000 m)
     position_m: Sequence[float]
 
-    # quaternion w, x, y, z (-1.001 to 1.001)
+    # rotation of the actual pose, quaternion w, x, y, z (-1.001 to 1.001)
     rotation: Sequence[float]
 
-    # actual opening, 0 closed to 1 open (0 to 1)
+    # actual opening of the jaws, 0 closed to 1 open (0 to 1)
     jaw: float
 
-    # whether its energy is on
+    # whether the energy of the tool is on
     energized: bool
 
-    # while energy is off: why; of the session, not of the simulated state
+    # reason why energy is off; belongs to the session, not to the simulated state
     energy_off: NotRequired[Literal["never_enabled", "commanded", "watchdog", "restored", "taken_over"]]
 
-    # of the tissue on the tool, filtered with the tool's `force_filter_s`; force_max_n at most (-1000000 to 1000000 N)
+    # force of the tissue on the tool, filtered with force_filter_s; at most force_max_n (-1000000 to 1000000 N)
     force_n: Sequence[float]
 
-    # about the tip, filtered as the force; force_max_n times tip_length_m at most (-1000000 to 1000000 N m)
+    # torque about the tip, filtered as the force; at most force_max_n times tip_length_m (-1000000 to 1000000 N m)
     torque_nm: Sequence[float]
 
-    # of the last tick, without filter and bound (-1000000000000 to 1000000000000 N)
+    # force in the last tick, without filter and limit (-1000000000000 to 1000000000000 N)
     raw_force_n: Sequence[float]
 
-    # about the tip, of the last tick, without filter and bound (-1000000000000 to 1000000000000 N m)
+    # torque about the tip in the last tick, without filter and limit (-1000000000000 to 1000000000000 N m)
     raw_torque_nm: Sequence[float]
 
-    # of the hot part (-300 to 1000000 degC)
+    # temperature of the hot part (-300 to 1000000 degC)
     tip_temperature_c: float
 
-    # heat that tissue has taken up, about (0 to 1000000000000 J)
+    # estimate of the heat that tissue took up (0 to 1000000000000 J)
     energy_j: float
 
-    # with energy `tissue`: given to tissue in the last tick; else 0 (0 to 1000000 W)
+    # with energy `tissue`: power given to tissue in the last tick; else 0 (0 to 1000000 W)
     power_w: float
 
-    # that its generator finds; 0: no current flows (0 to 1000000000000 ohm)
+    # load of the generator; 0: no current flows (0 to 1000000000000 ohm)
     load_ohm: float
 
-    # vertices that it touches (0 to 9007199254740991)
+    # number of vertices that the tool touches (0 to 9007199254740991)
     contact_vertices: int
 
-    # points that its jaws hold (0 to 9007199254740991)
+    # number of points that the jaws hold (0 to 9007199254740991)
     grasped_vertices: int
 
-    # of the last command applied (0 to 9007199254740991)
+    # number of the last command applied (0 to 9007199254740991)
     sequence: int
 
 
 class ObservedVessel(TypedDict):
-    """a blood vessel as it is"""
+    """present state of a blood vessel"""
 
-    # its name
+    # name of the vessel
     vessel: str
 
-    # whether it is parted somewhere
+    # whether the vessel is parted somewhere
     parted: bool
 
-    # whether its wall has a hole somewhere
+    # whether the wall of the vessel has a hole somewhere
     pierced: bool
 
-    # whether it is pressed so flat somewhere that nothing flows
+    # whether the vessel is pressed so flat somewhere that no blood flows
     shut: bool
 
-    # whether a seal withstands the pressure of its blood
+    # whether a seal withstands the blood pressure
     sealed: bool
 
-    # whether blood leaves it
+    # whether blood leaves the vessel
     bleeds: bool
 
-    # blood that left it in the last tick, by time (0 to 1 m^3/s)
+    # flow of blood out of the vessel in the last tick (0 to 1 m^3/s)
     bleeding_m3_s: float
 
-    # blood that has left it since the session began (0 to 1000000 m^3)
+    # volume of blood that has left the vessel since the session began (0 to 1000000 m^3)
     shed_m3: float
 
-    # predicted pressure at which its best seal opens; 0: no seal (0 to 1000000000000 Pa)
+    # predicted pressure at which the best seal opens; 0: no seal (0 to 1000000000000 Pa)
     burst_pa: float
 
 
 class ObservedDamage(TypedDict):
-    """what heat and force have done, in volumes of the tissue at rest; links have none"""
+    """damage by heat and force, in volumes of the tissue at rest; links have no volume"""
 
-    # tetrahedra and triangles that are not there any more (0 to 9007199254740991)
+    # number of tetrahedra and triangles that were removed (0 to 9007199254740991)
     removed_count: int
 
-    # their volume (0 to 1000000000 m^3)
+    # volume of the removed elements (0 to 1000000000 m^3)
     removed_m3: float
 
-    # volume of those that are there, each weighted by the mean exposure of its vertices (0 to 1000000000 m^3)
+    # volume of the present elements, each weighted with the mean exposure of its vertices (0 to 1000000000 m^3)
     damaged_m3: float
 
 
 class RegionDamage(TypedDict):
-    """inside a region and outside it"""
+    """damage inside and outside of a region"""
 
-    # the region's
+    # name of the region
     name: str
 
-    # inside
+    # damage inside the region
     inside: ObservedDamage
 
-    # outside
+    # damage outside the region
     outside: ObservedDamage
 
 
 class ObservedEnergy(TypedDict):
-    """where the energy of instruments went since the session was made; delivered_j and blade_j together are the sum of those after far_j; with energy `paper` all are 0"""
+    """where the energy of instruments went since the session was created; delivered_j and blade_j together are the sum of the members after far_j; with energy `paper` all members are 0"""
 
-    # by current in tissue (-1000000000000 to 1000000000000 J)
+    # energy that current delivered in tissue (-1000000000000 to 1000000000000 J)
     delivered_j: float
 
-    # from blades into tissue; below 0: the other way (-1000000000000 to 1000000000000 J)
+    # heat from blades into tissue; below 0: from tissue into blades (-1000000000000 to 1000000000000 J)
     blade_j: float
 
-    # by current far away, where no heat is computed; not part of the sum (-1000000000000 to 1000000000000 J)
+    # energy of current far from the tool, where no heat is computed; not part of the sum (-1000000000000 to 1000000000000 J)
     far_j: float
 
-    # heat of the tissue above its first temperature (-1000000000000 to 1000000000000 J)
+    # heat of the tissue above its temperature at the start (-1000000000000 to 1000000000000 J)
     stored_j: float
 
-    # taken along by water that boiled off, as steam and smoke (-1000000000000 to 1000000000000 J)
+    # energy carried away by water that boiled off, as steam and smoke (-1000000000000 to 1000000000000 J)
     boiled_j: float
 
-    # taken along by blood (-1000000000000 to 1000000000000 J)
+    # energy carried away by blood (-1000000000000 to 1000000000000 J)
     perfused_j: float
 
-    # lost at surfaces (-1000000000000 to 1000000000000 J)
+    # energy lost at surfaces (-1000000000000 to 1000000000000 J)
     ambient_j: float
 
     # heat of tissue that was removed (-1000000000000 to 1000000000000 J)
     shed_j: float
 
-    # volume of the tissue that is there and dead by heat (0 to 1000000000 m^3)
+    # volume of present tissue that heat has killed (0 to 1000000000 m^3)
     coagulated_m3: float
 
-    # water that boiled off in the last tick (0 to 1000000 kg/s)
+    # rate at which water boiled off in the last tick (0 to 1000000 kg/s)
     vapour_kg_s: float
 
 
 class Advanced(TypedDict):
-    """the ticks are made, and this is what was asked for"""
+    """the ticks were computed; the observed values"""
 
-    # where the session is now (0 to 9007199254740991)
+    # present tick of the session (0 to 9007199254740991)
     tick: int
 
-    # simulated (0 to 1000000000000 s)
+    # simulated time (0 to 1000000000000 s)
     time_s: float
 
-    # ticks that were made: fewer than asked for where lock-step ended meanwhile (0 to 100000)
+    # number of computed ticks; fewer than requested if lock-step ended meanwhile (0 to 100000)
     ticks: int
 
-    # whether they are on the disk; false for ephemeral sessions
+    # whether the ticks are on the disk; false for ephemeral sessions
     stored: bool
 
     # x, y, z of the vertices (-1000000 to 1000000 m)
     positions_m: NotRequired[Sequence[float]]
 
-    # words of 32 faces, the lowest bit first; a set bit: not drawn (0 to 4294967295)
+    # words of 32 faces, the lowest bit first; a set bit: the face is not drawn (0 to 4294967295)
     mask: NotRequired[Sequence[int]]
 
     # in the order of the channels
     scalars: NotRequired[Sequence[ObservedScalar]]
 
-    # as they were added
+    # in the order in which the tools were added
     tools: NotRequired[Sequence[ObservedTool]]
 
-    # in the scene's order
+    # in the order of the scene
     vessels: NotRequired[Sequence[ObservedVessel]]
 
     # in the order of the request
     regions: NotRequired[Sequence[RegionDamage]]
 
-    # of the whole session
+    # energy of the whole session
     energy: NotRequired[ObservedEnergy]
 
 
 class SessionSpeed(TypedDict):
-    """sets the pace"""
+    """sets the speed of a session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # simulated over wall time to aim at (0.01 to 10)
+    # wanted simulated time over wall time (0.01 to 10)
     speed: float
 
 
 class SessionFork(TypedDict):
-    """makes a new session from this one's state"""
+    """creates a new session from the state of this session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # wanted id of the new one, without the daemon's label; made up by default
+    # name of the new session, without the daemon's label (default: chosen by the server)
     name: NotRequired[str]
 
-    # of the state; the present one by default (0 to 9007199254740991)
+    # tick of the state (default: the present tick) (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the new session starts paused; false by default
+    # the new session starts paused (default: false)
     paused: NotRequired[bool]
 
 
 class SessionSnapshot(TypedDict):
-    """stores the state under a name"""
+    """stores the state of a session under a name"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # made up by default
+    # name of the snapshot (default: chosen by the server)
     name: NotRequired[str]
 
 
 class SnapshotResult(TypedDict):
     """a stored state"""
 
-    # for session.restore
+    # name of the snapshot, for session.restore
     name: str
 
-    # of the state (0 to 9007199254740991)
+    # tick of the state (0 to 9007199254740991)
     tick: int
 
-    # of the whole state
+    # hash of the whole state
     hash: str
 
-    # stored for it; 0: an earlier checkpoint and the log lead there (0 to 9007199254740991 B)
+    # bytes stored for the state; 0: the state can be reached from an earlier checkpoint and the log (0 to 9007199254740991 B)
     byte_count: int
 
 
 class NamedSnapshot(TypedDict):
-    """a state with a name"""
+    """a snapshot of a session"""
 
-    # for session.restore
+    # name of the snapshot, for session.restore
     name: str
 
-    # of the state (0 to 9007199254740991)
+    # tick of the state (0 to 9007199254740991)
     tick: int
 
-    # number of the branch that it was taken on (0 to 9007199254740991)
+    # number of the branch of the snapshot (0 to 9007199254740991)
     branch: int
 
 
 class SnapshotList(TypedDict):
-    """the session's states with a name"""
+    """all snapshots of a session"""
 
-    # by tick
+    # sorted by tick
     snapshots: Sequence[NamedSnapshot]
 
 
 class SessionRestore(TypedDict):
-    """restores a snapshot, energy off; a new branch"""
+    """restores a snapshot on a new branch; energy goes off"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # of the snapshot
+    # name of the snapshot
     name: str
 
 
 class SessionRewind(TypedDict):
-    """rewinds to a tick, energy off; a new branch"""
+    """rewinds to a tick on a new branch; energy goes off"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # the timeline's oldest_tick or later, or what a refusal names (0 to 9007199254740991)
+    # a tick from oldest_tick of the timeline on, or one that a refusal names (0 to 9007199254740991)
     tick: int
 
 
 class Restored(TypedDict):
-    """where a session is after a rewind, restore or reset"""
+    """state of a session after a rewind, restore or reset"""
 
-    # of the state (0 to 9007199254740991)
+    # tick of the state (0 to 9007199254740991)
     tick: int
 
-    # of the frames from now on
+    # epoch of the frames from now on
     epoch: str
 
     # number of the branch in the store (0 to 9007199254740991)
     branch: int
 
-    # false: written by another build or instruction set, so not bit-exact
+    # false: another build or instruction set wrote the state, so later ticks may differ in the last digits
     exact: bool
 
 
 class SessionExport(TypedDict):
     """asks for the tissue as a file"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # of the file
+    # format of the file
     format: Literal["vtu", "obj"]
 
 
 class SessionLog(TypedDict):
     """asks for the command log as a script for cautery-sim"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # first tick; 0 by default (0 to 9007199254740991)
+    # first tick (default: 0) (0 to 9007199254740991)
     from_tick: NotRequired[int]
 
-    # last tick; the present one by default (0 to 9007199254740991)
+    # last tick (default: the present tick) (0 to 9007199254740991)
     to_tick: NotRequired[int]
 
 
 class Transfer(TypedDict):
     """a file that follows in binary chunks"""
 
-    # number in the chunks' headers (1 to 4294967295)
+    # number of the transfer in the headers of the chunks (1 to 4294967295)
     transfer: int
 
-    # proposed
+    # proposed file name
     file_name: str
 
-    # of the file
+    # media type of the file
     media_type: str
 
-    # of the file (0 to 9007199254740991 B)
+    # size of the file (0 to 9007199254740991 B)
     byte_count: int
 
-    # of the file, 64 lower-case hex digits
+    # SHA-256 of the file, 64 lower-case hex digits
     sha256: str
 
 
 class SessionTimeline(TypedDict):
-    """asks for what happened"""
+    """asks for the events of a session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # first tick; 0 by default (0 to 9007199254740991)
+    # first tick (default: 0) (0 to 9007199254740991)
     from_tick: NotRequired[int]
 
-    # newest events wanted at most; 1024 by default (1 to 4096)
+    # largest number of events, the newest of them (default: 1024) (1 to 4096)
     count: NotRequired[int]
 
 
 class TimelineEvent(TypedDict):
-    """something that happened on the present branch"""
+    """an event on the present branch"""
 
-    # when (0 to 9007199254740991)
+    # tick of the event (0 to 9007199254740991)
     tick: int
 
-    # simulated (0 to 1000000000000 s)
+    # simulated time (0 to 1000000000000 s)
     time_s: float
 
-    # what
+    # kind of the event
     kind: Literal["created", "cut", "tear", "inverted", "energy_gain", "bleeding", "bleeding_stopped", "sealed", "energy_on", "energy_off", "watchdog", "driver", "tool_added", "tool_removed", "refused", "fault", "rewind", "reset", "snapshot", "restore"]
 
-    # with which tool
+    # tool of the event
     tool: NotRequired[str]
 
-    # by whom
+    # client that caused the event
     client: NotRequired[str]
 
-    # cut: elements removed; refused: commands (0 to 9007199254740991)
+    # cut: number of removed elements; refused: number of commands (0 to 9007199254740991)
     count: NotRequired[int]
 
-    # in words
+    # details in words
     detail: NotRequired[str]
 
 
 class Timeline(TypedDict):
-    """what happened, and how far back one can go"""
+    """events of a session, and the oldest tick that can be reached"""
 
-    # the present (0 to 9007199254740991)
+    # present tick (0 to 9007199254740991)
     tick: int
 
-    # from here on every tick can be reached (0 to 9007199254740991)
+    # every tick from this tick on can be reached (0 to 9007199254740991)
     oldest_tick: int
 
     # number of the present branch (0 to 9007199254740991)
     branch: int
 
-    # oldest first; cuts within 30 ticks are one
+    # oldest first; cuts within 30 ticks are one event
     events: Sequence[TimelineEvent]
 
 
 class TickResult(TypedDict):
     """when a change takes effect"""
 
-    # the tick border (0 to 9007199254740991)
+    # tick border at which the change takes effect (0 to 9007199254740991)
     tick: int
 
 
 class SessionFrameAt(TypedDict):
-    """asks what a session looked like; it goes on meanwhile, and nothing of it changes"""
+    """asks for the picture of a past tick; the session continues and does not change"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # on the present line, from oldest_tick to the present (0 to 9007199254740991)
+    # tick on the present branch, from oldest_tick to the present (0 to 9007199254740991)
     tick: int
 
-    # by default those that the table of channels marks
+    # channels (default: those marked in the table of channels)
     channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]]
 
-    # quantisation; 5e-5 by default (1e-07 to 0.001 m)
+    # quantisation step (default: 5e-5) (1e-07 to 0.001 m)
     step_m: NotRequired[float]
 
-    # no section of the frame is in meshoptimizer's codec; false by default
+    # true: no section of the frame uses meshoptimizer's codec (default: false)
     plain: NotRequired[bool]
 
 
 class PastFrame(TypedDict):
-    """one key frame that follows in binary chunks, and what a decoder needs beside the session's topology; its tools have no drivers"""
+    """one key frame, which follows in binary chunks, and what a decoder needs besides the topology; the tools in the frame have no drivers"""
 
-    # number in the chunks' headers (1 to 4294967295)
+    # number of the transfer in the headers of the chunks (1 to 4294967295)
     transfer: int
 
-    # proposed
+    # proposed file name
     file_name: str
 
-    # of the file
+    # media type of the file
     media_type: str
 
-    # of the frame (0 to 9007199254740991 B)
+    # size of the frame (0 to 9007199254740991 B)
     byte_count: int
 
-    # of the frame, 64 lower-case hex digits
+    # SHA-256 of the frame, 64 lower-case hex digits
     sha256: str
 
-    # what it shows (0 to 9007199254740991)
+    # tick that the frame shows (0 to 9007199254740991)
     tick: int
 
-    # to the bit what was; false: replayed by another build or instruction set
+    # true: equal to the bit to the past state; false: replayed by another build or instruction set
     exact: bool
 
-    # in the frame's header (0 to 4294967295)
+    # session number in the frame's header (0 to 4294967295)
     session_number: int
 
-    # in the frame's header (0 to 3)
+    # profile in the frame's header (0 to 3)
     profile: int
 
-    # in the frame's header; that of no stream
+    # epoch in the frame's header, which no stream has
     epoch: str
 
-    # in the frame
+    # channels of the frame
     channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]
 
-    # of positions and scalars (0 to 16777216)
+    # number of vertices in positions and scalars (0 to 16777216)
     vertex_count: int
 
-    # of the mask (0 to 16777216)
+    # number of faces in the mask (0 to 16777216)
     face_count: int
 
-    # where the quantised zero is (-1000000 to 1000000 m)
+    # position of the quantised zero (-1000000 to 1000000 m)
     origin_m: Sequence[float]
 
-    # one quantised step (1e-07 to 0.01 m)
+    # length of one quantised step (1e-07 to 0.01 m)
     step_m: float
 
     # one step of the stress channel (0.001 to 1000000000 Pa)
@@ -1142,414 +1142,414 @@ class PastFrame(TypedDict):
 
 
 class FrameProgress(TypedDict):
-    """how far a past view is"""
+    """progress of a past view"""
 
-    # its id
+    # id of the session
     session: str
 
-    # where it goes (0 to 9007199254740991)
+    # tick of the past view (0 to 9007199254740991)
     tick: int
 
-    # what it does
+    # present stage of the work
     stage: Literal["building", "reading", "restoring", "replaying"]
 
-    # where the replay began (0 to 9007199254740991)
+    # tick at which the replay began (0 to 9007199254740991)
     from_tick: int
 
-    # where it is (0 to 9007199254740991)
+    # tick that the replay has reached (0 to 9007199254740991)
     at_tick: int
 
 
 class StoreBackup(TypedDict):
-    """has the daemon copy its store"""
+    """asks the daemon to copy its store"""
 
-    # of the copy, without .db; by default the time. Nothing is replaced
+    # name of the copy, without .db (default: the time); no file is replaced
     name: NotRequired[str]
 
 
 class StoreCopy(TypedDict):
-    """a copy of the store as it was at one moment, checked"""
+    """a checked copy of the store, as it was at one moment"""
 
-    # where it is, on the daemon's machine
+    # path of the copy on the daemon's machine
     file: str
 
-    # its size (0 to 9007199254740991 B)
+    # size of the copy (0 to 9007199254740991 B)
     byte_count: int
 
 
 class MoveBegin(TypedDict):
-    """a session is to go to another daemon"""
+    """begins to move a session to another daemon"""
 
-    # its id
+    # id of the session on this daemon
     session: str
 
-    # its id there
+    # id of the session on the target daemon
     target: str
 
-    # of the daemon that is to have it
+    # label of the target daemon
     label: str
 
-    # where that daemon is, for who asks for the old id; none where one address leads to all
+    # address of the target daemon, for clients that use the old id; empty if one address leads to all daemons
     url: NotRequired[str]
 
 
 class MoveBegun(TypedDict):
     """a move has begun"""
 
-    # names it from here on
+    # name of the move
     move: str
 
 
 class MoveRef(TypedDict):
     """names a move"""
 
-    # its id on the daemon that is asked
+    # id of the session on the daemon that is asked
     session: str
 
-    # of move.begin
+    # name of the move, from move.begin
     move: str
 
 
 class MoveHeld(TypedDict):
-    """a state that a session stands at"""
+    """the state at which a session is suspended"""
 
-    # when (0 to 9007199254740991)
+    # tick of the state (0 to 9007199254740991)
     tick: int
 
-    # of the state
+    # hash of the state
     hash: str
 
-    # another daemon's state was read here to the bit; false: another build or instruction set wrote it, and what follows may differ in last digits
+    # true: the state of the other daemon was restored to the bit; false: another build or instruction set wrote it, so later ticks may differ in the last digits
     exact: NotRequired[bool]
 
 
 class MoveDecision(TypedDict):
-    """what became of a move"""
+    """result of a move"""
 
-    # false: the session stays, and this move will never be
+    # false: the session stays, and this move can no longer happen
     moved: bool
 
-    # its id there
+    # id of the session on the target daemon
     target: NotRequired[str]
 
-    # lets the other daemon serve it
+    # proof with which the target daemon may serve the session
     proof: NotRequired[str]
 
-    # where it stays: lets the other daemon forget the move
+    # if the session stays: release with which the target daemon may forget the move
     release: NotRequired[str]
 
 
 class MoveReceive(TypedDict):
-    """a piece of a session"""
+    """delivers a piece of a session"""
 
-    # its id here
+    # id of the session on this daemon
     session: str
 
-    # of move.begin
+    # name of the move, from move.begin
     move: str
 
-    # that holds the piece; it is gone with this
+    # upload that holds the piece; this request removes the upload
     upload: str
 
 
 class MoveReceived(TypedDict):
-    """a piece is on the disk"""
+    """a piece is on the disk of the target daemon"""
 
-    # that are (0 to 9007199254740991)
+    # number of pieces on the disk (0 to 9007199254740991)
     pieces: int
 
-    # of the last piece: proves to the other daemon that all are here
+    # after the last piece: receipt that proves to the source daemon that all pieces are on the disk
     receipt: NotRequired[str]
 
 
 class MoveCommit(TypedDict):
-    """the other daemon has all pieces of a session"""
+    """informs the source daemon that the target daemon has all pieces"""
 
-    # its id here
+    # id of the session on this daemon
     session: str
 
-    # of move.begin
+    # name of the move, from move.begin
     move: str
 
-    # of the other daemon's last move.receive
+    # receipt of the last move.receive on the target daemon
     receipt: str
 
 
 class MoveForget(TypedDict):
-    """the pieces of a move are to be removed"""
+    """removes the pieces of a move"""
 
-    # its id here
+    # id of the session on this daemon
     session: str
 
-    # of move.begin
+    # name of the move, from move.begin
     move: str
 
-    # of move.cancel
+    # release from move.cancel
     release: NotRequired[str]
 
-    # instead of a release: the other daemon is gone for good. If it had decided the move, the session is lost
+    # instead of a release: the source daemon is lost for good. If it had decided the move, the session is lost
     source_lost: NotRequired[bool]
 
 
 class MoveAccept(TypedDict):
-    """a session is to be served here"""
+    """asks the target daemon to serve the session"""
 
-    # its id here
+    # id of the session on this daemon
     session: str
 
-    # of move.begin
+    # name of the move, from move.begin
     move: str
 
-    # of move.commit
+    # proof from move.commit
     proof: str
 
 
 class MoveEntry(TypedDict):
     """a move, as this daemon knows it"""
 
-    # its id here
+    # id of the session on this daemon
     session: str
 
-    # of move.begin
+    # name of the move, from move.begin
     move: str
 
-    # its id on the other daemon
+    # id of the session on the other daemon
     other: str
 
-    # leaving, held, deciding, gone; incoming, doubt (all is here, and whether it is to be served is known to the other daemon), accepting
+    # leaving, held, deciding, gone; incoming, doubt (all pieces are here, but only the source daemon knows whether the move is decided), accepting
     state: str
 
-    # gone: where the other daemon is, as it was said
+    # gone: address of the other daemon, as move.begin gave it
     url: NotRequired[str]
 
 
 class MoveList(TypedDict):
     """moves of this daemon's sessions"""
 
-    # those that are not over first, then what has gone
+    # unfinished moves first, then sessions that have moved away
     moves: Sequence[MoveEntry]
 
 
 class WaitingCommand(TypedDict):
     """a command that waits for a later tick"""
 
-    # its own, for session.cancel (1 to 9007199254740991)
+    # number of the command, for session.cancel (1 to 9007199254740991)
     number: int
 
-    # when it acts (1 to 9007199254740991)
+    # tick at which the command takes effect (1 to 9007199254740991)
     tick: int
 
-    # what it is, as tool.move
+    # method of the command, as tool.move
     method: str
 
-    # the tool that it is about
+    # tool of the command
     tool: NotRequired[str]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gave the command (0 to 9007199254740991)
     sequence: int
 
-    # the client that asked for it (1 to 4294967295)
+    # client that sent the command (1 to 4294967295)
     client: int
 
-    # that client's name
+    # name of that client
     name: str
 
 
 class WaitingList(TypedDict):
     """the commands of a session that wait for later ticks"""
 
-    # in the order in which they came; at most 64 of a client
+    # in the order of arrival; at most 64 of one client
     commands: Sequence[WaitingCommand]
 
 
 class SessionCancel(TypedDict):
-    """takes back commands that wait for later ticks"""
+    """cancels commands that wait for later ticks"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # the command's, of session.waiting; without it all of the caller's (1 to 9007199254740991)
+    # number of the command, from session.waiting (default: all commands of the caller) (1 to 9007199254740991)
     number: NotRequired[int]
 
 
 class Cancelled(TypedDict):
-    """what was taken back"""
+    """cancelled commands"""
 
-    # commands (0 to 9007199254740991)
+    # number of cancelled commands (0 to 9007199254740991)
     count: int
 
 
 class SessionJoin(TypedDict):
     """asks for frames"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # frames a wall second at most; 60 by default (0.1 to 1000 1/s)
+    # largest number of frames in a second of wall time (default: 60) (0.1 to 1000 1/s)
     rate_hz: NotRequired[float]
 
-    # by default those that the table of channels marks
+    # channels (default: those marked in the table of channels)
     channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]]
 
-    # quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m)
+    # wanted quantisation step; the server may choose a finer step (default: 5e-5) (1e-07 to 0.001 m)
     step_m: NotRequired[float]
 
-    # no section of the frames is in meshoptimizer's codec; false by default
+    # true: no section of the frames uses meshoptimizer's codec (default: false)
     plain: NotRequired[bool]
 
 
 class StreamDescription(TypedDict):
     """what a decoder needs; a topology frame and a key frame follow"""
 
-    # its id
+    # id of the session
     session: str
 
-    # in the frames' headers (0 to 4294967295)
+    # session number in the frames' headers (0 to 4294967295)
     session_number: int
 
-    # in the frames' headers (0 to 3)
+    # profile in the frames' headers (0 to 3)
     profile: int
 
-    # at the time of joining
+    # epoch at the time of joining
     epoch: str
 
-    # granted (0.1 to 1000 1/s)
+    # largest number of frames in a second, as granted (0.1 to 1000 1/s)
     rate_hz: float
 
-    # granted
+    # channels of the stream
     channels: Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature", "vessels", "blood", "tool_contact"]]
 
-    # of positions and scalars (0 to 16777216)
+    # number of vertices in positions and scalars (0 to 16777216)
     vertex_count: int
 
-    # of mask and topology (0 to 16777216)
+    # number of faces in mask and topology (0 to 16777216)
     face_count: int
 
-    # where the quantised zero is (-1000000 to 1000000 m)
+    # position of the quantised zero (-1000000 to 1000000 m)
     origin_m: Sequence[float]
 
-    # one quantised step (1e-07 to 0.01 m)
+    # length of one quantised step (1e-07 to 0.01 m)
     step_m: float
 
     # one step of the stress channel (0.001 to 1000000000 Pa)
     stress_step_pa: float
 
-    # no section of its frames is in meshoptimizer's codec; absent from older servers
+    # true: no section of the frames uses meshoptimizer's codec; older servers do not send this member
     plain: NotRequired[bool]
 
 
 class StreamAck(TypedDict):
-    """how far the client has decoded; bounds what is in flight, shows delays"""
+    """the newest frame that the client has decoded; limits the frames in flight and shows delays"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
-    # of the frame
+    # epoch of the frame
     epoch: str
 
-    # of the frame (0 to 9007199254740991)
+    # sequence number of the frame (0 to 9007199254740991)
     sequence: int
 
 
 class ToolRef(TypedDict):
     """names a tool of a session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # its name
+    # name of the tool
     tool: str
 
 
 class ToolHandOver(TypedDict):
-    """gives a tool up"""
+    """gives up a tool, or hands it over to another client"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # its name
+    # name of the tool
     tool: str
 
-    # to this connection; by default the tool has no driver (1 to 4294967295)
+    # connection that becomes the driver (default: the tool has no driver) (1 to 4294967295)
     client: NotRequired[int]
 
 
 class CommandResult(TypedDict):
-    """a command is in the log"""
+    """a command was accepted into the log"""
 
-    # the tick border at which it takes effect (0 to 9007199254740991)
+    # tick border at which the command takes effect (0 to 9007199254740991)
     tick: int
 
-    # as given (0 to 9007199254740991)
+    # as given in the command (0 to 9007199254740991)
     sequence: int
 
-    # false: the store was full; energy is off all the same
+    # false: the store was full; energy is off nevertheless
     stored: NotRequired[bool]
 
 
 class UploadBegin(TypedDict):
-    """announces a mesh file; takes the place of an upload of the same name, whole or not"""
+    """announces a mesh file; replaces an upload of the same name, complete or not"""
 
-    # for scenes: meshes[].file of source bytes, with file_name's ending
+    # name of the upload, for meshes[].file of source bytes with the ending of file_name
     name: str
 
-    # for messages and the names of sessions; the format is found from the bytes
+    # file name for messages and names of sessions; the format is recognised from the bytes
     file_name: str
 
-    # of the file, exactly (1 to 9007199254740991 B)
+    # exact size of the file (1 to 9007199254740991 B)
     byte_count: int
 
 
 class UploadBeginResult(TypedDict):
-    """chunks may come"""
+    """the server is ready for chunks"""
 
-    # number for the chunks' headers (1 to 4294967295)
+    # number of the transfer for the headers of the chunks (1 to 4294967295)
     transfer: int
 
-    # of data in one chunk (1 to 9007199254740991 B)
+    # largest data of one chunk (1 to 9007199254740991 B)
     chunk_bytes_max: int
 
 
 class UploadEnd(TypedDict):
-    """all chunks are sent"""
+    """all chunks were sent"""
 
-    # as upload.begin answered (1 to 4294967295)
+    # number from upload.begin (1 to 4294967295)
     transfer: int
 
-    # of the file, 64 lower-case hex digits
+    # SHA-256 of the file, 64 lower-case hex digits
     sha256: str
 
 
-# an upload is a mesh to report on
+# asks for a report on an upload, read as a mesh
 MeshRead = TypedDict("MeshRead", {
-    # as in upload.begin; whole
+    # name of a complete upload, as in upload.begin
     "upload": str,
 
-    # metres in one unit of the file; guessed by default where it is clear (1e-09 to 1000 m)
+    # metres in one unit of the file (default: guessed from the size of the mesh, if that is clear) (1e-09 to 1000 m)
     "unit_m": NotRequired[float],
 
-    # fat (tetrahedra) or fascia (triangles); by default fat where there are tetrahedra, or an inside
+    # fat (tetrahedra) or fascia (triangles); default: fat if the file has tetrahedra or a closed surface
     "as": NotRequired[Literal["fascia", "membrane", "fat", "links"]],
 
-    # refuses a mesh that would have to be mended; false by default
+    # true: refuse a mesh that needs repair (default: false)
     "strict": NotRequired[bool],
 
-    # never fills the mesh with tetrahedra, for a scene of one's own; false by default
+    # true: never fill the mesh with tetrahedra; for scenes that a client writes itself (default: false)
     "as_it_is": NotRequired[bool],
 
-    # length of an edge of the tetrahedra that fill it; about 8,000 of them by default (1e-06 to 10 m)
+    # edge length of the tetrahedra that fill the mesh (default: gives about 8,000 tetrahedra) (1e-06 to 10 m)
     "edge_m": NotRequired[float],
 
-    # of a segmentation: labels to keep, as in 1,3; all by default
+    # labels of a segmentation to keep, as in 1,3 (default: all)
     "labels": NotRequired[str],
 
-    # sides that are pinned: bottom, top, left, right, front, back, with commas, or none; the bottom by default
+    # pinned sides: bottom, top, left, right, front, back, with commas, or none (default: bottom)
     "pin": NotRequired[str],
 })
 
@@ -1557,220 +1557,220 @@ MeshRead = TypedDict("MeshRead", {
 class MeshKind(TypedDict):
     """elements of one kind in the file"""
 
-    # the kind: hexahedra
+    # name of the kind, as hexahedra
     name: str
 
-    # became elements of the mesh (0 to 9007199254740991)
+    # number that became elements of the mesh (0 to 9007199254740991)
     read: int
 
-    # were passed over (0 to 9007199254740991)
+    # number that were ignored (0 to 9007199254740991)
     passed: int
 
 
 class MeshMend(TypedDict):
-    """something that was mended"""
+    """one kind of repair"""
 
-    # in words: duplicate vertices merged
+    # the repair in words, as `duplicate vertices merged`
     what: str
 
-    # how many (1 to 9007199254740991)
+    # number of repairs (1 to 9007199254740991)
     count: int
 
 
 class MeshRegion(TypedDict):
     """a region of the mesh"""
 
-    # 2: of triangles, 3: of tetrahedra (2 to 3)
+    # 2: region of triangles, 3: of tetrahedra (2 to 3)
     dimension: int
 
-    # its number, as layers name it (-2147483648 to 2147483647)
+    # number of the region, as layers name it (-2147483648 to 2147483647)
     region: int
 
-    # elements (0 to 9007199254740991)
+    # number of elements (0 to 9007199254740991)
     element_count: int
 
-    # of the file, or empty
+    # name of the region in the file, or empty
     name: str
 
 
 class MeshReport(TypedDict):
-    """what became of a mesh file"""
+    """report on a mesh file"""
 
-    # the whole report in words, one fact a line
+    # the whole report in words, one fact in each line
     text: str
 
-    # Gmsh 4.1
+    # format of the file, as Gmsh 4.1
     format: str
 
-    # vertices in the file (0 to 9007199254740991)
+    # number of vertices in the file (0 to 9007199254740991)
     vertices_read: int
 
     # elements in the file
     kinds: Sequence[MeshKind]
 
-    # what was mended
+    # repairs of the mesh
     mended: Sequence[MeshMend]
 
-    # vertices of the mesh (0 to 9007199254740991)
+    # number of vertices of the mesh (0 to 9007199254740991)
     vertex_count: int
 
-    # triangles (0 to 9007199254740991)
+    # number of triangles (0 to 9007199254740991)
     triangle_count: int
 
-    # tetrahedra (0 to 9007199254740991)
+    # number of tetrahedra (0 to 9007199254740991)
     tetrahedron_count: int
 
-    # connected pieces (0 to 9007199254740991)
+    # number of connected pieces (0 to 9007199254740991)
     component_count: int
 
-    # edges on the rim of a surface without tetrahedra; 0: closed (0 to 9007199254740991)
+    # number of edges on the rim of a surface without tetrahedra; 0: the surface is closed (0 to 9007199254740991)
     open_edge_count: int
 
-    # the first regions
+    # the first regions of the mesh
     regions: Sequence[MeshRegion]
 
-    # of all regions (0 to 9007199254740991)
+    # number of all regions (0 to 9007199254740991)
     region_count: int
 
-    # corner of the bounding box (-1000000 to 1000000 m)
+    # least corner of the bounding box (-1000000 to 1000000 m)
     least_m: Sequence[float]
 
-    # the opposite corner (-1000000 to 1000000 m)
+    # largest corner of the bounding box (-1000000 to 1000000 m)
     most_m: Sequence[float]
 
     # metres in one unit of the file, as used (1e-09 to 1000 m)
     unit_m: float
 
-    # elements by quality in tenths from 0 to 1 (mean ratio) (0 to 9007199254740991)
+    # number of elements in each tenth of the quality from 0 to 1 (mean ratio) (0 to 9007199254740991)
     quality: Sequence[float]
 
-    # of all elements (0 to 1)
+    # least quality of all elements (0 to 1)
     least_quality: float
 
 
 class MeshReading(TypedDict):
-    """a mesh that was read"""
+    """result of reading a mesh"""
 
-    # what became of the file
+    # report on the file
     report: MeshReport
 
-    # a scene around the upload, for session.create
+    # a scene with the upload, for session.create
     definition: Scene
 
-    # a choice that the user has: the surface was filled
+    # a choice that the user has, as whether the surface is filled
     note: NotRequired[str]
 
 
 class UploadDiscard(TypedDict):
-    """an upload is not needed any more"""
+    """removes an upload"""
 
-    # as in upload.begin; it may be whole or still coming
+    # name of the upload, which may be complete or still arriving
     name: str
 
 
 class UploadResult(TypedDict):
-    """the file is kept until it is discarded, another takes its name, or the connection closes"""
+    """the file is complete; the server keeps it until it is discarded, another upload takes its name, or the connection closes"""
 
-    # as given
+    # as given in upload.begin
     name: str
 
-    # what a mesh of source bytes says in file
+    # value for the member file of a mesh of source bytes
     file: str
 
-    # received (0 to 9007199254740991 B)
+    # number of received bytes (0 to 9007199254740991 B)
     byte_count: int
 
 
 class SessionChanged(TypedDict):
-    """a session is no longer as it was"""
+    """a session has changed"""
 
-    # why
+    # reason of the change
     change: Literal["created", "destroyed", "paused", "resumed", "stepped", "speed", "reset", "rewound", "restored", "restarted", "moved", "tools", "tissue"]
 
-    # as it is now
+    # present summary of the session
     summary: SessionSummary
 
-    # who did it
+    # client that caused the change
     client: NotRequired[str]
 
-    # moved: the address of the daemon that has it now, if it is another
+    # moved: address of the daemon that has the session now, if it is another
     target: NotRequired[str]
 
-    # moved: its id there
+    # moved: id of the session on that daemon
     moved_to: NotRequired[str]
 
 
 class SessionFaulted(TypedDict):
-    """the simulation met numerical trouble; rewind or reset"""
+    """the simulation failed numerically; rewind or reset the session"""
 
-    # its id
+    # id of the session
     session: str
 
-    # when (0 to 9007199254740991)
+    # tick of the fault (0 to 9007199254740991)
     tick: int
 
-    # in words
+    # reason in words
     reason: str
 
 
 class DriverChanged(TypedDict):
-    """a tool has another driver or lost its energy"""
+    """a tool has another driver, or its energy went off"""
 
-    # its id
+    # id of the session
     session: str
 
-    # as it is now
+    # present driver of the tool
     driver: Driver
 
 
 class ToolRefused(TypedDict):
-    """commands to a tool were refused; sent at most once a second and tool"""
+    """commands to a tool were refused; sent at most once a second for each tool"""
 
-    # its id
+    # id of the session
     session: str
 
-    # the tool
+    # name of the tool
     tool: str
 
-    # refused since the last such message (1 to 9007199254740991)
+    # number of commands refused since the last such message (1 to 9007199254740991)
     count: int
 
-    # of the last one (0 to 9007199254740991)
+    # number of the last refused command (0 to 9007199254740991)
     sequence: int
 
-    # why the last one was refused: a status of the error table
+    # status of the last refusal, from the table of errors
     status: str
 
-    # its offending member
+    # member of that command that was refused
     path: NotRequired[str]
 
-    # in words
+    # reason in words
     reason: str
 
 
 class TakeoverRequested(TypedDict):
-    """another client asks the driver for a tool; answer with tool.hand_over or not at all"""
+    """another client asks the driver for a tool; the driver may answer with tool.hand_over"""
 
-    # its id
+    # id of the session
     session: str
 
-    # the tool
+    # name of the tool
     tool: str
 
-    # who asks (1 to 4294967295)
+    # client that asks (1 to 4294967295)
     client: int
 
-    # the client's name in its hello
+    # name that the client gave in hello
     name: str
 
 
 class EventNotice(TypedDict):
-    """something happened, as it will stand in the timeline"""
+    """an event happened; the timeline contains it from now on"""
 
-    # its id
+    # id of the session
     session: str
 
-    # what
+    # the event
     event: TimelineEvent
 
 
@@ -1792,35 +1792,35 @@ class Mesh(TypedDict):
     # turns the UV axes against the mesh's axes (-6.3 to 6.3 rad)
     texture_turn_rad: NotRequired[float]
 
-    # a mesh file, relative to the scene file
+    # path of a mesh file, relative to the scene file
     file: NotRequired[str]
 
     # metres in one unit of the file (1e-09 to 1000 m)
     unit_m: NotRequired[float]
 
-    # 1: refuses a mesh that would have to be mended (0 to 1)
+    # 1: refuse a mesh with errors instead of repairing it (0 to 1)
     strict: NotRequired[int]
 
-    # moves the mesh, after the unit (-100 to 100 m)
+    # translation of the mesh, applied after unit_m (-100 to 100 m)
     translate_m: NotRequired[Sequence[float]]
 
 
 class Selection(TypedDict):
-    """a choice of vertices by rest position"""
+    """a selection of vertices by their rest positions"""
 
     # which vertices
     kind: Literal["rim", "box", "sphere", "nearest"]
 
-    # only of this layer; any if absent
+    # only vertices of this layer; without it, of any layer
     layer: NotRequired[str]
 
     # least corner of the box (-100 to 100 m)
     least_m: NotRequired[Sequence[float]]
 
-    # largest corner (-100 to 100 m)
+    # largest corner of the box (-100 to 100 m)
     most_m: NotRequired[Sequence[float]]
 
-    # centre of the sphere, or the place (-100 to 100 m)
+    # centre of the sphere, or the point for `nearest` (-100 to 100 m)
     center_m: NotRequired[Sequence[float]]
 
     # radius of the sphere (0 to 100 m)
@@ -1833,10 +1833,10 @@ class Tool(TypedDict):
     # name of the tool
     name: str
 
-    # profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+    # profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out
     instrument: NotRequired[str]
 
-    # mode of the instrument; its first by default
+    # mode of the instrument (default: its first)
     mode: NotRequired[str]
 
     # shape
@@ -1863,16 +1863,16 @@ class Tool(TypedDict):
     # nodes of the heat grid along each axis (8 to 64)
     grid_cells: NotRequired[float]
 
-    # spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m)
+    # spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m)
     grid_step_m: NotRequired[float]
 
-    # alpha of eq. 18 (0 to 0.001 m^2/s)
+    # thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s)
     diffusivity_m2_s: NotRequired[float]
 
-    # faster commands are followed at this speed (0.001 to 5 m/s)
+    # largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s)
     max_speed_m_s: NotRequired[float]
 
-    # fastest turning of the tool (0.1 to 100 rad/s)
+    # largest angular speed of the tool (0.1 to 100 rad/s)
     max_turn_rad_s: NotRequired[float]
 
     # Coulomb coefficient of the cold parts (0 to 2)
@@ -1881,43 +1881,43 @@ class Tool(TypedDict):
     # viscous drag of the hot part on each vertex in it (0 to 100 N s/m)
     drag_ns_m: NotRequired[float]
 
-    # of the attachment of one grasped vertex (1 to 1000000 N/m)
+    # stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m)
     grasp_stiffness_n_m: NotRequired[float]
 
-    # an attached vertex slips above this force (0 to 1000 N)
+    # force above which a grasped vertex slips (0 to 1000 N)
     slip_force_n: NotRequired[float]
 
-    # the tool pushes with this at most; drivers read it (0.01 to 1000 N)
+    # largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N)
     force_max_n: NotRequired[float]
 
-    # its jaws press what they hold with this at most (0.01 to 1000 N)
+    # largest force of the jaws on what they hold (0.01 to 1000 N)
     close_force_n: NotRequired[float]
 
-    # power that is set, with energy `tissue` (0 to 400 W)
+    # power to which the generator is set; for energy tissue (0 to 400 W)
     power_w: NotRequired[float]
 
-    # most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+    # largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V)
     peak_v: NotRequired[float]
 
-    # of the voltage: its peak over its root mean square (1.4 to 20)
+    # peak voltage over root mean square voltage (1.4 to 20)
     crest_factor: NotRequired[float]
 
-    # most current, root mean square (0.01 to 10 A)
+    # largest current, root mean square (0.01 to 10 A)
     current_max_a: NotRequired[float]
 
-    # time constant of its filtered force; 0: no filter (0 to 1 s)
+    # time constant of the force filter; 0: no filter (0 to 1 s)
     force_filter_s: NotRequired[float]
 
-    # heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+    # heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K)
     blade_heat_j_k: NotRequired[float]
 
-    # heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+    # heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K)
     blade_cooling_w_k: NotRequired[float]
 
-    # power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+    # power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100)
     load_rise_off: NotRequired[float]
 
-    # first place of the tip (-100 to 100 m)
+    # position of the tip at the start (-100 to 100 m)
     position_m: NotRequired[Sequence[float]]
 
     # unit quaternion w, x, y, z: tool frame (shaft along +z) to world
@@ -1927,7 +1927,7 @@ class Tool(TypedDict):
 class VesselPoint(TypedDict):
     """a point of the middle line of a vessel"""
 
-    # a place of the line, at rest (-100 to 100 m)
+    # position of the point at rest (-100 to 100 m)
     at_m: Sequence[float]
 
 
@@ -1937,35 +1937,35 @@ class Vessel(TypedDict):
     # name of the vessel
     name: str
 
-    # layer of fat in which it lies
+    # layer of fat in which the vessel lies
     layer: str
 
     # outer radius of the tube (0.0001 to 0.01 m)
     radius_m: NotRequired[float]
 
-    # thickness of its wall; less than the radius (1e-05 to 0.005 m)
+    # thickness of the wall of the vessel; less than the radius (1e-05 to 0.005 m)
     wall_m: NotRequired[float]
 
-    # of the blood, at its first point (0 to 40000 Pa)
+    # blood pressure at the first point of the vessel (0 to 40000 Pa)
     pressure_pa: NotRequired[float]
 
-    # of the blood that comes back, at its last point (0 to 40000 Pa)
+    # pressure of blood that flows back from the last point of the vessel (0 to 40000 Pa)
     end_pressure_pa: NotRequired[float]
 
-    # length of such a tube that blood has come through (0.001 to 10 m)
+    # length of a tube of this radius that leads the blood to the vessel (0.001 to 10 m)
     supply_m: NotRequired[float]
 
-    # its middle line
+    # points of the middle line of the vessel
     points: NotRequired[Sequence[VesselPoint]]
 
 
 class Pull(TypedDict):
     """a scripted pull, for measurements"""
 
-    # way of the chosen vertices (-1 to 1 m)
+    # displacement of the chosen vertices (-1 to 1 m)
     move_m: NotRequired[Sequence[float]]
 
-    # time of the way (0.001 to 3600 s)
+    # time that the displacement takes (0.001 to 3600 s)
     duration_s: NotRequired[float]
 
     # vertices that are pulled
@@ -1975,22 +1975,22 @@ class Pull(TypedDict):
 class Cut(TypedDict):
     """a scripted cut, for measurements"""
 
-    # tool of the scene
+    # name of the tool in the scene
     tool: str
 
-    # where the tip dwells (-100 to 100 m)
+    # where the tip waits before the cut (-100 to 100 m)
     from_m: Sequence[float]
 
-    # where it is drawn to (-100 to 100 m)
+    # where the tip moves to (-100 to 100 m)
     to_m: Sequence[float]
 
     # unit quaternion w, x, y, z of the tool
     rotation: NotRequired[Sequence[float]]
 
-    # time before it is drawn (0 to 3600 s)
+    # time that the tip waits at from_m (0 to 3600 s)
     dwell_s: NotRequired[float]
 
-    # speed of drawing (1e-05 to 1 m/s)
+    # speed of the tip on the cut (1e-05 to 1 m/s)
     speed_m_s: NotRequired[float]
 
 
@@ -1999,9 +1999,9 @@ Layer: TypeAlias = Union["FasciaLayer", "MembraneLayer", "FatLayer", "LinksLayer
 
 
 class FasciaRegion(TypedDict):
-    """what differs from the layer's material in a region"""
+    """members of a region's material that differ from the layer's material"""
 
-    # of the mesh file (0 to 2147483647)
+    # number of a region in the mesh file (0 to 2147483647)
     region: int
 
     # sheet thickness (1e-06 to 0.05 m)
@@ -2013,10 +2013,10 @@ class FasciaRegion(TypedDict):
     # stiffness k of the strain limit (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # bending; 0: no hinges (0 to 10 N m)
+    # bending stiffness; 0: bending is not resisted (0 to 10 N m)
     bending_stiffness_nm: NotRequired[float]
 
     # strain limit
@@ -2031,32 +2031,32 @@ class FasciaRegion(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class FasciaLayer(TypedDict):
     """a layer of this kind, with its material"""
 
-    # tissue
+    # kind of tissue
     kind: Literal["fascia"]
 
     # name of the layer
@@ -2065,19 +2065,19 @@ class FasciaLayer(TypedDict):
     # mesh whose triangles or tetrahedra the layer takes
     mesh: NotRequired[str]
 
-    # material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000)
+    # material direction of a mesh without UV coordinates; fat: first material axis (-1000000 to 1000000)
     fibre: NotRequired[Sequence[float]]
 
-    # with energy `tissue`: what heat and current find in it
+    # with energy `tissue`: the tissue whose thermal and electric properties the layer has
     tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
 
-    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    # with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
 
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
     coagulated_tear: NotRequired[float]
 
-    # retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s)
+    # retardation time, viscosity over stiffness; a swing at f Hz has the damping ratio pi f viscosity_s; not with solver `diagonal` (0 to 10 s)
     viscosity_s: NotRequired[float]
 
     # sheet thickness (1e-06 to 0.05 m)
@@ -2089,10 +2089,10 @@ class FasciaLayer(TypedDict):
     # stiffness k of the strain limit (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # bending; 0: no hinges (0 to 10 N m)
+    # bending stiffness; 0: bending is not resisted (0 to 10 N m)
     bending_stiffness_nm: NotRequired[float]
 
     # strain limit
@@ -2107,35 +2107,35 @@ class FasciaLayer(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
-    # what differs in regions of the mesh file
+    # regions of the mesh file, with the members that differ
     regions: NotRequired[Sequence[FasciaRegion]]
 
 
 class MembraneRegion(TypedDict):
-    """what differs from the layer's material in a region"""
+    """members of a region's material that differ from the layer's material"""
 
-    # of the mesh file (0 to 2147483647)
+    # number of a region in the mesh file (0 to 2147483647)
     region: int
 
     # sheet thickness (1e-06 to 0.05 m)
@@ -2147,10 +2147,10 @@ class MembraneRegion(TypedDict):
     # stiffness k of the strain limit (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # bending; 0: no hinges (0 to 10 N m)
+    # bending stiffness; 0: bending is not resisted (0 to 10 N m)
     bending_stiffness_nm: NotRequired[float]
 
     # strain limit
@@ -2165,32 +2165,32 @@ class MembraneRegion(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class MembraneLayer(TypedDict):
     """a layer of this kind, with its material"""
 
-    # tissue
+    # kind of tissue
     kind: Literal["membrane"]
 
     # name of the layer
@@ -2199,22 +2199,22 @@ class MembraneLayer(TypedDict):
     # mesh whose triangles or tetrahedra the layer takes
     mesh: NotRequired[str]
 
-    # membrane: the fat whose boundary it is; links: the upper layer
+    # membrane: the fat layer whose boundary it covers; links: the upper layer
     of: NotRequired[str]
 
-    # material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000)
+    # material direction of a mesh without UV coordinates; fat: first material axis (-1000000 to 1000000)
     fibre: NotRequired[Sequence[float]]
 
-    # with energy `tissue`: what heat and current find in it
+    # with energy `tissue`: the tissue whose thermal and electric properties the layer has
     tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
 
-    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    # with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
 
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
     coagulated_tear: NotRequired[float]
 
-    # retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s)
+    # retardation time, viscosity over stiffness; a swing at f Hz has the damping ratio pi f viscosity_s; not with solver `diagonal` (0 to 10 s)
     viscosity_s: NotRequired[float]
 
     # sheet thickness (1e-06 to 0.05 m)
@@ -2226,10 +2226,10 @@ class MembraneLayer(TypedDict):
     # stiffness k of the strain limit (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # bending; 0: no hinges (0 to 10 N m)
+    # bending stiffness; 0: bending is not resisted (0 to 10 N m)
     bending_stiffness_nm: NotRequired[float]
 
     # strain limit
@@ -2244,38 +2244,38 @@ class MembraneLayer(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
-    # what differs in regions of the mesh file
+    # regions of the mesh file, with the members that differ
     regions: NotRequired[Sequence[MembraneRegion]]
 
 
 class FatRegion(TypedDict):
-    """what differs from the layer's material in a region"""
+    """members of a region's material that differ from the layer's material"""
 
-    # of the mesh file (0 to 2147483647)
+    # number of a region in the mesh file (0 to 2147483647)
     region: int
 
-    # elastic energy
+    # elastic law
     model: NotRequired[Literal["neohookean", "corotated", "stvk", "energy"]]
 
     # mass density (1 to 25000 kg/m^3)
@@ -2290,13 +2290,13 @@ class FatRegion(TypedDict):
     # stiffness of the strain limit and shrinkage (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10)
+    # deviatoric Green strain at which plastic flow begins (gamma_1) (0 to 10)
     yield_strain: NotRequired[float]
 
-    # gamma_2; 0: no plasticity (0 to 10)
+    # largest plastic strain (gamma_2); 0: no plastic flow (0 to 10)
     plastic_strain_max: NotRequired[float]
 
     # strain limit
@@ -2311,32 +2311,32 @@ class FatRegion(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class FatLayer(TypedDict):
     """a layer of this kind, with its material"""
 
-    # tissue
+    # kind of tissue
     kind: Literal["fat"]
 
     # name of the layer
@@ -2345,22 +2345,22 @@ class FatLayer(TypedDict):
     # mesh whose triangles or tetrahedra the layer takes
     mesh: NotRequired[str]
 
-    # material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000)
+    # material direction of a mesh without UV coordinates; fat: first material axis (-1000000 to 1000000)
     fibre: NotRequired[Sequence[float]]
 
-    # with energy `tissue`: what heat and current find in it
+    # with energy `tissue`: the tissue whose thermal and electric properties the layer has
     tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
 
-    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    # with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
 
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
     coagulated_tear: NotRequired[float]
 
-    # retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s)
+    # retardation time, viscosity over stiffness; a swing at f Hz has the damping ratio pi f viscosity_s; not with solver `diagonal` (0 to 10 s)
     viscosity_s: NotRequired[float]
 
-    # elastic energy
+    # elastic law
     model: NotRequired[Literal["neohookean", "corotated", "stvk", "energy"]]
 
     # mass density (1 to 25000 kg/m^3)
@@ -2375,13 +2375,13 @@ class FatLayer(TypedDict):
     # stiffness of the strain limit and shrinkage (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10)
+    # deviatoric Green strain at which plastic flow begins (gamma_1) (0 to 10)
     yield_strain: NotRequired[float]
 
-    # gamma_2; 0: no plasticity (0 to 10)
+    # largest plastic strain (gamma_2); 0: no plastic flow (0 to 10)
     plastic_strain_max: NotRequired[float]
 
     # strain limit
@@ -2396,50 +2396,50 @@ class FatLayer(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
-    # what differs in regions of the mesh file
+    # regions of the mesh file, with the members that differ
     regions: NotRequired[Sequence[FatRegion]]
 
 
 class LinksLayer(TypedDict):
     """a layer of this kind, with its material"""
 
-    # tissue
+    # kind of tissue
     kind: Literal["links"]
 
     # name of the layer
     name: str
 
-    # membrane: the fat whose boundary it is; links: the upper layer
+    # membrane: the fat layer whose boundary it covers; links: the upper layer
     of: NotRequired[str]
 
-    # the lower layer
+    # lower layer of the links
     to: NotRequired[str]
 
-    # with energy `tissue`: what heat and current find in it
+    # with energy `tissue`: the tissue whose thermal and electric properties the layer has
     tissue: NotRequired[Literal["connective", "fat", "liver", "muscle"]]
 
-    # with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10)
+    # with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10)
     perfusion: NotRequired[float]
 
     # share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1)
@@ -2451,95 +2451,95 @@ class LinksLayer(TypedDict):
     # cross section of a truss (1e-12 to 1 m^2)
     area_m2: NotRequired[float]
 
-    # longest truss (1e-06 to 1 m)
+    # length of the longest truss (1e-06 to 1 m)
     reach_m: NotRequired[float]
 
-    # trusses from each vertex of the upper sheet (1 to 8)
+    # number of trusses from each vertex of the upper sheet (1 to 8)
     per_vertex: NotRequired[float]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class Scene(TypedDict):
-    """the plain data from which a session is made"""
+    """the data from which a session is created"""
 
     # name of the scene
     name: str
 
-    # a sentence for people
+    # description of the scene in words
     description: NotRequired[str]
 
     # time step; one tick (0.001 to 0.03333333333333333 s)
     step_s: NotRequired[float]
 
-    # v <- v exp(-c dt) (0 to 1000 1/s)
+    # damping rate c: each step multiplies velocities by exp(-c step_s) (0 to 1000 1/s)
     damping_per_s: NotRequired[float]
 
     # temperature of the body around the tools (-20 to 60 degC)
     ambient_c: NotRequired[float]
 
-    # stop a step at this relative residual; 0: never (0 to 1)
+    # relative residual at which a step ends; 0: not used (0 to 1)
     tolerance: NotRequired[float]
 
-    # end a step at this error relative to its motion; 0: never (0 to 1)
+    # largest error of a step, relative to its motion; 0: all iterations (0 to 1)
     accuracy: NotRequired[float]
 
-    # tissue keeps this far from tissue; 0: it crosses (0 to 0.01 m)
+    # least distance between tissue surfaces; 0: no tissue contact (0 to 0.01 m)
     contact_thickness_m: NotRequired[float]
 
-    # of tissue on tissue (0 to 2)
+    # Coulomb coefficient of tissue on tissue (0 to 2)
     contact_friction: NotRequired[float]
 
-    # side of the cells of heat, with energy `tissue` (0.0001 to 0.005 m)
+    # edge length of one cell of the heat computation; for energy tissue (0.0001 to 0.005 m)
     cell_m: NotRequired[float]
 
-    # iterations of a step at most (small tissue: up to 64); with `accuracy` 0, of each (1 to 1000)
+    # largest number of iterations of a step (small tissue: up to 64); with `accuracy` 0, each step takes all (1 to 1000)
     iterations: NotRequired[int]
 
-    # global system; `newton`: and Newton's method for all sheets
+    # how the global step is solved; `newton` also uses Newton's method for all sheets
     solver: NotRequired[Literal["cholesky", "diagonal", "newton"]]
 
-    # of the local and global steps
+    # number format of the local and global steps
     precision: NotRequired[Literal["single", "double"]]
 
-    # how a tick advances motion: `euler` damps by the step; `sdirk2`, of second order, keeps 0.997 of a 5 Hz swing a period at 60 steps/s, for two solves a tick
+    # how a tick advances motion: `euler` damps, more for longer steps; `sdirk2` is of second order and solves twice a tick; at 60 steps/s it keeps 0.997 of a 5 Hz swing each period
     integrator: NotRequired[Literal["euler", "sdirk2"]]
 
-    # what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh
+    # what heat parts: `edges`, each with all elements that share it, as in the paper; or `elements` one by one, so that a cut does not depend on the mesh
     parting: NotRequired[Literal["edges", "elements"]]
 
-    # what an energized tool does: `paper` holds a temperature; `tissue` gives power, boils water and parts elements, and needs parting `elements`
+    # model of an energized tool: with `paper` the hot part has a set temperature; with `tissue` a generator heats tissue, boils its water and parts elements (needs parting `elements`)
     energy: NotRequired[Literal["paper", "tissue"]]
 
-    # of everything drawn at random (0 to 9007199254740991)
+    # seed of all random numbers (0 to 9007199254740991)
     seed: NotRequired[int]
 
     # gravity (-100 to 100 m/s^2)
     gravity_m_s2: NotRequired[Sequence[float]]
 
-    # meshes that layers take
+    # meshes of the layers
     meshes: NotRequired[Sequence[Mesh]]
 
     # layers of tissue
     layers: NotRequired[Sequence[Layer]]
 
-    # vertices that are held
+    # pinned vertices
     pins: NotRequired[Sequence[Selection]]
 
-    # tools that are there from the start
+    # tools at the start
     tools: NotRequired[Sequence[Tool]]
 
     # blood vessels
@@ -2553,18 +2553,18 @@ class Scene(TypedDict):
 
 
 class ToolAdd(TypedDict):
-    """a new tool, driven by the caller"""
+    """adds a tool, which the caller drives"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
     # shape
@@ -2591,16 +2591,16 @@ class ToolAdd(TypedDict):
     # nodes of the heat grid along each axis (8 to 64)
     grid_cells: NotRequired[float]
 
-    # spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m)
+    # spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m)
     grid_step_m: NotRequired[float]
 
-    # alpha of eq. 18 (0 to 0.001 m^2/s)
+    # thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s)
     diffusivity_m2_s: NotRequired[float]
 
-    # faster commands are followed at this speed (0.001 to 5 m/s)
+    # largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s)
     max_speed_m_s: NotRequired[float]
 
-    # fastest turning of the tool (0.1 to 100 rad/s)
+    # largest angular speed of the tool (0.1 to 100 rad/s)
     max_turn_rad_s: NotRequired[float]
 
     # Coulomb coefficient of the cold parts (0 to 2)
@@ -2609,93 +2609,93 @@ class ToolAdd(TypedDict):
     # viscous drag of the hot part on each vertex in it (0 to 100 N s/m)
     drag_ns_m: NotRequired[float]
 
-    # of the attachment of one grasped vertex (1 to 1000000 N/m)
+    # stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m)
     grasp_stiffness_n_m: NotRequired[float]
 
-    # an attached vertex slips above this force (0 to 1000 N)
+    # force above which a grasped vertex slips (0 to 1000 N)
     slip_force_n: NotRequired[float]
 
-    # the tool pushes with this at most; drivers read it (0.01 to 1000 N)
+    # largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N)
     force_max_n: NotRequired[float]
 
-    # its jaws press what they hold with this at most (0.01 to 1000 N)
+    # largest force of the jaws on what they hold (0.01 to 1000 N)
     close_force_n: NotRequired[float]
 
-    # power that is set, with energy `tissue` (0 to 400 W)
+    # power to which the generator is set; for energy tissue (0 to 400 W)
     power_w: NotRequired[float]
 
-    # most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+    # largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V)
     peak_v: NotRequired[float]
 
-    # of the voltage: its peak over its root mean square (1.4 to 20)
+    # peak voltage over root mean square voltage (1.4 to 20)
     crest_factor: NotRequired[float]
 
-    # most current, root mean square (0.01 to 10 A)
+    # largest current, root mean square (0.01 to 10 A)
     current_max_a: NotRequired[float]
 
-    # time constant of its filtered force; 0: no filter (0 to 1 s)
+    # time constant of the force filter; 0: no filter (0 to 1 s)
     force_filter_s: NotRequired[float]
 
-    # heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+    # heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K)
     blade_heat_j_k: NotRequired[float]
 
-    # heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+    # heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K)
     blade_cooling_w_k: NotRequired[float]
 
-    # power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+    # power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100)
     load_rise_off: NotRequired[float]
 
     # name of the tool
     name: str
 
-    # first place of the tip (-100 to 100 m)
+    # position of the tip at the start (-100 to 100 m)
     position_m: NotRequired[Sequence[float]]
 
     # unit quaternion w, x, y, z: tool frame (shaft along +z) to world
     rotation: NotRequired[Sequence[float]]
 
-    # profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+    # profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out
     instrument: NotRequired[str]
 
-    # mode of the instrument; its first by default
+    # mode of the instrument (default: its first)
     mode: NotRequired[str]
 
 
 class ToolRemove(TypedDict):
-    """takes it away"""
+    """removes a tool"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
 
 class ToolConfigure(TypedDict):
-    """replaces shape and sizes; an absent member takes the instrument's value, or the default"""
+    """replaces shape and sizes of a tool; a missing member takes the instrument's value, or the default"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
     # shape
@@ -2722,16 +2722,16 @@ class ToolConfigure(TypedDict):
     # nodes of the heat grid along each axis (8 to 64)
     grid_cells: NotRequired[float]
 
-    # spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m)
+    # spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m)
     grid_step_m: NotRequired[float]
 
-    # alpha of eq. 18 (0 to 0.001 m^2/s)
+    # thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s)
     diffusivity_m2_s: NotRequired[float]
 
-    # faster commands are followed at this speed (0.001 to 5 m/s)
+    # largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s)
     max_speed_m_s: NotRequired[float]
 
-    # fastest turning of the tool (0.1 to 100 rad/s)
+    # largest angular speed of the tool (0.1 to 100 rad/s)
     max_turn_rad_s: NotRequired[float]
 
     # Coulomb coefficient of the cold parts (0 to 2)
@@ -2740,172 +2740,172 @@ class ToolConfigure(TypedDict):
     # viscous drag of the hot part on each vertex in it (0 to 100 N s/m)
     drag_ns_m: NotRequired[float]
 
-    # of the attachment of one grasped vertex (1 to 1000000 N/m)
+    # stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m)
     grasp_stiffness_n_m: NotRequired[float]
 
-    # an attached vertex slips above this force (0 to 1000 N)
+    # force above which a grasped vertex slips (0 to 1000 N)
     slip_force_n: NotRequired[float]
 
-    # the tool pushes with this at most; drivers read it (0.01 to 1000 N)
+    # largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N)
     force_max_n: NotRequired[float]
 
-    # its jaws press what they hold with this at most (0.01 to 1000 N)
+    # largest force of the jaws on what they hold (0.01 to 1000 N)
     close_force_n: NotRequired[float]
 
-    # power that is set, with energy `tissue` (0 to 400 W)
+    # power to which the generator is set; for energy tissue (0 to 400 W)
     power_w: NotRequired[float]
 
-    # most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+    # largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V)
     peak_v: NotRequired[float]
 
-    # of the voltage: its peak over its root mean square (1.4 to 20)
+    # peak voltage over root mean square voltage (1.4 to 20)
     crest_factor: NotRequired[float]
 
-    # most current, root mean square (0.01 to 10 A)
+    # largest current, root mean square (0.01 to 10 A)
     current_max_a: NotRequired[float]
 
-    # time constant of its filtered force; 0: no filter (0 to 1 s)
+    # time constant of the force filter; 0: no filter (0 to 1 s)
     force_filter_s: NotRequired[float]
 
-    # heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
+    # heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K)
     blade_heat_j_k: NotRequired[float]
 
-    # heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
+    # heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K)
     blade_cooling_w_k: NotRequired[float]
 
-    # power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+    # power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100)
     load_rise_off: NotRequired[float]
 
-    # profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
+    # profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out
     instrument: NotRequired[str]
 
-    # mode of the instrument; its first by default
+    # mode of the instrument (default: its first)
     mode: NotRequired[str]
 
 
 class ToolMove(TypedDict):
-    """moves it, at its speed limit; needs to be its driver"""
+    """moves a tool, at most at its largest speed; driver only"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
-    # place of the tip (-100 to 100 m)
+    # position of the tip (-100 to 100 m)
     position_m: Sequence[float]
 
     # unit quaternion w, x, y, z
     rotation: Sequence[float]
 
-    # 0 closed to 1 open (0 to 1)
+    # opening of the jaws: 0 closed to 1 open (0 to 1)
     jaw: NotRequired[float]
 
 
 class ToolEnergize(TypedDict):
-    """energy on (driver only), for as many ticks as `ticks` says; or off"""
+    """turns energy on (driver only), for at most `ticks` ticks, or off"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
-    # on or off
+    # whether energy is turned on or off
     energized: bool
 
-    # of an enable: its energy goes off after so many ticks; 0: no limit (0 to 2147483647)
+    # energy goes off this many ticks after an enable; 0: no limit (0 to 2147483647)
     ticks: NotRequired[int]
 
 
 class ToolGrasp(TypedDict):
-    """closes the jaws on what is between them; driver only"""
+    """closes the jaws on the tissue between them; driver only"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
 
 class ToolRelease(TypedDict):
-    """opens them; driver only"""
+    """opens the jaws; driver only"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
 
 class ToolHold(TypedDict):
-    """keeps the tool where it is, until it is moved again; driver only"""
+    """keeps a tool where it is until it is moved again; driver only"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # which tool
+    # name of the tool
     tool: str
 
 
 class Pin(TypedDict):
-    """holds vertices where they are"""
+    """pins vertices at their present positions"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
     # which vertices
@@ -2913,50 +2913,50 @@ class Pin(TypedDict):
 
 
 class Unpin(TypedDict):
-    """lets them go"""
+    """releases pinned vertices"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
     # which vertices
     selection: Selection
 
 
-# replaces a layer's material
+# replaces the material of a layer
 MaterialSet: TypeAlias = Union["MaterialSetFascia", "MaterialSetMembrane", "MaterialSetFat", "MaterialSetLinks"]
 
 
 class MaterialSetFascia(TypedDict):
-    """replaces a layer's material"""
+    """replaces the material of a layer"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # the layer's kind
+    # kind of the layer
     kind: Literal["fascia"]
 
-    # which layer
+    # name of the layer
     layer: str
 
-    # of the mesh file; 0: the layer's default (0 to 2147483647)
+    # number of a region in the mesh file; 0: the layer's own material (0 to 2147483647)
     region: NotRequired[int]
 
     # sheet thickness (1e-06 to 0.05 m)
@@ -2968,10 +2968,10 @@ class MaterialSetFascia(TypedDict):
     # stiffness k of the strain limit (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # bending; 0: no hinges (0 to 10 N m)
+    # bending stiffness; 0: bending is not resisted (0 to 10 N m)
     bending_stiffness_nm: NotRequired[float]
 
     # strain limit
@@ -2986,50 +2986,50 @@ class MaterialSetFascia(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class MaterialSetMembrane(TypedDict):
-    """replaces a layer's material"""
+    """replaces the material of a layer"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # the layer's kind
+    # kind of the layer
     kind: Literal["membrane"]
 
-    # which layer
+    # name of the layer
     layer: str
 
-    # of the mesh file; 0: the layer's default (0 to 2147483647)
+    # number of a region in the mesh file; 0: the layer's own material (0 to 2147483647)
     region: NotRequired[int]
 
     # sheet thickness (1e-06 to 0.05 m)
@@ -3041,10 +3041,10 @@ class MaterialSetMembrane(TypedDict):
     # stiffness k of the strain limit (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # bending; 0: no hinges (0 to 10 N m)
+    # bending stiffness; 0: bending is not resisted (0 to 10 N m)
     bending_stiffness_nm: NotRequired[float]
 
     # strain limit
@@ -3059,53 +3059,53 @@ class MaterialSetMembrane(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class MaterialSetFat(TypedDict):
-    """replaces a layer's material"""
+    """replaces the material of a layer"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # the layer's kind
+    # kind of the layer
     kind: Literal["fat"]
 
-    # which layer
+    # name of the layer
     layer: str
 
-    # of the mesh file; 0: the layer's default (0 to 2147483647)
+    # number of a region in the mesh file; 0: the layer's own material (0 to 2147483647)
     region: NotRequired[int]
 
-    # elastic energy
+    # elastic law
     model: NotRequired[Literal["neohookean", "corotated", "stvk", "energy"]]
 
     # mass density (1 to 25000 kg/m^3)
@@ -3120,13 +3120,13 @@ class MaterialSetFat(TypedDict):
     # stiffness of the strain limit and shrinkage (1 to 10000000000 Pa)
     limit_stiffness_pa: NotRequired[float]
 
-    # range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99)
+    # limit range: largest shear, the cosine of the angle between material axes (0 to 0.99)
     shear_max: NotRequired[float]
 
-    # gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10)
+    # deviatoric Green strain at which plastic flow begins (gamma_1) (0 to 10)
     yield_strain: NotRequired[float]
 
-    # gamma_2; 0: no plasticity (0 to 10)
+    # largest plastic strain (gamma_2); 0: no plastic flow (0 to 10)
     plastic_strain_max: NotRequired[float]
 
     # strain limit
@@ -3141,47 +3141,47 @@ class MaterialSetFat(TypedDict):
     # range: least engineering strain along each axis (-0.99 to 0)
     strain_min: NotRequired[Sequence[float]]
 
-    # range: largest (0 to 100)
+    # range: largest engineering strain along each axis (0 to 100)
     strain_max: NotRequired[Sequence[float]]
 
-    # S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4)
+    # squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4)
     shrink: NotRequired[Sequence[float]]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class MaterialSetLinks(TypedDict):
-    """replaces a layer's material"""
+    """replaces the material of a layer"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # the layer's kind
+    # kind of the layer
     kind: Literal["links"]
 
-    # which layer
+    # name of the layer
     layer: str
 
     # Young's modulus of a truss (1 to 100000000000 Pa)
@@ -3190,41 +3190,41 @@ class MaterialSetLinks(TypedDict):
     # cross section of a truss (1e-12 to 1 m^2)
     area_m2: NotRequired[float]
 
-    # longest truss (1e-06 to 1 m)
+    # length of the longest truss (1e-06 to 1 m)
     reach_m: NotRequired[float]
 
-    # trusses from each vertex of the upper sheet (1 to 8)
+    # number of trusses from each vertex of the upper sheet (1 to 8)
     per_vertex: NotRequired[float]
 
-    # it parts when its exposure exceeds this (1 to 2000 degC)
+    # tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC)
     ignition_c: NotRequired[float]
 
-    # standard deviation, drawn by seed (0 to 500 degC)
+    # standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC)
     ignition_spread_c: NotRequired[float]
 
-    # width of bundles that part alike; 0: none (0 to 0.1 m)
+    # width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m)
     ignition_bundle_m: NotRequired[float]
 
-    # xi of eq. 20 (0 to 1000 1/s)
+    # rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s)
     absorption_per_s: NotRequired[float]
 
-    # energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2)
+    # energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2)
     tear_energy_j_m2: NotRequired[float]
 
 
 class GravitySet(TypedDict):
-    """for the whole session"""
+    """sets the gravity of a session"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
     # gravity (-100 to 100 m/s^2)
@@ -3232,21 +3232,21 @@ class GravitySet(TypedDict):
 
 
 class ForceSet(TypedDict):
-    """an outer force on vertices"""
+    """applies an outer force to vertices"""
 
-    # its id; that of the connection's URL by default
+    # id of the session (default: the session in the connection's URL)
     session: NotRequired[str]
 
     # see session_change (1 to 9007199254740991)
     client_sequence: NotRequired[int]
 
-    # applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
+    # the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
     tick: NotRequired[int]
 
-    # the driver's own count (0 to 9007199254740991)
+    # number that the driver gives the command (0 to 9007199254740991)
     sequence: NotRequired[int]
 
-    # on each chosen vertex (-1000 to 1000 N)
+    # force on each chosen vertex (-1000 to 1000 N)
     force_n: Sequence[float]
 
     # which vertices
@@ -3270,14 +3270,14 @@ class Calls:
         resume: str | None = None,
         role: Literal["view", "operate", "admin"] | None = None,
     ) -> HelloResult:
-        """`hello`: first of all; nothing else is served before it
+        """`hello`: must be the first message; before it no other request is served
 
         version: wire version wanted; this document is version 1 (1 to 1000)
         client: name and version of the client program, for logs and other users
-        client_id: the client's own lasting identity, among those of its token's owner; names the stored answers of client_sequence
-        token: access token, where the server asks for one
-        resume: token of an earlier hello: takes back the tools driven within 10 s of the loss, energy off
-        role: role wanted; the token's by default and at most
+        client_id: lasting identity of the client, unique among the clients of the token's owner; the stored answers of client_sequence belong to it
+        token: access token, if the server needs one
+        resume: resume token of an earlier hello: takes back the tools of that connection within 10 s of its loss, energy off
+        role: wanted role, at most the role of the token (default: that role)
         """
         return self.call("hello", {
             "version": version,
@@ -3294,9 +3294,9 @@ class Calls:
         visible: bool,
         client_time_us: int | None = None,
     ) -> HeartbeatResult:
-        """`heartbeat`: sign of life of a driver, every 100 ms while energy is on
+        """`heartbeat`: reports to the server that a driver is alive, every 100 ms while energy is on
 
-        visible: false: the page is hidden or blurred, energy is cut at once
+        visible: false: the page is hidden or another window has the focus; energy goes off at once
         client_time_us: the client's clock, one that is never set, from any origin; returned. Once it was sent, only heartbeats with it are signs of life on this connection (0 to 9007199254740991 us)
         """
         return self.call("heartbeat", {
@@ -3307,7 +3307,7 @@ class Calls:
     def scene_list(
         self,
     ) -> SceneList:
-        """`scene.list`: scenes of the daemon
+        """`scene.list`: lists the scenes of the daemon
         """
         return self.call("scene.list", {})
 
@@ -3316,9 +3316,9 @@ class Calls:
         *,
         scene: str,
     ) -> SceneResult:
-        """`scene.get`: one of them whole
+        """`scene.get`: returns one scene with all members
 
-        scene: its name
+        scene: name of the scene
         """
         return self.call("scene.get", {
             "scene": scene,
@@ -3327,14 +3327,14 @@ class Calls:
     def instrument_list(
         self,
     ) -> InstrumentList:
-        """`instrument.list`: profiles of instruments
+        """`instrument.list`: lists the profiles of instruments
         """
         return self.call("instrument.list", {})
 
     def session_list(
         self,
     ) -> SessionList:
-        """`session.list`: sessions of the daemon
+        """`session.list`: lists the sessions of the daemon
         """
         return self.call("session.list", {})
 
@@ -3351,11 +3351,11 @@ class Calls:
         """`session.create`: makes a session
 
         client_sequence: see session_change (1 to 9007199254740991)
-        name: wanted id, without the daemon's label; made up by default
-        scene: a scene of the daemon; either this or definition
-        definition: the scene itself; meshes of source bytes name an upload in file
-        paused: starts paused; false by default
-        ephemeral: is never on a disk, and ends with its maker's connection or the daemon; false by default
+        name: name of the session, without the daemon's label (default: chosen by the server)
+        scene: a scene of the daemon; give either this or definition
+        definition: the scene itself; a mesh of source bytes names an upload in file
+        paused: the session starts paused (default: false)
+        ephemeral: the session is never stored; it ends with the connection that created it, or with the daemon (default: false)
         """
         return self.call("session.create", {
             "client_sequence": client_sequence,
@@ -3371,9 +3371,9 @@ class Calls:
         *,
         session: str | None = None,
     ) -> SessionDescription:
-        """`session.describe`: layers, drivers, scene
+        """`session.describe`: returns layers, drivers and scene of a session
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         """
         return self.call("session.describe", {
             "session": session,
@@ -3388,13 +3388,13 @@ class Calls:
         step_m: float | None = None,
         plain: bool | None = None,
     ) -> StreamDescription:
-        """`session.join`: asks for frames; again to change the profile
+        """`session.join`: asks for frames; call it again to change the profile
 
-        session: its id; that of the connection's URL by default
-        rate_hz: frames a wall second at most; 60 by default (0.1 to 1000 1/s)
-        channels: by default those that the table of channels marks
-        step_m: quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m)
-        plain: no section of the frames is in meshoptimizer's codec; false by default
+        session: id of the session (default: the session in the connection's URL)
+        rate_hz: largest number of frames in a second of wall time (default: 60) (0.1 to 1000 1/s)
+        channels: channels (default: those marked in the table of channels)
+        step_m: wanted quantisation step; the server may choose a finer step (default: 5e-5) (1e-07 to 0.001 m)
+        plain: true: no section of the frames uses meshoptimizer's codec (default: false)
         """
         return self.call("session.join", {
             "session": session,
@@ -3409,9 +3409,9 @@ class Calls:
         *,
         session: str | None = None,
     ) -> Nothing:
-        """`session.leave`: no more frames
+        """`session.leave`: ends the stream of frames
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         """
         return self.call("session.leave", {
             "session": session,
@@ -3423,10 +3423,10 @@ class Calls:
         session: str | None = None,
         client_sequence: int | None = None,
     ) -> SessionSummary:
-        """`session.pause`: stops time at a tick border; cuts energy
+        """`session.pause`: stops time at a tick border; energy goes off
 
-        session: its id; that of the connection's URL by default
-        client_sequence: counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991)
+        session: id of the session (default: the session in the connection's URL)
+        client_sequence: number of this change among those of the client_id; a repeated number returns the first answer (1 to 9007199254740991)
         """
         return self.call("session.pause", {
             "session": session,
@@ -3439,10 +3439,10 @@ class Calls:
         session: str | None = None,
         client_sequence: int | None = None,
     ) -> SessionSummary:
-        """`session.resume`: lets time run
+        """`session.resume`: resumes a paused session
 
-        session: its id; that of the connection's URL by default
-        client_sequence: counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991)
+        session: id of the session (default: the session in the connection's URL)
+        client_sequence: number of this change among those of the client_id; a repeated number returns the first answer (1 to 9007199254740991)
         """
         return self.call("session.resume", {
             "session": session,
@@ -3456,11 +3456,11 @@ class Calls:
         client_sequence: int | None = None,
         ticks: int | None = None,
     ) -> TickResult:
-        """`session.step`: advances a paused session; answered when done
+        """`session.step`: advances a paused session; the answer comes when the steps are done
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        ticks: steps; 1 by default (1 to 100000)
+        ticks: number of steps (default: 1) (1 to 100000)
         """
         return self.call("session.step", {
             "session": session,
@@ -3476,12 +3476,12 @@ class Calls:
         commands: Sequence[AdvanceCommand] | None = None,
         observe: Observe | None = None,
     ) -> Advanced:
-        """`session.advance`: lock-step: commands, ticks and what came of them in one request. The session must be paused. It has no client_sequence: `tick` says whether it was done
+        """`session.advance`: advances a paused session in lock-step: commands, ticks and observation in one request. There is no client_sequence: `tick` shows whether the request was done
 
-        session: its id; that of the connection's URL by default
-        ticks: how many; 1 by default, 0 to observe alone (0 to 100000)
-        commands: commands about tools, before the first tick; if one is refused none acts, but energy is still turned off where one asks for it
-        observe: nothing by default
+        session: id of the session (default: the session in the connection's URL)
+        ticks: number of ticks; 0: only observe (default: 1) (0 to 100000)
+        commands: commands to tools, before the first tick; if one is refused, none takes effect, except that requests to turn energy off do
+        observe: what the answer contains (default: nothing)
         """
         return self.call("session.advance", {
             "session": session,
@@ -3497,11 +3497,11 @@ class Calls:
         client_sequence: int | None = None,
         speed: float,
     ) -> SessionSummary:
-        """`session.speed`: sets the pace
+        """`session.speed`: sets the speed of a session
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        speed: simulated over wall time to aim at (0.01 to 10)
+        speed: wanted simulated time over wall time (0.01 to 10)
         """
         return self.call("session.speed", {
             "session": session,
@@ -3515,10 +3515,10 @@ class Calls:
         session: str | None = None,
         client_sequence: int | None = None,
     ) -> Restored:
-        """`session.reset`: back to tick 0; a new branch
+        """`session.reset`: resets a session to tick 0, on a new branch
 
-        session: its id; that of the connection's URL by default
-        client_sequence: counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991)
+        session: id of the session (default: the session in the connection's URL)
+        client_sequence: number of this change among those of the client_id; a repeated number returns the first answer (1 to 9007199254740991)
         """
         return self.call("session.reset", {
             "session": session,
@@ -3531,10 +3531,10 @@ class Calls:
         session: str | None = None,
         client_sequence: int | None = None,
     ) -> Nothing:
-        """`session.destroy`: ends it and removes it from the store, also one that the daemon could not bring up
+        """`session.destroy`: ends a session and removes it from the store, also a session that the daemon could not start
 
-        session: its id; that of the connection's URL by default
-        client_sequence: counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991)
+        session: id of the session (default: the session in the connection's URL)
+        client_sequence: number of this change among those of the client_id; a repeated number returns the first answer (1 to 9007199254740991)
         """
         return self.call("session.destroy", {
             "session": session,
@@ -3550,13 +3550,13 @@ class Calls:
         tick: int | None = None,
         paused: bool | None = None,
     ) -> SessionDescription:
-        """`session.fork`: a new session from this state, energy off
+        """`session.fork`: creates a new session from the state of this session, energy off
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        name: wanted id of the new one, without the daemon's label; made up by default
-        tick: of the state; the present one by default (0 to 9007199254740991)
-        paused: the new session starts paused; false by default
+        name: name of the new session, without the daemon's label (default: chosen by the server)
+        tick: tick of the state (default: the present tick) (0 to 9007199254740991)
+        paused: the new session starts paused (default: false)
         """
         return self.call("session.fork", {
             "session": session,
@@ -3575,9 +3575,9 @@ class Calls:
     ) -> SnapshotResult:
         """`session.snapshot`: stores the state under a name
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        name: made up by default
+        name: name of the snapshot (default: chosen by the server)
         """
         return self.call("session.snapshot", {
             "session": session,
@@ -3590,9 +3590,9 @@ class Calls:
         *,
         session: str | None = None,
     ) -> SnapshotList:
-        """`session.snapshots`: the snapshots that session.restore can restore, those of other branches too
+        """`session.snapshots`: lists the snapshots that session.restore can restore, also those of other branches
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         """
         return self.call("session.snapshots", {
             "session": session,
@@ -3605,11 +3605,11 @@ class Calls:
         client_sequence: int | None = None,
         name: str,
     ) -> Restored:
-        """`session.restore`: back to a snapshot
+        """`session.restore`: restores a snapshot
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        name: of the snapshot
+        name: name of the snapshot
         """
         return self.call("session.restore", {
             "session": session,
@@ -3624,11 +3624,11 @@ class Calls:
         client_sequence: int | None = None,
         tick: int,
     ) -> Restored:
-        """`session.rewind`: back to a tick
+        """`session.rewind`: rewinds to a tick
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: the timeline's oldest_tick or later, or what a refusal names (0 to 9007199254740991)
+        tick: a tick from oldest_tick of the timeline on, or one that a refusal names (0 to 9007199254740991)
         """
         return self.call("session.rewind", {
             "session": session,
@@ -3642,10 +3642,10 @@ class Calls:
         session: str | None = None,
         format: Literal["vtu", "obj"],
     ) -> Transfer:
-        """`session.export`: the tissue as a file; binary chunks follow
+        """`session.export`: returns the tissue as a file, which follows in binary chunks
 
-        session: its id; that of the connection's URL by default
-        format: of the file
+        session: id of the session (default: the session in the connection's URL)
+        format: format of the file
         """
         return self.call("session.export", {
             "session": session,
@@ -3659,11 +3659,11 @@ class Calls:
         from_tick: int | None = None,
         to_tick: int | None = None,
     ) -> Transfer:
-        """`session.log`: the command log as a script; binary chunks follow
+        """`session.log`: returns the command log as a script, which follows in binary chunks
 
-        session: its id; that of the connection's URL by default
-        from_tick: first tick; 0 by default (0 to 9007199254740991)
-        to_tick: last tick; the present one by default (0 to 9007199254740991)
+        session: id of the session (default: the session in the connection's URL)
+        from_tick: first tick (default: 0) (0 to 9007199254740991)
+        to_tick: last tick (default: the present tick) (0 to 9007199254740991)
         """
         return self.call("session.log", {
             "session": session,
@@ -3678,11 +3678,11 @@ class Calls:
         from_tick: int | None = None,
         count: int | None = None,
     ) -> Timeline:
-        """`session.timeline`: cuts and other events
+        """`session.timeline`: returns cuts and other events
 
-        session: its id; that of the connection's URL by default
-        from_tick: first tick; 0 by default (0 to 9007199254740991)
-        count: newest events wanted at most; 1024 by default (1 to 4096)
+        session: id of the session (default: the session in the connection's URL)
+        from_tick: first tick (default: 0) (0 to 9007199254740991)
+        count: largest number of events, the newest of them (default: 1024) (1 to 4096)
         """
         return self.call("session.timeline", {
             "session": session,
@@ -3699,13 +3699,13 @@ class Calls:
         step_m: float | None = None,
         plain: bool | None = None,
     ) -> PastFrame:
-        """`session.frame_at`: the key frame of a past tick; nothing is rewound; binary chunks follow. A second request of a client cancels its first
+        """`session.frame_at`: returns the key frame of a past tick without a rewind; binary chunks follow. A second request of a client cancels its first
 
-        session: its id; that of the connection's URL by default
-        tick: on the present line, from oldest_tick to the present (0 to 9007199254740991)
-        channels: by default those that the table of channels marks
-        step_m: quantisation; 5e-5 by default (1e-07 to 0.001 m)
-        plain: no section of the frame is in meshoptimizer's codec; false by default
+        session: id of the session (default: the session in the connection's URL)
+        tick: tick on the present branch, from oldest_tick to the present (0 to 9007199254740991)
+        channels: channels (default: those marked in the table of channels)
+        step_m: quantisation step (default: 5e-5) (1e-07 to 0.001 m)
+        plain: true: no section of the frame uses meshoptimizer's codec (default: false)
         """
         return self.call("session.frame_at", {
             "session": session,
@@ -3720,9 +3720,9 @@ class Calls:
         *,
         session: str | None = None,
     ) -> Nothing:
-        """`session.frame_cancel`: gives up the client's session.frame_at that is under way, if there is one
+        """`session.frame_cancel`: cancels the running session.frame_at of the client, if there is one
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         """
         return self.call("session.frame_cancel", {
             "session": session,
@@ -3733,9 +3733,9 @@ class Calls:
         *,
         session: str | None = None,
     ) -> WaitingList:
-        """`session.waiting`: the commands that wait for later ticks
+        """`session.waiting`: lists the commands that wait for later ticks
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         """
         return self.call("session.waiting", {
             "session": session,
@@ -3747,10 +3747,10 @@ class Calls:
         session: str | None = None,
         number: int | None = None,
     ) -> Cancelled:
-        """`session.cancel`: takes back commands that wait for later ticks: the caller's own; with a number and role admin anybody's. Each is answered with `bad_state`
+        """`session.cancel`: cancels waiting commands of the caller; with a number and role admin, of any client. Each cancelled command is answered with `bad_state`
 
-        session: its id; that of the connection's URL by default
-        number: the command's, of session.waiting; without it all of the caller's (1 to 9007199254740991)
+        session: id of the session (default: the session in the connection's URL)
+        number: number of the command, from session.waiting (default: all commands of the caller) (1 to 9007199254740991)
         """
         return self.call("session.cancel", {
             "session": session,
@@ -3762,9 +3762,9 @@ class Calls:
         *,
         session: str | None = None,
     ) -> Nothing:
-        """`stream.key_frame`: asks for a key frame; at most one a second
+        """`stream.key_frame`: asks for a key frame, at most once a second
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         """
         return self.call("stream.key_frame", {
             "session": session,
@@ -3809,12 +3809,12 @@ class Calls:
         instrument: str | None = None,
         mode: str | None = None,
     ) -> CommandResult:
-        """`tool.add`: a new tool, driven by the caller
+        """`tool.add`: adds a tool, which the caller drives
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
         shape: shape
         hot_radius_m: radius of the hot part (0.0002 to 0.05 m)
         tip_length_m: length of needle, hook foot, blade or jaws (0.001 to 0.1 m)
@@ -3823,29 +3823,29 @@ class Calls:
         jaw_open_rad: angle between open jaws (0.05 to 1.5 rad)
         temperature_c: temperature of the hot part while energized (0 to 1500 degC)
         grid_cells: nodes of the heat grid along each axis (8 to 64)
-        grid_step_m: spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m)
-        diffusivity_m2_s: alpha of eq. 18 (0 to 0.001 m^2/s)
-        max_speed_m_s: faster commands are followed at this speed (0.001 to 5 m/s)
-        max_turn_rad_s: fastest turning of the tool (0.1 to 100 rad/s)
+        grid_step_m: spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m)
+        diffusivity_m2_s: thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s)
+        max_speed_m_s: largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s)
+        max_turn_rad_s: largest angular speed of the tool (0.1 to 100 rad/s)
         friction: Coulomb coefficient of the cold parts (0 to 2)
         drag_ns_m: viscous drag of the hot part on each vertex in it (0 to 100 N s/m)
-        grasp_stiffness_n_m: of the attachment of one grasped vertex (1 to 1000000 N/m)
-        slip_force_n: an attached vertex slips above this force (0 to 1000 N)
-        force_max_n: the tool pushes with this at most; drivers read it (0.01 to 1000 N)
-        close_force_n: its jaws press what they hold with this at most (0.01 to 1000 N)
-        power_w: power that is set, with energy `tissue` (0 to 400 W)
-        peak_v: most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
-        crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
-        current_max_a: most current, root mean square (0.01 to 10 A)
-        force_filter_s: time constant of its filtered force; 0: no filter (0 to 1 s)
-        blade_heat_j_k: heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
-        blade_cooling_w_k: heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
-        load_rise_off: power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
+        grasp_stiffness_n_m: stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m)
+        slip_force_n: force above which a grasped vertex slips (0 to 1000 N)
+        force_max_n: largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N)
+        close_force_n: largest force of the jaws on what they hold (0.01 to 1000 N)
+        power_w: power to which the generator is set; for energy tissue (0 to 400 W)
+        peak_v: largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V)
+        crest_factor: peak voltage over root mean square voltage (1.4 to 20)
+        current_max_a: largest current, root mean square (0.01 to 10 A)
+        force_filter_s: time constant of the force filter; 0: no filter (0 to 1 s)
+        blade_heat_j_k: heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K)
+        blade_cooling_w_k: heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K)
+        load_rise_off: power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100)
         name: name of the tool
-        position_m: first place of the tip (-100 to 100 m)
+        position_m: position of the tip at the start (-100 to 100 m)
         rotation: unit quaternion w, x, y, z: tool frame (shaft along +z) to world
-        instrument: profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
-        mode: mode of the instrument; its first by default
+        instrument: profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out
+        mode: mode of the instrument (default: its first)
         """
         return self.call("tool.add", {
             "session": session,
@@ -3894,13 +3894,13 @@ class Calls:
         sequence: int | None = None,
         tool: str,
     ) -> CommandResult:
-        """`tool.remove`: takes it away
+        """`tool.remove`: removes a tool
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
         """
         return self.call("tool.remove", {
             "session": session,
@@ -3947,13 +3947,13 @@ class Calls:
         instrument: str | None = None,
         mode: str | None = None,
     ) -> CommandResult:
-        """`tool.configure`: replaces shape and sizes; an absent member takes the instrument's value, or the default
+        """`tool.configure`: replaces shape and sizes of a tool; a missing member takes the instrument's value, or the default
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
         shape: shape
         hot_radius_m: radius of the hot part (0.0002 to 0.05 m)
         tip_length_m: length of needle, hook foot, blade or jaws (0.001 to 0.1 m)
@@ -3962,26 +3962,26 @@ class Calls:
         jaw_open_rad: angle between open jaws (0.05 to 1.5 rad)
         temperature_c: temperature of the hot part while energized (0 to 1500 degC)
         grid_cells: nodes of the heat grid along each axis (8 to 64)
-        grid_step_m: spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m)
-        diffusivity_m2_s: alpha of eq. 18 (0 to 0.001 m^2/s)
-        max_speed_m_s: faster commands are followed at this speed (0.001 to 5 m/s)
-        max_turn_rad_s: fastest turning of the tool (0.1 to 100 rad/s)
+        grid_step_m: spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m)
+        diffusivity_m2_s: thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s)
+        max_speed_m_s: largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s)
+        max_turn_rad_s: largest angular speed of the tool (0.1 to 100 rad/s)
         friction: Coulomb coefficient of the cold parts (0 to 2)
         drag_ns_m: viscous drag of the hot part on each vertex in it (0 to 100 N s/m)
-        grasp_stiffness_n_m: of the attachment of one grasped vertex (1 to 1000000 N/m)
-        slip_force_n: an attached vertex slips above this force (0 to 1000 N)
-        force_max_n: the tool pushes with this at most; drivers read it (0.01 to 1000 N)
-        close_force_n: its jaws press what they hold with this at most (0.01 to 1000 N)
-        power_w: power that is set, with energy `tissue` (0 to 400 W)
-        peak_v: most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
-        crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
-        current_max_a: most current, root mean square (0.01 to 10 A)
-        force_filter_s: time constant of its filtered force; 0: no filter (0 to 1 s)
-        blade_heat_j_k: heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K)
-        blade_cooling_w_k: heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K)
-        load_rise_off: power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100)
-        instrument: profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none
-        mode: mode of the instrument; its first by default
+        grasp_stiffness_n_m: stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m)
+        slip_force_n: force above which a grasped vertex slips (0 to 1000 N)
+        force_max_n: largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N)
+        close_force_n: largest force of the jaws on what they hold (0.01 to 1000 N)
+        power_w: power to which the generator is set; for energy tissue (0 to 400 W)
+        peak_v: largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V)
+        crest_factor: peak voltage over root mean square voltage (1.4 to 20)
+        current_max_a: largest current, root mean square (0.01 to 10 A)
+        force_filter_s: time constant of the force filter; 0: no filter (0 to 1 s)
+        blade_heat_j_k: heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K)
+        blade_cooling_w_k: heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K)
+        load_rise_off: power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100)
+        instrument: profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out
+        mode: mode of the instrument (default: its first)
         """
         return self.call("tool.configure", {
             "session": session,
@@ -4031,16 +4031,16 @@ class Calls:
         rotation: Sequence[float],
         jaw: float | None = None,
     ) -> CommandResult:
-        """`tool.move`: moves it, at its speed limit; needs to be its driver
+        """`tool.move`: moves a tool, at most at its largest speed; driver only
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
-        position_m: place of the tip (-100 to 100 m)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
+        position_m: position of the tip (-100 to 100 m)
         rotation: unit quaternion w, x, y, z
-        jaw: 0 closed to 1 open (0 to 1)
+        jaw: opening of the jaws: 0 closed to 1 open (0 to 1)
         """
         return self.call("tool.move", {
             "session": session,
@@ -4064,15 +4064,15 @@ class Calls:
         energized: bool,
         ticks: int | None = None,
     ) -> CommandResult:
-        """`tool.energize`: energy on (driver only), for as many ticks as `ticks` says; or off
+        """`tool.energize`: turns energy on (driver only), for at most `ticks` ticks, or off
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
-        energized: on or off
-        ticks: of an enable: its energy goes off after so many ticks; 0: no limit (0 to 2147483647)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
+        energized: whether energy is turned on or off
+        ticks: energy goes off this many ticks after an enable; 0: no limit (0 to 2147483647)
         """
         return self.call("tool.energize", {
             "session": session,
@@ -4093,13 +4093,13 @@ class Calls:
         sequence: int | None = None,
         tool: str,
     ) -> CommandResult:
-        """`tool.grasp`: closes the jaws on what is between them; driver only
+        """`tool.grasp`: closes the jaws on the tissue between them; driver only
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
         """
         return self.call("tool.grasp", {
             "session": session,
@@ -4118,13 +4118,13 @@ class Calls:
         sequence: int | None = None,
         tool: str,
     ) -> CommandResult:
-        """`tool.release`: opens them; driver only
+        """`tool.release`: opens the jaws; driver only
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
         """
         return self.call("tool.release", {
             "session": session,
@@ -4143,13 +4143,13 @@ class Calls:
         sequence: int | None = None,
         tool: str,
     ) -> CommandResult:
-        """`tool.hold`: keeps the tool where it is, until it is moved again; driver only
+        """`tool.hold`: keeps a tool where it is until it is moved again; driver only
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        tool: which tool
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        tool: name of the tool
         """
         return self.call("tool.hold", {
             "session": session,
@@ -4166,11 +4166,11 @@ class Calls:
         client_sequence: int | None = None,
         tool: str,
     ) -> Driver:
-        """`tool.take_over`: becomes the driver: of a tool without a driver, or with role admin; energy off
+        """`tool.take_over`: makes the caller the driver, if the tool has no driver or the caller has role admin; energy goes off
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tool: its name
+        tool: name of the tool
         """
         return self.call("tool.take_over", {
             "session": session,
@@ -4185,11 +4185,11 @@ class Calls:
         client_sequence: int | None = None,
         tool: str,
     ) -> Nothing:
-        """`tool.request_takeover`: asks its driver, who sees takeover.requested
+        """`tool.request_takeover`: asks the driver for the tool; the driver receives takeover.requested
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tool: its name
+        tool: name of the tool
         """
         return self.call("tool.request_takeover", {
             "session": session,
@@ -4205,12 +4205,12 @@ class Calls:
         tool: str,
         client: int | None = None,
     ) -> Driver:
-        """`tool.hand_over`: gives it up; energy off; driver only
+        """`tool.hand_over`: gives up a tool or hands it to another client; energy goes off; driver only
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tool: its name
-        client: to this connection; by default the tool has no driver (1 to 4294967295)
+        tool: name of the tool
+        client: connection that becomes the driver (default: the tool has no driver) (1 to 4294967295)
         """
         return self.call("tool.hand_over", {
             "session": session,
@@ -4228,12 +4228,12 @@ class Calls:
         sequence: int | None = None,
         selection: Selection,
     ) -> CommandResult:
-        """`pin`: holds vertices where they are
+        """`pin`: pins vertices at their present positions
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
         selection: which vertices
         """
         return self.call("pin", {
@@ -4253,12 +4253,12 @@ class Calls:
         sequence: int | None = None,
         selection: Selection,
     ) -> CommandResult:
-        """`unpin`: lets them go
+        """`unpin`: releases pinned vertices
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
         selection: which vertices
         """
         return self.call("unpin", {
@@ -4273,7 +4273,7 @@ class Calls:
         self,
         **params: Any,
     ) -> CommandResult:
-        """`material.set`: replaces a layer's material
+        """`material.set`: replaces the material of a layer
         """
         return self.call("material.set", params)
 
@@ -4286,12 +4286,12 @@ class Calls:
         sequence: int | None = None,
         gravity_m_s2: Sequence[float],
     ) -> CommandResult:
-        """`gravity.set`: for the whole session
+        """`gravity.set`: sets the gravity of a session
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
         gravity_m_s2: gravity (-100 to 100 m/s^2)
         """
         return self.call("gravity.set", {
@@ -4312,13 +4312,13 @@ class Calls:
         force_n: Sequence[float],
         selection: Selection,
     ) -> CommandResult:
-        """`force.set`: an outer force on vertices
+        """`force.set`: applies an outer force to vertices
 
-        session: its id; that of the connection's URL by default
+        session: id of the session (default: the session in the connection's URL)
         client_sequence: see session_change (1 to 9007199254740991)
-        tick: applied at the first tick border at or after this; 0: the next (0 to 9007199254740991)
-        sequence: the driver's own count (0 to 9007199254740991)
-        force_n: on each chosen vertex (-1000 to 1000 N)
+        tick: the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991)
+        sequence: number that the driver gives the command (0 to 9007199254740991)
+        force_n: force on each chosen vertex (-1000 to 1000 N)
         selection: which vertices
         """
         return self.call("force.set", {
@@ -4339,9 +4339,9 @@ class Calls:
     ) -> UploadBeginResult:
         """`upload.begin`: announces a mesh file
 
-        name: for scenes: meshes[].file of source bytes, with file_name's ending
-        file_name: for messages and the names of sessions; the format is found from the bytes
-        byte_count: of the file, exactly (1 to 9007199254740991 B)
+        name: name of the upload, for meshes[].file of source bytes with the ending of file_name
+        file_name: file name for messages and names of sessions; the format is recognised from the bytes
+        byte_count: exact size of the file (1 to 9007199254740991 B)
         """
         return self.call("upload.begin", {
             "name": name,
@@ -4355,10 +4355,10 @@ class Calls:
         transfer: int,
         sha256: str,
     ) -> UploadResult:
-        """`upload.end`: checks its length and hash
+        """`upload.end`: checks length and hash of an upload
 
-        transfer: as upload.begin answered (1 to 4294967295)
-        sha256: of the file, 64 lower-case hex digits
+        transfer: number from upload.begin (1 to 4294967295)
+        sha256: SHA-256 of the file, 64 lower-case hex digits
         """
         return self.call("upload.end", {
             "transfer": transfer,
@@ -4377,16 +4377,16 @@ class Calls:
         labels: str | None = None,
         pin: str | None = None,
     ) -> MeshReading:
-        """`mesh.read`: reads an upload as a mesh: the report, and a scene around it for session.create
+        """`mesh.read`: reads an upload as a mesh; returns a report, and a scene with the mesh for session.create
 
-        upload: as in upload.begin; whole
-        unit_m: metres in one unit of the file; guessed by default where it is clear (1e-09 to 1000 m)
-        as_: fat (tetrahedra) or fascia (triangles); by default fat where there are tetrahedra, or an inside
-        strict: refuses a mesh that would have to be mended; false by default
-        as_it_is: never fills the mesh with tetrahedra, for a scene of one's own; false by default
-        edge_m: length of an edge of the tetrahedra that fill it; about 8,000 of them by default (1e-06 to 10 m)
-        labels: of a segmentation: labels to keep, as in 1,3; all by default
-        pin: sides that are pinned: bottom, top, left, right, front, back, with commas, or none; the bottom by default
+        upload: name of a complete upload, as in upload.begin
+        unit_m: metres in one unit of the file (default: guessed from the size of the mesh, if that is clear) (1e-09 to 1000 m)
+        as_: fat (tetrahedra) or fascia (triangles); default: fat if the file has tetrahedra or a closed surface
+        strict: true: refuse a mesh that needs repair (default: false)
+        as_it_is: true: never fill the mesh with tetrahedra; for scenes that a client writes itself (default: false)
+        edge_m: edge length of the tetrahedra that fill the mesh (default: gives about 8,000 tetrahedra) (1e-06 to 10 m)
+        labels: labels of a segmentation to keep, as in 1,3 (default: all)
+        pin: pinned sides: bottom, top, left, right, front, back, with commas, or none (default: bottom)
         """
         return self.call("mesh.read", {
             "upload": upload,
@@ -4404,9 +4404,9 @@ class Calls:
         *,
         name: str,
     ) -> Nothing:
-        """`upload.discard`: forgets it; sessions made of it stay
+        """`upload.discard`: removes an upload; sessions that use it stay
 
-        name: as in upload.begin; it may be whole or still coming
+        name: name of the upload, which may be complete or still arriving
         """
         return self.call("upload.discard", {
             "name": name,
@@ -4417,9 +4417,9 @@ class Calls:
         *,
         name: str | None = None,
     ) -> StoreCopy:
-        """`store.backup`: copies the daemon's store while everybody goes on, to a file on its machine; one at a time
+        """`store.backup`: copies the daemon's store to a file on its machine, without interrupting clients; one copy at a time
 
-        name: of the copy, without .db; by default the time. Nothing is replaced
+        name: name of the copy, without .db (default: the time); no file is replaced
         """
         return self.call("store.backup", {
             "name": name,
@@ -4433,12 +4433,12 @@ class Calls:
         label: str,
         url: str | None = None,
     ) -> MoveBegun:
-        """`move.begin`: a session is to go to another daemon; it is served meanwhile
+        """`move.begin`: begins to move a session to another daemon; the session is served meanwhile
 
-        session: its id
-        target: its id there
-        label: of the daemon that is to have it
-        url: where that daemon is, for who asks for the old id; none where one address leads to all
+        session: id of the session on this daemon
+        target: id of the session on the target daemon
+        label: label of the target daemon
+        url: address of the target daemon, for clients that use the old id; empty if one address leads to all daemons
         """
         return self.call("move.begin", {
             "session": session,
@@ -4453,10 +4453,10 @@ class Calls:
         session: str,
         move: str,
     ) -> Transfer:
-        """`move.read`: the next piece of it; binary chunks follow
+        """`move.read`: returns the next piece of the session, which follows in binary chunks
 
-        session: its id on the daemon that is asked
-        move: of move.begin
+        session: id of the session on the daemon that is asked
+        move: name of the move, from move.begin
         """
         return self.call("move.read", {
             "session": session,
@@ -4471,8 +4471,8 @@ class Calls:
     ) -> MoveHeld:
         """`move.hold`: suspends the session, energy off; requests to it wait
 
-        session: its id on the daemon that is asked
-        move: of move.begin
+        session: id of the session on the daemon that is asked
+        move: name of the move, from move.begin
         """
         return self.call("move.hold", {
             "session": session,
@@ -4486,11 +4486,11 @@ class Calls:
         move: str,
         receipt: str,
     ) -> MoveDecision:
-        """`move.commit`: by the receipt that the other daemon has all pieces on its disk, the session ends here; the answer lets the other daemon serve it
+        """`move.commit`: ends the session here, given the receipt for all pieces; the answer has the proof with which the target daemon serves the session
 
-        session: its id here
-        move: of move.begin
-        receipt: of the other daemon's last move.receive
+        session: id of the session on this daemon
+        move: name of the move, from move.begin
+        receipt: receipt of the last move.receive on the target daemon
         """
         return self.call("move.commit", {
             "session": session,
@@ -4504,10 +4504,10 @@ class Calls:
         session: str,
         move: str,
     ) -> MoveDecision:
-        """`move.cancel`: it stays, unless it has moved: the answer says which
+        """`move.cancel`: cancels the move, unless the session has moved already: the answer says which
 
-        session: its id on the daemon that is asked
-        move: of move.begin
+        session: id of the session on the daemon that is asked
+        move: name of the move, from move.begin
         """
         return self.call("move.cancel", {
             "session": session,
@@ -4521,11 +4521,11 @@ class Calls:
         move: str,
         upload: str,
     ) -> MoveReceived:
-        """`move.receive`: an upload is a piece of a session that comes here; answered when it is on the disk
+        """`move.receive`: delivers an upload as a piece of an arriving session; the answer comes when the piece is on the disk
 
-        session: its id here
-        move: of move.begin
-        upload: that holds the piece; it is gone with this
+        session: id of the session on this daemon
+        move: name of the move, from move.begin
+        upload: upload that holds the piece; this request removes the upload
         """
         return self.call("move.receive", {
             "session": session,
@@ -4539,10 +4539,10 @@ class Calls:
         session: str,
         move: str,
     ) -> MoveHeld:
-        """`move.ready`: builds what has come, and answers when it could be served soon
+        """`move.ready`: builds the arrived session; the answer comes when the session could soon be served
 
-        session: its id on the daemon that is asked
-        move: of move.begin
+        session: id of the session on the daemon that is asked
+        move: name of the move, from move.begin
         """
         return self.call("move.ready", {
             "session": session,
@@ -4556,11 +4556,11 @@ class Calls:
         move: str,
         proof: str,
     ) -> SessionDescription:
-        """`move.accept`: it is this daemon's, by the proof of move.commit; answered when it is served
+        """`move.accept`: serves the arrived session, given the proof of move.commit; the answer comes when the session is served
 
-        session: its id here
-        move: of move.begin
-        proof: of move.commit
+        session: id of the session on this daemon
+        move: name of the move, from move.begin
+        proof: proof from move.commit
         """
         return self.call("move.accept", {
             "session": session,
@@ -4576,12 +4576,12 @@ class Calls:
         release: str | None = None,
         source_lost: bool | None = None,
     ) -> Nothing:
-        """`move.forget`: removes the pieces of a move, by the release of move.cancel
+        """`move.forget`: removes the pieces of a move, given the release of move.cancel
 
-        session: its id here
-        move: of move.begin
-        release: of move.cancel
-        source_lost: instead of a release: the other daemon is gone for good. If it had decided the move, the session is lost
+        session: id of the session on this daemon
+        move: name of the move, from move.begin
+        release: release from move.cancel
+        source_lost: instead of a release: the source daemon is lost for good. If it had decided the move, the session is lost
         """
         return self.call("move.forget", {
             "session": session,
@@ -4593,6 +4593,6 @@ class Calls:
     def move_list(
         self,
     ) -> MoveList:
-        """`move.list`: sessions that come, are in doubt, are leaving, or have gone
+        """`move.list`: lists sessions that arrive, are in doubt, are leaving, or have moved away
         """
         return self.call("move.list", {})

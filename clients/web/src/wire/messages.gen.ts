@@ -14,43 +14,43 @@ export interface Hello {
   version: number;
   /** name and version of the client program, for logs and other users */
   client: string;
-  /** the client's own lasting identity, among those of its token's owner; names the stored answers of client_sequence */
+  /** lasting identity of the client, unique among the clients of the token's owner; the stored answers of client_sequence belong to it */
   client_id?: string;
-  /** access token, where the server asks for one */
+  /** access token, if the server needs one */
   token?: string;
-  /** token of an earlier hello: takes back the tools driven within 10 s of the loss, energy off */
+  /** resume token of an earlier hello: takes back the tools of that connection within 10 s of its loss, energy off */
   resume?: string;
-  /** role wanted; the token's by default and at most */
+  /** wanted role, at most the role of the token (default: that role) */
   role?: 'view' | 'operate' | 'admin';
 }
 
-/** what the server accepts; beyond it are errors or a close code */
+/** limits of the server; a client that exceeds one gets an error or a close code */
 export interface Limits {
-  /** of a text message (1 to 9007199254740991 B) */
+  /** largest text message (1 to 9007199254740991 B) */
   message_bytes_max: number;
-  /** of one upload (0 to 9007199254740991 B) */
+  /** largest upload (0 to 9007199254740991 B) */
   upload_bytes_max: number;
-  /** of all uploads of the connection; one below 64 KiB counts for that (0 to 9007199254740991 B) */
+  /** largest size of all uploads of the connection; an upload below 64 KiB counts as 64 KiB (0 to 9007199254740991 B) */
   uploads_bytes_max?: number;
-  /** of data in one binary chunk (1 to 9007199254740991 B) */
+  /** largest data of one binary chunk (1 to 9007199254740991 B) */
   chunk_bytes_max: number;
-  /** sessions of the daemon (0 to 9007199254740991) */
+  /** largest number of sessions of the daemon (0 to 9007199254740991) */
   sessions_max: number;
-  /** connections of the daemon (0 to 9007199254740991) */
+  /** largest number of connections of the daemon (0 to 9007199254740991) */
   subscribers_max: number;
-  /** different stream profiles of a session (1 to 4) */
+  /** largest number of different stream profiles of a session (1 to 4) */
   profiles_max: number;
-  /** streams of a connection (1 to 64) */
+  /** largest number of streams of a connection (1 to 64) */
   streams_max?: number;
-  /** tools of a session (1 to 8) */
+  /** largest number of tools of a session (1 to 8) */
   tools_max: number;
-  /** requests of a connection (1 to 9007199254740991 1/s) */
+  /** largest number of requests of a connection in a second (1 to 9007199254740991 1/s) */
   requests_per_s_max: number;
-  /** tool.move notifications of a connection (1 to 9007199254740991 1/s) */
+  /** largest number of tool.move notifications of a connection in a second (1 to 9007199254740991 1/s) */
   motions_per_s_max: number;
-  /** frames unsent before some are skipped (1 to 9007199254740991 B) */
+  /** bytes of unsent frames above which frames are skipped (1 to 9007199254740991 B) */
   bytes_in_flight_max: number;
-  /** longest pause between a driver's messages before energy is cut (0.01 to 60 s) */
+  /** longest time between two messages of a driver before its energy goes off (0.01 to 60 s) */
   heartbeat_s: number;
 }
 
@@ -62,13 +62,13 @@ export interface HelloResult {
   version: number;
   /** the daemon's label; session ids start with it */
   daemon: string;
-  /** role granted */
+  /** role of this connection */
   role: 'view' | 'operate' | 'admin';
-  /** the connection's number: the driver number in frames (1 to 4294967295) */
+  /** number of the connection, which frames give as the number of the driver (1 to 4294967295) */
   client: number;
-  /** as given, or one made up by the server */
+  /** as given, or chosen by the server */
   client_id: string;
-  /** token for a later hello */
+  /** resume token for a later hello */
   resume: string;
   /** what this server can do */
   capabilities: ('upload' | 'export' | 'dds' | 'store')[];
@@ -80,1113 +80,1113 @@ export interface HelloResult {
   wall_time_s: number;
 }
 
-/** sign of life of a driver; a notification, or a request to measure the clock */
+/** reports to the server that a driver is alive; a notification, or a request to measure the clock offset */
 export interface Heartbeat {
-  /** false: the page is hidden or blurred, energy is cut at once */
+  /** false: the page is hidden or another window has the focus; energy goes off at once */
   visible: boolean;
   /** the client's clock, one that is never set, from any origin; returned. Once it was sent, only heartbeats with it are signs of life on this connection (0 to 9007199254740991 us) */
   client_time_us?: number;
 }
 
-/** for the offset of the clocks */
+/** clocks from which the client computes their offset */
 export interface HeartbeatResult {
   /** the server's monotonic clock (0 to 9007199254740991 us) */
   server_time_us: number;
-  /** as given (0 to 9007199254740991 us) */
+  /** as given in the heartbeat (0 to 9007199254740991 us) */
   client_time_us?: number;
 }
 
-/** a scene that sessions can be made from */
+/** a scene from which sessions can be created */
 export interface SceneSummary {
-  /** its name */
+  /** name of the scene */
   name: string;
-  /** in words */
+  /** description in words */
   description: string;
 }
 
-/** all of them */
+/** all scenes of the daemon */
 export interface SceneList {
-  /** by name */
+  /** sorted by name */
   scenes: SceneSummary[];
 }
 
 /** names a scene */
 export interface SceneRef {
-  /** its name */
+  /** name of the scene */
   scene: string;
 }
 
-/** a scene whole, to change and send back to session.create */
+/** a whole scene, which can be changed and sent to session.create */
 export interface SceneResult {
-  /** every member, defaults too */
+  /** the scene with every member, also defaults */
   definition: Scene;
 }
 
-/** how the generator of an instrument is set in a mode; the members are those of a tool */
+/** settings of the generator in a mode of an instrument; the members are those of a tool */
 export interface InstrumentMode {
-  /** its name */
+  /** name of the mode */
   mode: string;
-  /** in words */
+  /** description in words */
   description: string;
-  /** power, where no other is named (0 to 400 W) */
+  /** power, if no other power is given (0 to 400 W) */
   power_w: number;
-  /** least power that the mode has (0 to 400 W) */
+  /** least power of the mode (0 to 400 W) */
   power_least_w: number;
-  /** most power that the mode has (0 to 400 W) */
+  /** largest power of the mode (0 to 400 W) */
   power_most_w: number;
-  /** most voltage, peak (1 to 10000 V) */
+  /** largest peak voltage (1 to 10000 V) */
   peak_v: number;
-  /** of the voltage; its duty is 2 / crest_factor^2 (1.4 to 20) */
+  /** peak voltage over root mean square voltage; the duty cycle is 2 / crest_factor^2 (1.4 to 20) */
   crest_factor: number;
-  /** most current, root mean square (0.01 to 10 A) */
+  /** largest current, root mean square (0.01 to 10 A) */
   current_max_a: number;
-  /** power ends when the load is so many times its least; 0: never (0 to 100) */
+  /** power ends when the load reaches this multiple of its minimum; 0: never (0 to 100) */
   load_rise_off: number;
 }
 
-/** a profile of an instrument, which a tool of a scene, tool.add and tool.configure may name */
+/** profile of an instrument, which a tool of a scene, tool.add and tool.configure can name */
 export interface Instrument {
-  /** its name */
+  /** name of the instrument */
   name: string;
-  /** in words */
+  /** description in words */
   description: string;
   /** shape of the tool */
   shape: string;
-  /** the first is the default */
+  /** modes; the first is the default */
   modes: InstrumentMode[];
 }
 
-/** all of them */
+/** all profiles of instruments */
 export interface InstrumentList {
-  /** by name */
+  /** sorted by name */
   instruments: Instrument[];
 }
 
 /** names a session */
 export interface SessionRef {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
 }
 
 /** names a session to change */
 export interface SessionChange {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991) */
+  /** number of this change among those of the client_id; a repeated number returns the first answer (1 to 9007199254740991) */
   client_sequence?: number;
 }
 
 /** a session in a list */
 export interface SessionSummary {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** the scene it was made from */
+  /** scene from which the session was created */
   scene: string;
-  /** what it does */
+  /** state of the session */
   state: 'starting' | 'running' | 'paused' | 'faulted';
   /** steps since creation, along the present branch (0 to 9007199254740991) */
   tick: number;
-  /** simulated (0 to 1000000000000 s) */
+  /** simulated time (0 to 1000000000000 s) */
   time_s: number;
-  /** one tick (0.0001 to 1 s) */
+  /** length of one tick (0.0001 to 1 s) */
   step_s: number;
-  /** simulated over wall time that is aimed at (0 to 100) */
+  /** wanted simulated time over wall time (0 to 100) */
   speed: number;
-  /** what is reached, over the last second (0 to 1000000) */
+  /** reached simulated time over wall time, in the last second (0 to 1000000) */
   realtime_factor: number;
-  /** vertices (0 to 16777216) */
+  /** number of vertices (0 to 16777216) */
   vertex_count: number;
-  /** faces, drawn and not (0 to 16777216) */
+  /** number of faces, drawn or not (0 to 16777216) */
   face_count: number;
-  /** tools (0 to 8) */
+  /** number of tools (0 to 8) */
   tool_count: number;
-  /** streams joined (0 to 9007199254740991) */
+  /** number of streams (0 to 9007199254740991) */
   subscriber_count: number;
-  /** of its frames; another after rewind, reset, restore and restart */
+  /** epoch of the frames; it changes with each rewind, reset, restore and restart */
   epoch: string;
-  /** why it is faulted */
+  /** reason why the session is faulted */
   fault?: string;
-  /** false: the session is ephemeral; or, in an answer to session.pause, the store was full, and the session pauses all the same */
+  /** false: the session is ephemeral; in an answer to session.pause: the store was full, but the session pauses */
   stored?: boolean;
-  /** while it is starting or is rewound or restored: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying) */
+  /** stage of the builder while the session starts, is rewound or restored (meshing, ordering, factoring, settling; reading, restoring, replaying) */
   stage?: string;
 }
 
 /** all sessions of the daemon */
 export interface SessionList {
-  /** by id */
+  /** sorted by id */
   sessions: SessionSummary[];
 }
 
-/** makes a session from a scene of the daemon or from one given whole */
+/** creates a session from a scene of the daemon or from a given scene */
 export interface SessionCreate {
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** wanted id, without the daemon's label; made up by default */
+  /** name of the session, without the daemon's label (default: chosen by the server) */
   name?: string;
-  /** a scene of the daemon; either this or definition */
+  /** a scene of the daemon; give either this or definition */
   scene?: string;
-  /** the scene itself; meshes of source bytes name an upload in file */
+  /** the scene itself; a mesh of source bytes names an upload in file */
   definition?: Scene;
-  /** starts paused; false by default */
+  /** the session starts paused (default: false) */
   paused?: boolean;
-  /** is never on a disk, and ends with its maker's connection or the daemon; false by default */
+  /** the session is never stored; it ends with the connection that created it, or with the daemon (default: false) */
   ephemeral?: boolean;
 }
 
 /** a layer and its range in the face list */
 export interface LayerDescription {
-  /** of the scene */
+  /** name of the layer in the scene */
   name: string;
-  /** of tissue */
+  /** kind of tissue */
   kind: 'fascia' | 'membrane' | 'fat' | 'links';
-  /** index of its first face (0 to 16777216) */
+  /** index of the first face of the layer (0 to 16777216) */
   first_face: number;
-  /** faces; 0 for links (0 to 16777216) */
+  /** number of faces; 0 for links (0 to 16777216) */
   face_count: number;
-  /** triangles, tetrahedra or links (0 to 16777216) */
+  /** number of triangles, tetrahedra or links (0 to 16777216) */
   element_count: number;
 }
 
-/** who moves a tool */
+/** the client that drives a tool */
 export interface Driver {
-  /** the tool */
+  /** name of the tool */
   tool: string;
-  /** the driving connection's number; 0: no driver (0 to 4294967295) */
+  /** number of the connection that drives the tool; 0: no driver (0 to 4294967295) */
   client: number;
-  /** the client's name in its hello, or the DDS participant's */
+  /** name that the client gave in hello, or name of the DDS participant */
   name: string;
-  /** whether its energy is on */
+  /** whether the energy of the tool is on */
   energized: boolean;
-  /** why it is off; meaningless while on */
+  /** reason why energy is off; without meaning while energy is on */
   energy_off: 'never_enabled' | 'commanded' | 'watchdog' | 'restored' | 'taken_over';
 }
 
-/** what a client must know of a session */
+/** everything that a client must know about a session */
 export interface SessionDescription {
-  /** as in the list */
+  /** as in session.list */
   summary: SessionSummary;
-  /** of the scene, in words */
+  /** description of the scene in words */
   description: string;
-  /** chosen by this machine; determinism holds within one */
+  /** instruction set that this machine uses; results are equal to the bit only within one */
   instruction_set: string;
-  /** of sheets (0 to 9007199254740991) */
+  /** number of triangles of sheets (0 to 9007199254740991) */
   triangle_count: number;
-  /** of fat (0 to 9007199254740991) */
+  /** number of tetrahedra of fat (0 to 9007199254740991) */
   tetrahedron_count: number;
-  /** trusses (0 to 9007199254740991) */
+  /** number of links (0 to 9007199254740991) */
   link_count: number;
   /** in the order of the scene */
   layers: LayerDescription[];
   /** one for each tool, in the order of frames */
   drivers: Driver[];
-  /** the scene with its present materials, tools and gravity */
+  /** the scene with the present materials, tools and gravity */
   definition: Scene;
 }
 
 /** advances a paused session */
 export interface SessionStep {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** steps; 1 by default (1 to 100000) */
+  /** number of steps (default: 1) (1 to 100000) */
   ticks?: number;
 }
 
-/** a command about a tool, before the first tick; it has the members of the method that it names */
+/** a command to a tool, before the first tick; the members are those of the method that it names */
 export interface AdvanceCommand {
-  /** which */
+  /** method of the command */
   method: 'tool.move' | 'tool.energize' | 'tool.grasp' | 'tool.release' | 'tool.hold';
-  /** one that the client drives; to turn energy off, any */
+  /** a tool that the client drives; any tool to turn energy off */
   tool: string;
-  /** the driver's own count; frames show the last one applied (0 to 9007199254740991) */
+  /** number that the driver gives the command; frames show the number of the last command applied (0 to 9007199254740991) */
   sequence?: number;
-  /** tool.move: place of the tip (-100 to 100 m) */
+  /** tool.move: position of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
   /** tool.move: unit quaternion w, x, y, z (-1.001 to 1.001) */
   rotation?: [number, number, number, number];
-  /** tool.move: 0 closed, the default, to 1 open (0 to 1) */
+  /** tool.move: opening of the jaws, 0 closed (default) to 1 open (0 to 1) */
   jaw?: number;
-  /** tool.energize: on or off */
+  /** tool.energize: whether energy is turned on or off */
   energized?: boolean;
-  /** tool.energize on: energy is off again after so many ticks; 0, the default: no limit (0 to 2147483647) */
+  /** tool.energize: energy goes off after this many ticks; 0 (default): no limit (0 to 2147483647) */
   ticks?: number;
 }
 
-/** a box (least_m, most_m) or a ball (center_m, radius_m): the elements whose middle is in it while the tissue is at rest */
+/** a box (least_m, most_m) or a ball (center_m, radius_m); it contains the elements whose middle is inside while the tissue is at rest */
 export interface ObservedRegion {
-  /** given back */
+  /** name of the region, which the answer repeats */
   name: string;
-  /** the box's corner of its least coordinates (-100 to 100 m) */
+  /** least corner of the box (-100 to 100 m) */
   least_m?: [number, number, number];
-  /** of its largest (-100 to 100 m) */
+  /** largest corner of the box (-100 to 100 m) */
   most_m?: [number, number, number];
-  /** the ball's middle (-100 to 100 m) */
+  /** centre of the ball (-100 to 100 m) */
   center_m?: [number, number, number];
-  /** of the ball (0 to 100 m) */
+  /** radius of the ball (0 to 100 m) */
   radius_m?: number;
 }
 
-/** what session.advance is to answer with, besides tick and time */
+/** what the answer to session.advance contains, besides tick and time */
 export interface Observe {
-  /** positions, mask, tools, vessels, and scalars by their names; `statistics` is in frames alone */
+  /** positions, mask, tools, vessels, and scalars by their names; not `statistics`, which is only in frames */
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
-  /** of positions and scalars: these alone, in this order; all by default (0 to 16777215) */
+  /** vertices of positions and scalars, in this order (default: all) (0 to 16777215) */
   vertices?: number[];
-  /** where removed volume and damage are reported */
+  /** regions for which removed volume and damage are reported */
   regions?: ObservedRegion[];
-  /** whether the energy of instruments is reported; false by default */
+  /** whether the energy of instruments is reported (default: false) */
   energy?: boolean;
 }
 
-/** makes ticks of a paused session in lock-step */
+/** advances a paused session in lock-step */
 export interface SessionAdvance {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** how many; 1 by default, 0 to observe alone (0 to 100000) */
+  /** number of ticks; 0: only observe (default: 1) (0 to 100000) */
   ticks?: number;
-  /** commands about tools, before the first tick; if one is refused none acts, but energy is still turned off where one asks for it */
+  /** commands to tools, before the first tick; if one is refused, none takes effect, except that requests to turn energy off do */
   commands?: AdvanceCommand[];
-  /** nothing by default */
+  /** what the answer contains (default: nothing) */
   observe?: Observe;
 }
 
-/** a scalar channel */
+/** values of a scalar channel */
 export interface ObservedScalar {
-  /** which */
+  /** name of the channel */
   channel: 'positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact';
-  /** of the vertices, in the channel's unit (-1e+300 to 1e+300) */
+  /** value of each vertex, in the unit of the channel (-1e+300 to 1e+300) */
   values: number[];
 }
 
-/** a tool as it is */
+/** present state of a tool */
 export interface ObservedTool {
-  /** its name */
+  /** name of the tool */
   tool: string;
-  /** of the tip: the actual pose, which tissue can stop (-1000000 to 1000000 m) */
+  /** position of the tip in the actual pose, which tissue can hold back (-1000000 to 1000000 m) */
   position_m: [number, number, number];
-  /** quaternion w, x, y, z (-1.001 to 1.001) */
+  /** rotation of the actual pose, quaternion w, x, y, z (-1.001 to 1.001) */
   rotation: [number, number, number, number];
-  /** actual opening, 0 closed to 1 open (0 to 1) */
+  /** actual opening of the jaws, 0 closed to 1 open (0 to 1) */
   jaw: number;
-  /** whether its energy is on */
+  /** whether the energy of the tool is on */
   energized: boolean;
-  /** while energy is off: why; of the session, not of the simulated state */
+  /** reason why energy is off; belongs to the session, not to the simulated state */
   energy_off?: 'never_enabled' | 'commanded' | 'watchdog' | 'restored' | 'taken_over';
-  /** of the tissue on the tool, filtered with the tool's `force_filter_s`; force_max_n at most (-1000000 to 1000000 N) */
+  /** force of the tissue on the tool, filtered with force_filter_s; at most force_max_n (-1000000 to 1000000 N) */
   force_n: [number, number, number];
-  /** about the tip, filtered as the force; force_max_n times tip_length_m at most (-1000000 to 1000000 N m) */
+  /** torque about the tip, filtered as the force; at most force_max_n times tip_length_m (-1000000 to 1000000 N m) */
   torque_nm: [number, number, number];
-  /** of the last tick, without filter and bound (-1000000000000 to 1000000000000 N) */
+  /** force in the last tick, without filter and limit (-1000000000000 to 1000000000000 N) */
   raw_force_n: [number, number, number];
-  /** about the tip, of the last tick, without filter and bound (-1000000000000 to 1000000000000 N m) */
+  /** torque about the tip in the last tick, without filter and limit (-1000000000000 to 1000000000000 N m) */
   raw_torque_nm: [number, number, number];
-  /** of the hot part (-300 to 1000000 degC) */
+  /** temperature of the hot part (-300 to 1000000 degC) */
   tip_temperature_c: number;
-  /** heat that tissue has taken up, about (0 to 1000000000000 J) */
+  /** estimate of the heat that tissue took up (0 to 1000000000000 J) */
   energy_j: number;
-  /** with energy `tissue`: given to tissue in the last tick; else 0 (0 to 1000000 W) */
+  /** with energy `tissue`: power given to tissue in the last tick; else 0 (0 to 1000000 W) */
   power_w: number;
-  /** that its generator finds; 0: no current flows (0 to 1000000000000 ohm) */
+  /** load of the generator; 0: no current flows (0 to 1000000000000 ohm) */
   load_ohm: number;
-  /** vertices that it touches (0 to 9007199254740991) */
+  /** number of vertices that the tool touches (0 to 9007199254740991) */
   contact_vertices: number;
-  /** points that its jaws hold (0 to 9007199254740991) */
+  /** number of points that the jaws hold (0 to 9007199254740991) */
   grasped_vertices: number;
-  /** of the last command applied (0 to 9007199254740991) */
+  /** number of the last command applied (0 to 9007199254740991) */
   sequence: number;
 }
 
-/** a blood vessel as it is */
+/** present state of a blood vessel */
 export interface ObservedVessel {
-  /** its name */
+  /** name of the vessel */
   vessel: string;
-  /** whether it is parted somewhere */
+  /** whether the vessel is parted somewhere */
   parted: boolean;
-  /** whether its wall has a hole somewhere */
+  /** whether the wall of the vessel has a hole somewhere */
   pierced: boolean;
-  /** whether it is pressed so flat somewhere that nothing flows */
+  /** whether the vessel is pressed so flat somewhere that no blood flows */
   shut: boolean;
-  /** whether a seal withstands the pressure of its blood */
+  /** whether a seal withstands the blood pressure */
   sealed: boolean;
-  /** whether blood leaves it */
+  /** whether blood leaves the vessel */
   bleeds: boolean;
-  /** blood that left it in the last tick, by time (0 to 1 m^3/s) */
+  /** flow of blood out of the vessel in the last tick (0 to 1 m^3/s) */
   bleeding_m3_s: number;
-  /** blood that has left it since the session began (0 to 1000000 m^3) */
+  /** volume of blood that has left the vessel since the session began (0 to 1000000 m^3) */
   shed_m3: number;
-  /** predicted pressure at which its best seal opens; 0: no seal (0 to 1000000000000 Pa) */
+  /** predicted pressure at which the best seal opens; 0: no seal (0 to 1000000000000 Pa) */
   burst_pa: number;
 }
 
-/** what heat and force have done, in volumes of the tissue at rest; links have none */
+/** damage by heat and force, in volumes of the tissue at rest; links have no volume */
 export interface ObservedDamage {
-  /** tetrahedra and triangles that are not there any more (0 to 9007199254740991) */
+  /** number of tetrahedra and triangles that were removed (0 to 9007199254740991) */
   removed_count: number;
-  /** their volume (0 to 1000000000 m^3) */
+  /** volume of the removed elements (0 to 1000000000 m^3) */
   removed_m3: number;
-  /** volume of those that are there, each weighted by the mean exposure of its vertices (0 to 1000000000 m^3) */
+  /** volume of the present elements, each weighted with the mean exposure of its vertices (0 to 1000000000 m^3) */
   damaged_m3: number;
 }
 
-/** inside a region and outside it */
+/** damage inside and outside of a region */
 export interface RegionDamage {
-  /** the region's */
+  /** name of the region */
   name: string;
-  /** inside */
+  /** damage inside the region */
   inside: ObservedDamage;
-  /** outside */
+  /** damage outside the region */
   outside: ObservedDamage;
 }
 
-/** where the energy of instruments went since the session was made; delivered_j and blade_j together are the sum of those after far_j; with energy `paper` all are 0 */
+/** where the energy of instruments went since the session was created; delivered_j and blade_j together are the sum of the members after far_j; with energy `paper` all members are 0 */
 export interface ObservedEnergy {
-  /** by current in tissue (-1000000000000 to 1000000000000 J) */
+  /** energy that current delivered in tissue (-1000000000000 to 1000000000000 J) */
   delivered_j: number;
-  /** from blades into tissue; below 0: the other way (-1000000000000 to 1000000000000 J) */
+  /** heat from blades into tissue; below 0: from tissue into blades (-1000000000000 to 1000000000000 J) */
   blade_j: number;
-  /** by current far away, where no heat is computed; not part of the sum (-1000000000000 to 1000000000000 J) */
+  /** energy of current far from the tool, where no heat is computed; not part of the sum (-1000000000000 to 1000000000000 J) */
   far_j: number;
-  /** heat of the tissue above its first temperature (-1000000000000 to 1000000000000 J) */
+  /** heat of the tissue above its temperature at the start (-1000000000000 to 1000000000000 J) */
   stored_j: number;
-  /** taken along by water that boiled off, as steam and smoke (-1000000000000 to 1000000000000 J) */
+  /** energy carried away by water that boiled off, as steam and smoke (-1000000000000 to 1000000000000 J) */
   boiled_j: number;
-  /** taken along by blood (-1000000000000 to 1000000000000 J) */
+  /** energy carried away by blood (-1000000000000 to 1000000000000 J) */
   perfused_j: number;
-  /** lost at surfaces (-1000000000000 to 1000000000000 J) */
+  /** energy lost at surfaces (-1000000000000 to 1000000000000 J) */
   ambient_j: number;
   /** heat of tissue that was removed (-1000000000000 to 1000000000000 J) */
   shed_j: number;
-  /** volume of the tissue that is there and dead by heat (0 to 1000000000 m^3) */
+  /** volume of present tissue that heat has killed (0 to 1000000000 m^3) */
   coagulated_m3: number;
-  /** water that boiled off in the last tick (0 to 1000000 kg/s) */
+  /** rate at which water boiled off in the last tick (0 to 1000000 kg/s) */
   vapour_kg_s: number;
 }
 
-/** the ticks are made, and this is what was asked for */
+/** the ticks were computed; the observed values */
 export interface Advanced {
-  /** where the session is now (0 to 9007199254740991) */
+  /** present tick of the session (0 to 9007199254740991) */
   tick: number;
-  /** simulated (0 to 1000000000000 s) */
+  /** simulated time (0 to 1000000000000 s) */
   time_s: number;
-  /** ticks that were made: fewer than asked for where lock-step ended meanwhile (0 to 100000) */
+  /** number of computed ticks; fewer than requested if lock-step ended meanwhile (0 to 100000) */
   ticks: number;
-  /** whether they are on the disk; false for ephemeral sessions */
+  /** whether the ticks are on the disk; false for ephemeral sessions */
   stored: boolean;
   /** x, y, z of the vertices (-1000000 to 1000000 m) */
   positions_m?: number[];
-  /** words of 32 faces, the lowest bit first; a set bit: not drawn (0 to 4294967295) */
+  /** words of 32 faces, the lowest bit first; a set bit: the face is not drawn (0 to 4294967295) */
   mask?: number[];
   /** in the order of the channels */
   scalars?: ObservedScalar[];
-  /** as they were added */
+  /** in the order in which the tools were added */
   tools?: ObservedTool[];
-  /** in the scene's order */
+  /** in the order of the scene */
   vessels?: ObservedVessel[];
   /** in the order of the request */
   regions?: RegionDamage[];
-  /** of the whole session */
+  /** energy of the whole session */
   energy?: ObservedEnergy;
 }
 
-/** sets the pace */
+/** sets the speed of a session */
 export interface SessionSpeed {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** simulated over wall time to aim at (0.01 to 10) */
+  /** wanted simulated time over wall time (0.01 to 10) */
   speed: number;
 }
 
-/** makes a new session from this one's state */
+/** creates a new session from the state of this session */
 export interface SessionFork {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** wanted id of the new one, without the daemon's label; made up by default */
+  /** name of the new session, without the daemon's label (default: chosen by the server) */
   name?: string;
-  /** of the state; the present one by default (0 to 9007199254740991) */
+  /** tick of the state (default: the present tick) (0 to 9007199254740991) */
   tick?: number;
-  /** the new session starts paused; false by default */
+  /** the new session starts paused (default: false) */
   paused?: boolean;
 }
 
-/** stores the state under a name */
+/** stores the state of a session under a name */
 export interface SessionSnapshot {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** made up by default */
+  /** name of the snapshot (default: chosen by the server) */
   name?: string;
 }
 
 /** a stored state */
 export interface SnapshotResult {
-  /** for session.restore */
+  /** name of the snapshot, for session.restore */
   name: string;
-  /** of the state (0 to 9007199254740991) */
+  /** tick of the state (0 to 9007199254740991) */
   tick: number;
-  /** of the whole state */
+  /** hash of the whole state */
   hash: string;
-  /** stored for it; 0: an earlier checkpoint and the log lead there (0 to 9007199254740991 B) */
+  /** bytes stored for the state; 0: the state can be reached from an earlier checkpoint and the log (0 to 9007199254740991 B) */
   byte_count: number;
 }
 
-/** a state with a name */
+/** a snapshot of a session */
 export interface NamedSnapshot {
-  /** for session.restore */
+  /** name of the snapshot, for session.restore */
   name: string;
-  /** of the state (0 to 9007199254740991) */
+  /** tick of the state (0 to 9007199254740991) */
   tick: number;
-  /** number of the branch that it was taken on (0 to 9007199254740991) */
+  /** number of the branch of the snapshot (0 to 9007199254740991) */
   branch: number;
 }
 
-/** the session's states with a name */
+/** all snapshots of a session */
 export interface SnapshotList {
-  /** by tick */
+  /** sorted by tick */
   snapshots: NamedSnapshot[];
 }
 
-/** restores a snapshot, energy off; a new branch */
+/** restores a snapshot on a new branch; energy goes off */
 export interface SessionRestore {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** of the snapshot */
+  /** name of the snapshot */
   name: string;
 }
 
-/** rewinds to a tick, energy off; a new branch */
+/** rewinds to a tick on a new branch; energy goes off */
 export interface SessionRewind {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** the timeline's oldest_tick or later, or what a refusal names (0 to 9007199254740991) */
+  /** a tick from oldest_tick of the timeline on, or one that a refusal names (0 to 9007199254740991) */
   tick: number;
 }
 
-/** where a session is after a rewind, restore or reset */
+/** state of a session after a rewind, restore or reset */
 export interface Restored {
-  /** of the state (0 to 9007199254740991) */
+  /** tick of the state (0 to 9007199254740991) */
   tick: number;
-  /** of the frames from now on */
+  /** epoch of the frames from now on */
   epoch: string;
   /** number of the branch in the store (0 to 9007199254740991) */
   branch: number;
-  /** false: written by another build or instruction set, so not bit-exact */
+  /** false: another build or instruction set wrote the state, so later ticks may differ in the last digits */
   exact: boolean;
 }
 
 /** asks for the tissue as a file */
 export interface SessionExport {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** of the file */
+  /** format of the file */
   format: 'vtu' | 'obj';
 }
 
 /** asks for the command log as a script for cautery-sim */
 export interface SessionLog {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** first tick; 0 by default (0 to 9007199254740991) */
+  /** first tick (default: 0) (0 to 9007199254740991) */
   from_tick?: number;
-  /** last tick; the present one by default (0 to 9007199254740991) */
+  /** last tick (default: the present tick) (0 to 9007199254740991) */
   to_tick?: number;
 }
 
 /** a file that follows in binary chunks */
 export interface Transfer {
-  /** number in the chunks' headers (1 to 4294967295) */
+  /** number of the transfer in the headers of the chunks (1 to 4294967295) */
   transfer: number;
-  /** proposed */
+  /** proposed file name */
   file_name: string;
-  /** of the file */
+  /** media type of the file */
   media_type: string;
-  /** of the file (0 to 9007199254740991 B) */
+  /** size of the file (0 to 9007199254740991 B) */
   byte_count: number;
-  /** of the file, 64 lower-case hex digits */
+  /** SHA-256 of the file, 64 lower-case hex digits */
   sha256: string;
 }
 
-/** asks for what happened */
+/** asks for the events of a session */
 export interface SessionTimeline {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** first tick; 0 by default (0 to 9007199254740991) */
+  /** first tick (default: 0) (0 to 9007199254740991) */
   from_tick?: number;
-  /** newest events wanted at most; 1024 by default (1 to 4096) */
+  /** largest number of events, the newest of them (default: 1024) (1 to 4096) */
   count?: number;
 }
 
-/** something that happened on the present branch */
+/** an event on the present branch */
 export interface TimelineEvent {
-  /** when (0 to 9007199254740991) */
+  /** tick of the event (0 to 9007199254740991) */
   tick: number;
-  /** simulated (0 to 1000000000000 s) */
+  /** simulated time (0 to 1000000000000 s) */
   time_s: number;
-  /** what */
+  /** kind of the event */
   kind: 'created' | 'cut' | 'tear' | 'inverted' | 'energy_gain' | 'bleeding' | 'bleeding_stopped' | 'sealed' | 'energy_on' | 'energy_off' | 'watchdog' | 'driver' | 'tool_added' | 'tool_removed' | 'refused' | 'fault' | 'rewind' | 'reset' | 'snapshot' | 'restore';
-  /** with which tool */
+  /** tool of the event */
   tool?: string;
-  /** by whom */
+  /** client that caused the event */
   client?: string;
-  /** cut: elements removed; refused: commands (0 to 9007199254740991) */
+  /** cut: number of removed elements; refused: number of commands (0 to 9007199254740991) */
   count?: number;
-  /** in words */
+  /** details in words */
   detail?: string;
 }
 
-/** what happened, and how far back one can go */
+/** events of a session, and the oldest tick that can be reached */
 export interface Timeline {
-  /** the present (0 to 9007199254740991) */
+  /** present tick (0 to 9007199254740991) */
   tick: number;
-  /** from here on every tick can be reached (0 to 9007199254740991) */
+  /** every tick from this tick on can be reached (0 to 9007199254740991) */
   oldest_tick: number;
   /** number of the present branch (0 to 9007199254740991) */
   branch: number;
-  /** oldest first; cuts within 30 ticks are one */
+  /** oldest first; cuts within 30 ticks are one event */
   events: TimelineEvent[];
 }
 
 /** when a change takes effect */
 export interface TickResult {
-  /** the tick border (0 to 9007199254740991) */
+  /** tick border at which the change takes effect (0 to 9007199254740991) */
   tick: number;
 }
 
-/** asks what a session looked like; it goes on meanwhile, and nothing of it changes */
+/** asks for the picture of a past tick; the session continues and does not change */
 export interface SessionFrameAt {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** on the present line, from oldest_tick to the present (0 to 9007199254740991) */
+  /** tick on the present branch, from oldest_tick to the present (0 to 9007199254740991) */
   tick: number;
-  /** by default those that the table of channels marks */
+  /** channels (default: those marked in the table of channels) */
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
-  /** quantisation; 5e-5 by default (1e-07 to 0.001 m) */
+  /** quantisation step (default: 5e-5) (1e-07 to 0.001 m) */
   step_m?: number;
-  /** no section of the frame is in meshoptimizer's codec; false by default */
+  /** true: no section of the frame uses meshoptimizer's codec (default: false) */
   plain?: boolean;
 }
 
-/** one key frame that follows in binary chunks, and what a decoder needs beside the session's topology; its tools have no drivers */
+/** one key frame, which follows in binary chunks, and what a decoder needs besides the topology; the tools in the frame have no drivers */
 export interface PastFrame {
-  /** number in the chunks' headers (1 to 4294967295) */
+  /** number of the transfer in the headers of the chunks (1 to 4294967295) */
   transfer: number;
-  /** proposed */
+  /** proposed file name */
   file_name: string;
-  /** of the file */
+  /** media type of the file */
   media_type: string;
-  /** of the frame (0 to 9007199254740991 B) */
+  /** size of the frame (0 to 9007199254740991 B) */
   byte_count: number;
-  /** of the frame, 64 lower-case hex digits */
+  /** SHA-256 of the frame, 64 lower-case hex digits */
   sha256: string;
-  /** what it shows (0 to 9007199254740991) */
+  /** tick that the frame shows (0 to 9007199254740991) */
   tick: number;
-  /** to the bit what was; false: replayed by another build or instruction set */
+  /** true: equal to the bit to the past state; false: replayed by another build or instruction set */
   exact: boolean;
-  /** in the frame's header (0 to 4294967295) */
+  /** session number in the frame's header (0 to 4294967295) */
   session_number: number;
-  /** in the frame's header (0 to 3) */
+  /** profile in the frame's header (0 to 3) */
   profile: number;
-  /** in the frame's header; that of no stream */
+  /** epoch in the frame's header, which no stream has */
   epoch: string;
-  /** in the frame */
+  /** channels of the frame */
   channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
-  /** of positions and scalars (0 to 16777216) */
+  /** number of vertices in positions and scalars (0 to 16777216) */
   vertex_count: number;
-  /** of the mask (0 to 16777216) */
+  /** number of faces in the mask (0 to 16777216) */
   face_count: number;
-  /** where the quantised zero is (-1000000 to 1000000 m) */
+  /** position of the quantised zero (-1000000 to 1000000 m) */
   origin_m: [number, number, number];
-  /** one quantised step (1e-07 to 0.01 m) */
+  /** length of one quantised step (1e-07 to 0.01 m) */
   step_m: number;
   /** one step of the stress channel (0.001 to 1000000000 Pa) */
   stress_step_pa: number;
 }
 
-/** how far a past view is */
+/** progress of a past view */
 export interface FrameProgress {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** where it goes (0 to 9007199254740991) */
+  /** tick of the past view (0 to 9007199254740991) */
   tick: number;
-  /** what it does */
+  /** present stage of the work */
   stage: 'building' | 'reading' | 'restoring' | 'replaying';
-  /** where the replay began (0 to 9007199254740991) */
+  /** tick at which the replay began (0 to 9007199254740991) */
   from_tick: number;
-  /** where it is (0 to 9007199254740991) */
+  /** tick that the replay has reached (0 to 9007199254740991) */
   at_tick: number;
 }
 
-/** has the daemon copy its store */
+/** asks the daemon to copy its store */
 export interface StoreBackup {
-  /** of the copy, without .db; by default the time. Nothing is replaced */
+  /** name of the copy, without .db (default: the time); no file is replaced */
   name?: string;
 }
 
-/** a copy of the store as it was at one moment, checked */
+/** a checked copy of the store, as it was at one moment */
 export interface StoreCopy {
-  /** where it is, on the daemon's machine */
+  /** path of the copy on the daemon's machine */
   file: string;
-  /** its size (0 to 9007199254740991 B) */
+  /** size of the copy (0 to 9007199254740991 B) */
   byte_count: number;
 }
 
-/** a session is to go to another daemon */
+/** begins to move a session to another daemon */
 export interface MoveBegin {
-  /** its id */
+  /** id of the session on this daemon */
   session: string;
-  /** its id there */
+  /** id of the session on the target daemon */
   target: string;
-  /** of the daemon that is to have it */
+  /** label of the target daemon */
   label: string;
-  /** where that daemon is, for who asks for the old id; none where one address leads to all */
+  /** address of the target daemon, for clients that use the old id; empty if one address leads to all daemons */
   url?: string;
 }
 
 /** a move has begun */
 export interface MoveBegun {
-  /** names it from here on */
+  /** name of the move */
   move: string;
 }
 
 /** names a move */
 export interface MoveRef {
-  /** its id on the daemon that is asked */
+  /** id of the session on the daemon that is asked */
   session: string;
-  /** of move.begin */
+  /** name of the move, from move.begin */
   move: string;
 }
 
-/** a state that a session stands at */
+/** the state at which a session is suspended */
 export interface MoveHeld {
-  /** when (0 to 9007199254740991) */
+  /** tick of the state (0 to 9007199254740991) */
   tick: number;
-  /** of the state */
+  /** hash of the state */
   hash: string;
-  /** another daemon's state was read here to the bit; false: another build or instruction set wrote it, and what follows may differ in last digits */
+  /** true: the state of the other daemon was restored to the bit; false: another build or instruction set wrote it, so later ticks may differ in the last digits */
   exact?: boolean;
 }
 
-/** what became of a move */
+/** result of a move */
 export interface MoveDecision {
-  /** false: the session stays, and this move will never be */
+  /** false: the session stays, and this move can no longer happen */
   moved: boolean;
-  /** its id there */
+  /** id of the session on the target daemon */
   target?: string;
-  /** lets the other daemon serve it */
+  /** proof with which the target daemon may serve the session */
   proof?: string;
-  /** where it stays: lets the other daemon forget the move */
+  /** if the session stays: release with which the target daemon may forget the move */
   release?: string;
 }
 
-/** a piece of a session */
+/** delivers a piece of a session */
 export interface MoveReceive {
-  /** its id here */
+  /** id of the session on this daemon */
   session: string;
-  /** of move.begin */
+  /** name of the move, from move.begin */
   move: string;
-  /** that holds the piece; it is gone with this */
+  /** upload that holds the piece; this request removes the upload */
   upload: string;
 }
 
-/** a piece is on the disk */
+/** a piece is on the disk of the target daemon */
 export interface MoveReceived {
-  /** that are (0 to 9007199254740991) */
+  /** number of pieces on the disk (0 to 9007199254740991) */
   pieces: number;
-  /** of the last piece: proves to the other daemon that all are here */
+  /** after the last piece: receipt that proves to the source daemon that all pieces are on the disk */
   receipt?: string;
 }
 
-/** the other daemon has all pieces of a session */
+/** informs the source daemon that the target daemon has all pieces */
 export interface MoveCommit {
-  /** its id here */
+  /** id of the session on this daemon */
   session: string;
-  /** of move.begin */
+  /** name of the move, from move.begin */
   move: string;
-  /** of the other daemon's last move.receive */
+  /** receipt of the last move.receive on the target daemon */
   receipt: string;
 }
 
-/** the pieces of a move are to be removed */
+/** removes the pieces of a move */
 export interface MoveForget {
-  /** its id here */
+  /** id of the session on this daemon */
   session: string;
-  /** of move.begin */
+  /** name of the move, from move.begin */
   move: string;
-  /** of move.cancel */
+  /** release from move.cancel */
   release?: string;
-  /** instead of a release: the other daemon is gone for good. If it had decided the move, the session is lost */
+  /** instead of a release: the source daemon is lost for good. If it had decided the move, the session is lost */
   source_lost?: boolean;
 }
 
-/** a session is to be served here */
+/** asks the target daemon to serve the session */
 export interface MoveAccept {
-  /** its id here */
+  /** id of the session on this daemon */
   session: string;
-  /** of move.begin */
+  /** name of the move, from move.begin */
   move: string;
-  /** of move.commit */
+  /** proof from move.commit */
   proof: string;
 }
 
 /** a move, as this daemon knows it */
 export interface MoveEntry {
-  /** its id here */
+  /** id of the session on this daemon */
   session: string;
-  /** of move.begin */
+  /** name of the move, from move.begin */
   move: string;
-  /** its id on the other daemon */
+  /** id of the session on the other daemon */
   other: string;
-  /** leaving, held, deciding, gone; incoming, doubt (all is here, and whether it is to be served is known to the other daemon), accepting */
+  /** leaving, held, deciding, gone; incoming, doubt (all pieces are here, but only the source daemon knows whether the move is decided), accepting */
   state: string;
-  /** gone: where the other daemon is, as it was said */
+  /** gone: address of the other daemon, as move.begin gave it */
   url?: string;
 }
 
 /** moves of this daemon's sessions */
 export interface MoveList {
-  /** those that are not over first, then what has gone */
+  /** unfinished moves first, then sessions that have moved away */
   moves: MoveEntry[];
 }
 
 /** a command that waits for a later tick */
 export interface WaitingCommand {
-  /** its own, for session.cancel (1 to 9007199254740991) */
+  /** number of the command, for session.cancel (1 to 9007199254740991) */
   number: number;
-  /** when it acts (1 to 9007199254740991) */
+  /** tick at which the command takes effect (1 to 9007199254740991) */
   tick: number;
-  /** what it is, as tool.move */
+  /** method of the command, as tool.move */
   method: string;
-  /** the tool that it is about */
+  /** tool of the command */
   tool?: string;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gave the command (0 to 9007199254740991) */
   sequence: number;
-  /** the client that asked for it (1 to 4294967295) */
+  /** client that sent the command (1 to 4294967295) */
   client: number;
-  /** that client's name */
+  /** name of that client */
   name: string;
 }
 
 /** the commands of a session that wait for later ticks */
 export interface WaitingList {
-  /** in the order in which they came; at most 64 of a client */
+  /** in the order of arrival; at most 64 of one client */
   commands: WaitingCommand[];
 }
 
-/** takes back commands that wait for later ticks */
+/** cancels commands that wait for later ticks */
 export interface SessionCancel {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** the command's, of session.waiting; without it all of the caller's (1 to 9007199254740991) */
+  /** number of the command, from session.waiting (default: all commands of the caller) (1 to 9007199254740991) */
   number?: number;
 }
 
-/** what was taken back */
+/** cancelled commands */
 export interface Cancelled {
-  /** commands (0 to 9007199254740991) */
+  /** number of cancelled commands (0 to 9007199254740991) */
   count: number;
 }
 
 /** asks for frames */
 export interface SessionJoin {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** frames a wall second at most; 60 by default (0.1 to 1000 1/s) */
+  /** largest number of frames in a second of wall time (default: 60) (0.1 to 1000 1/s) */
   rate_hz?: number;
-  /** by default those that the table of channels marks */
+  /** channels (default: those marked in the table of channels) */
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
-  /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
+  /** wanted quantisation step; the server may choose a finer step (default: 5e-5) (1e-07 to 0.001 m) */
   step_m?: number;
-  /** no section of the frames is in meshoptimizer's codec; false by default */
+  /** true: no section of the frames uses meshoptimizer's codec (default: false) */
   plain?: boolean;
 }
 
 /** what a decoder needs; a topology frame and a key frame follow */
 export interface StreamDescription {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** in the frames' headers (0 to 4294967295) */
+  /** session number in the frames' headers (0 to 4294967295) */
   session_number: number;
-  /** in the frames' headers (0 to 3) */
+  /** profile in the frames' headers (0 to 3) */
   profile: number;
-  /** at the time of joining */
+  /** epoch at the time of joining */
   epoch: string;
-  /** granted (0.1 to 1000 1/s) */
+  /** largest number of frames in a second, as granted (0.1 to 1000 1/s) */
   rate_hz: number;
-  /** granted */
+  /** channels of the stream */
   channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature' | 'vessels' | 'blood' | 'tool_contact')[];
-  /** of positions and scalars (0 to 16777216) */
+  /** number of vertices in positions and scalars (0 to 16777216) */
   vertex_count: number;
-  /** of mask and topology (0 to 16777216) */
+  /** number of faces in mask and topology (0 to 16777216) */
   face_count: number;
-  /** where the quantised zero is (-1000000 to 1000000 m) */
+  /** position of the quantised zero (-1000000 to 1000000 m) */
   origin_m: [number, number, number];
-  /** one quantised step (1e-07 to 0.01 m) */
+  /** length of one quantised step (1e-07 to 0.01 m) */
   step_m: number;
   /** one step of the stress channel (0.001 to 1000000000 Pa) */
   stress_step_pa: number;
-  /** no section of its frames is in meshoptimizer's codec; absent from older servers */
+  /** true: no section of the frames uses meshoptimizer's codec; older servers do not send this member */
   plain?: boolean;
 }
 
-/** how far the client has decoded; bounds what is in flight, shows delays */
+/** the newest frame that the client has decoded; limits the frames in flight and shows delays */
 export interface StreamAck {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
-  /** of the frame */
+  /** epoch of the frame */
   epoch: string;
-  /** of the frame (0 to 9007199254740991) */
+  /** sequence number of the frame (0 to 9007199254740991) */
   sequence: number;
 }
 
 /** names a tool of a session */
 export interface ToolRef {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** its name */
+  /** name of the tool */
   tool: string;
 }
 
-/** gives a tool up */
+/** gives up a tool, or hands it over to another client */
 export interface ToolHandOver {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** its name */
+  /** name of the tool */
   tool: string;
-  /** to this connection; by default the tool has no driver (1 to 4294967295) */
+  /** connection that becomes the driver (default: the tool has no driver) (1 to 4294967295) */
   client?: number;
 }
 
-/** a command is in the log */
+/** a command was accepted into the log */
 export interface CommandResult {
-  /** the tick border at which it takes effect (0 to 9007199254740991) */
+  /** tick border at which the command takes effect (0 to 9007199254740991) */
   tick: number;
-  /** as given (0 to 9007199254740991) */
+  /** as given in the command (0 to 9007199254740991) */
   sequence: number;
-  /** false: the store was full; energy is off all the same */
+  /** false: the store was full; energy is off nevertheless */
   stored?: boolean;
 }
 
-/** announces a mesh file; takes the place of an upload of the same name, whole or not */
+/** announces a mesh file; replaces an upload of the same name, complete or not */
 export interface UploadBegin {
-  /** for scenes: meshes[].file of source bytes, with file_name's ending */
+  /** name of the upload, for meshes[].file of source bytes with the ending of file_name */
   name: string;
-  /** for messages and the names of sessions; the format is found from the bytes */
+  /** file name for messages and names of sessions; the format is recognised from the bytes */
   file_name: string;
-  /** of the file, exactly (1 to 9007199254740991 B) */
+  /** exact size of the file (1 to 9007199254740991 B) */
   byte_count: number;
 }
 
-/** chunks may come */
+/** the server is ready for chunks */
 export interface UploadBeginResult {
-  /** number for the chunks' headers (1 to 4294967295) */
+  /** number of the transfer for the headers of the chunks (1 to 4294967295) */
   transfer: number;
-  /** of data in one chunk (1 to 9007199254740991 B) */
+  /** largest data of one chunk (1 to 9007199254740991 B) */
   chunk_bytes_max: number;
 }
 
-/** all chunks are sent */
+/** all chunks were sent */
 export interface UploadEnd {
-  /** as upload.begin answered (1 to 4294967295) */
+  /** number from upload.begin (1 to 4294967295) */
   transfer: number;
-  /** of the file, 64 lower-case hex digits */
+  /** SHA-256 of the file, 64 lower-case hex digits */
   sha256: string;
 }
 
-/** an upload is a mesh to report on */
+/** asks for a report on an upload, read as a mesh */
 export interface MeshRead {
-  /** as in upload.begin; whole */
+  /** name of a complete upload, as in upload.begin */
   upload: string;
-  /** metres in one unit of the file; guessed by default where it is clear (1e-09 to 1000 m) */
+  /** metres in one unit of the file (default: guessed from the size of the mesh, if that is clear) (1e-09 to 1000 m) */
   unit_m?: number;
-  /** fat (tetrahedra) or fascia (triangles); by default fat where there are tetrahedra, or an inside */
+  /** fat (tetrahedra) or fascia (triangles); default: fat if the file has tetrahedra or a closed surface */
   as?: 'fascia' | 'membrane' | 'fat' | 'links';
-  /** refuses a mesh that would have to be mended; false by default */
+  /** true: refuse a mesh that needs repair (default: false) */
   strict?: boolean;
-  /** never fills the mesh with tetrahedra, for a scene of one's own; false by default */
+  /** true: never fill the mesh with tetrahedra; for scenes that a client writes itself (default: false) */
   as_it_is?: boolean;
-  /** length of an edge of the tetrahedra that fill it; about 8,000 of them by default (1e-06 to 10 m) */
+  /** edge length of the tetrahedra that fill the mesh (default: gives about 8,000 tetrahedra) (1e-06 to 10 m) */
   edge_m?: number;
-  /** of a segmentation: labels to keep, as in 1,3; all by default */
+  /** labels of a segmentation to keep, as in 1,3 (default: all) */
   labels?: string;
-  /** sides that are pinned: bottom, top, left, right, front, back, with commas, or none; the bottom by default */
+  /** pinned sides: bottom, top, left, right, front, back, with commas, or none (default: bottom) */
   pin?: string;
 }
 
 /** elements of one kind in the file */
 export interface MeshKind {
-  /** the kind: hexahedra */
+  /** name of the kind, as hexahedra */
   name: string;
-  /** became elements of the mesh (0 to 9007199254740991) */
+  /** number that became elements of the mesh (0 to 9007199254740991) */
   read: number;
-  /** were passed over (0 to 9007199254740991) */
+  /** number that were ignored (0 to 9007199254740991) */
   passed: number;
 }
 
-/** something that was mended */
+/** one kind of repair */
 export interface MeshMend {
-  /** in words: duplicate vertices merged */
+  /** the repair in words, as `duplicate vertices merged` */
   what: string;
-  /** how many (1 to 9007199254740991) */
+  /** number of repairs (1 to 9007199254740991) */
   count: number;
 }
 
 /** a region of the mesh */
 export interface MeshRegion {
-  /** 2: of triangles, 3: of tetrahedra (2 to 3) */
+  /** 2: region of triangles, 3: of tetrahedra (2 to 3) */
   dimension: number;
-  /** its number, as layers name it (-2147483648 to 2147483647) */
+  /** number of the region, as layers name it (-2147483648 to 2147483647) */
   region: number;
-  /** elements (0 to 9007199254740991) */
+  /** number of elements (0 to 9007199254740991) */
   element_count: number;
-  /** of the file, or empty */
+  /** name of the region in the file, or empty */
   name: string;
 }
 
-/** what became of a mesh file */
+/** report on a mesh file */
 export interface MeshReport {
-  /** the whole report in words, one fact a line */
+  /** the whole report in words, one fact in each line */
   text: string;
-  /** Gmsh 4.1 */
+  /** format of the file, as Gmsh 4.1 */
   format: string;
-  /** vertices in the file (0 to 9007199254740991) */
+  /** number of vertices in the file (0 to 9007199254740991) */
   vertices_read: number;
   /** elements in the file */
   kinds: MeshKind[];
-  /** what was mended */
+  /** repairs of the mesh */
   mended: MeshMend[];
-  /** vertices of the mesh (0 to 9007199254740991) */
+  /** number of vertices of the mesh (0 to 9007199254740991) */
   vertex_count: number;
-  /** triangles (0 to 9007199254740991) */
+  /** number of triangles (0 to 9007199254740991) */
   triangle_count: number;
-  /** tetrahedra (0 to 9007199254740991) */
+  /** number of tetrahedra (0 to 9007199254740991) */
   tetrahedron_count: number;
-  /** connected pieces (0 to 9007199254740991) */
+  /** number of connected pieces (0 to 9007199254740991) */
   component_count: number;
-  /** edges on the rim of a surface without tetrahedra; 0: closed (0 to 9007199254740991) */
+  /** number of edges on the rim of a surface without tetrahedra; 0: the surface is closed (0 to 9007199254740991) */
   open_edge_count: number;
-  /** the first regions */
+  /** the first regions of the mesh */
   regions: MeshRegion[];
-  /** of all regions (0 to 9007199254740991) */
+  /** number of all regions (0 to 9007199254740991) */
   region_count: number;
-  /** corner of the bounding box (-1000000 to 1000000 m) */
+  /** least corner of the bounding box (-1000000 to 1000000 m) */
   least_m: [number, number, number];
-  /** the opposite corner (-1000000 to 1000000 m) */
+  /** largest corner of the bounding box (-1000000 to 1000000 m) */
   most_m: [number, number, number];
   /** metres in one unit of the file, as used (1e-09 to 1000 m) */
   unit_m: number;
-  /** elements by quality in tenths from 0 to 1 (mean ratio) (0 to 9007199254740991) */
+  /** number of elements in each tenth of the quality from 0 to 1 (mean ratio) (0 to 9007199254740991) */
   quality: number[];
-  /** of all elements (0 to 1) */
+  /** least quality of all elements (0 to 1) */
   least_quality: number;
 }
 
-/** a mesh that was read */
+/** result of reading a mesh */
 export interface MeshReading {
-  /** what became of the file */
+  /** report on the file */
   report: MeshReport;
-  /** a scene around the upload, for session.create */
+  /** a scene with the upload, for session.create */
   definition: Scene;
-  /** a choice that the user has: the surface was filled */
+  /** a choice that the user has, as whether the surface is filled */
   note?: string;
 }
 
-/** an upload is not needed any more */
+/** removes an upload */
 export interface UploadDiscard {
-  /** as in upload.begin; it may be whole or still coming */
+  /** name of the upload, which may be complete or still arriving */
   name: string;
 }
 
-/** the file is kept until it is discarded, another takes its name, or the connection closes */
+/** the file is complete; the server keeps it until it is discarded, another upload takes its name, or the connection closes */
 export interface UploadResult {
-  /** as given */
+  /** as given in upload.begin */
   name: string;
-  /** what a mesh of source bytes says in file */
+  /** value for the member file of a mesh of source bytes */
   file: string;
-  /** received (0 to 9007199254740991 B) */
+  /** number of received bytes (0 to 9007199254740991 B) */
   byte_count: number;
 }
 
-/** a session is no longer as it was */
+/** a session has changed */
 export interface SessionChanged {
-  /** why */
+  /** reason of the change */
   change: 'created' | 'destroyed' | 'paused' | 'resumed' | 'stepped' | 'speed' | 'reset' | 'rewound' | 'restored' | 'restarted' | 'moved' | 'tools' | 'tissue';
-  /** as it is now */
+  /** present summary of the session */
   summary: SessionSummary;
-  /** who did it */
+  /** client that caused the change */
   client?: string;
-  /** moved: the address of the daemon that has it now, if it is another */
+  /** moved: address of the daemon that has the session now, if it is another */
   target?: string;
-  /** moved: its id there */
+  /** moved: id of the session on that daemon */
   moved_to?: string;
 }
 
-/** the simulation met numerical trouble; rewind or reset */
+/** the simulation failed numerically; rewind or reset the session */
 export interface SessionFaulted {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** when (0 to 9007199254740991) */
+  /** tick of the fault (0 to 9007199254740991) */
   tick: number;
-  /** in words */
+  /** reason in words */
   reason: string;
 }
 
-/** a tool has another driver or lost its energy */
+/** a tool has another driver, or its energy went off */
 export interface DriverChanged {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** as it is now */
+  /** present driver of the tool */
   driver: Driver;
 }
 
-/** commands to a tool were refused; sent at most once a second and tool */
+/** commands to a tool were refused; sent at most once a second for each tool */
 export interface ToolRefused {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** the tool */
+  /** name of the tool */
   tool: string;
-  /** refused since the last such message (1 to 9007199254740991) */
+  /** number of commands refused since the last such message (1 to 9007199254740991) */
   count: number;
-  /** of the last one (0 to 9007199254740991) */
+  /** number of the last refused command (0 to 9007199254740991) */
   sequence: number;
-  /** why the last one was refused: a status of the error table */
+  /** status of the last refusal, from the table of errors */
   status: string;
-  /** its offending member */
+  /** member of that command that was refused */
   path?: string;
-  /** in words */
+  /** reason in words */
   reason: string;
 }
 
-/** another client asks the driver for a tool; answer with tool.hand_over or not at all */
+/** another client asks the driver for a tool; the driver may answer with tool.hand_over */
 export interface TakeoverRequested {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** the tool */
+  /** name of the tool */
   tool: string;
-  /** who asks (1 to 4294967295) */
+  /** client that asks (1 to 4294967295) */
   client: number;
-  /** the client's name in its hello */
+  /** name that the client gave in hello */
   name: string;
 }
 
-/** something happened, as it will stand in the timeline */
+/** an event happened; the timeline contains it from now on */
 export interface EventNotice {
-  /** its id */
+  /** id of the session */
   session: string;
-  /** what */
+  /** the event */
   event: TimelineEvent;
 }
 
@@ -1202,27 +1202,27 @@ export interface Mesh {
   cells?: number[];
   /** turns the UV axes against the mesh's axes (-6.3 to 6.3 rad) */
   texture_turn_rad?: number;
-  /** a mesh file, relative to the scene file */
+  /** path of a mesh file, relative to the scene file */
   file?: string;
   /** metres in one unit of the file (1e-09 to 1000 m) */
   unit_m?: number;
-  /** 1: refuses a mesh that would have to be mended (0 to 1) */
+  /** 1: refuse a mesh with errors instead of repairing it (0 to 1) */
   strict?: number;
-  /** moves the mesh, after the unit (-100 to 100 m) */
+  /** translation of the mesh, applied after unit_m (-100 to 100 m) */
   translate_m?: [number, number, number];
 }
 
-/** a choice of vertices by rest position */
+/** a selection of vertices by their rest positions */
 export interface Selection {
   /** which vertices */
   kind: 'rim' | 'box' | 'sphere' | 'nearest';
-  /** only of this layer; any if absent */
+  /** only vertices of this layer; without it, of any layer */
   layer?: string;
   /** least corner of the box (-100 to 100 m) */
   least_m?: [number, number, number];
-  /** largest corner (-100 to 100 m) */
+  /** largest corner of the box (-100 to 100 m) */
   most_m?: [number, number, number];
-  /** centre of the sphere, or the place (-100 to 100 m) */
+  /** centre of the sphere, or the point for `nearest` (-100 to 100 m) */
   center_m?: [number, number, number];
   /** radius of the sphere (0 to 100 m) */
   radius_m?: number;
@@ -1232,9 +1232,9 @@ export interface Selection {
 export interface Tool {
   /** name of the tool */
   name: string;
-  /** profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none */
+  /** profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out */
   instrument?: string;
-  /** mode of the instrument; its first by default */
+  /** mode of the instrument (default: its first) */
   mode?: string;
   /** shape */
   shape?: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
@@ -1252,43 +1252,43 @@ export interface Tool {
   temperature_c?: number;
   /** nodes of the heat grid along each axis (8 to 64) */
   grid_cells?: number;
-  /** spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m) */
+  /** spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m) */
   grid_step_m?: number;
-  /** alpha of eq. 18 (0 to 0.001 m^2/s) */
+  /** thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s) */
   diffusivity_m2_s?: number;
-  /** faster commands are followed at this speed (0.001 to 5 m/s) */
+  /** largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s) */
   max_speed_m_s?: number;
-  /** fastest turning of the tool (0.1 to 100 rad/s) */
+  /** largest angular speed of the tool (0.1 to 100 rad/s) */
   max_turn_rad_s?: number;
   /** Coulomb coefficient of the cold parts (0 to 2) */
   friction?: number;
   /** viscous drag of the hot part on each vertex in it (0 to 100 N s/m) */
   drag_ns_m?: number;
-  /** of the attachment of one grasped vertex (1 to 1000000 N/m) */
+  /** stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m) */
   grasp_stiffness_n_m?: number;
-  /** an attached vertex slips above this force (0 to 1000 N) */
+  /** force above which a grasped vertex slips (0 to 1000 N) */
   slip_force_n?: number;
-  /** the tool pushes with this at most; drivers read it (0.01 to 1000 N) */
+  /** largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N) */
   force_max_n?: number;
-  /** its jaws press what they hold with this at most (0.01 to 1000 N) */
+  /** largest force of the jaws on what they hold (0.01 to 1000 N) */
   close_force_n?: number;
-  /** power that is set, with energy `tissue` (0 to 400 W) */
+  /** power to which the generator is set; for energy tissue (0 to 400 W) */
   power_w?: number;
-  /** most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V) */
+  /** largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V) */
   peak_v?: number;
-  /** of the voltage: its peak over its root mean square (1.4 to 20) */
+  /** peak voltage over root mean square voltage (1.4 to 20) */
   crest_factor?: number;
-  /** most current, root mean square (0.01 to 10 A) */
+  /** largest current, root mean square (0.01 to 10 A) */
   current_max_a?: number;
-  /** time constant of its filtered force; 0: no filter (0 to 1 s) */
+  /** time constant of the force filter; 0: no filter (0 to 1 s) */
   force_filter_s?: number;
-  /** heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K) */
+  /** heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K) */
   blade_heat_j_k?: number;
-  /** heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K) */
+  /** heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K) */
   blade_cooling_w_k?: number;
-  /** power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100) */
+  /** power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100) */
   load_rise_off?: number;
-  /** first place of the tip (-100 to 100 m) */
+  /** position of the tip at the start (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
   rotation?: [number, number, number, number];
@@ -1296,7 +1296,7 @@ export interface Tool {
 
 /** a point of the middle line of a vessel */
 export interface VesselPoint {
-  /** a place of the line, at rest (-100 to 100 m) */
+  /** position of the point at rest (-100 to 100 m) */
   at_m: [number, number, number];
 }
 
@@ -1304,27 +1304,27 @@ export interface VesselPoint {
 export interface Vessel {
   /** name of the vessel */
   name: string;
-  /** layer of fat in which it lies */
+  /** layer of fat in which the vessel lies */
   layer: string;
   /** outer radius of the tube (0.0001 to 0.01 m) */
   radius_m?: number;
-  /** thickness of its wall; less than the radius (1e-05 to 0.005 m) */
+  /** thickness of the wall of the vessel; less than the radius (1e-05 to 0.005 m) */
   wall_m?: number;
-  /** of the blood, at its first point (0 to 40000 Pa) */
+  /** blood pressure at the first point of the vessel (0 to 40000 Pa) */
   pressure_pa?: number;
-  /** of the blood that comes back, at its last point (0 to 40000 Pa) */
+  /** pressure of blood that flows back from the last point of the vessel (0 to 40000 Pa) */
   end_pressure_pa?: number;
-  /** length of such a tube that blood has come through (0.001 to 10 m) */
+  /** length of a tube of this radius that leads the blood to the vessel (0.001 to 10 m) */
   supply_m?: number;
-  /** its middle line */
+  /** points of the middle line of the vessel */
   points?: VesselPoint[];
 }
 
 /** a scripted pull, for measurements */
 export interface Pull {
-  /** way of the chosen vertices (-1 to 1 m) */
+  /** displacement of the chosen vertices (-1 to 1 m) */
   move_m?: [number, number, number];
-  /** time of the way (0.001 to 3600 s) */
+  /** time that the displacement takes (0.001 to 3600 s) */
   duration_s?: number;
   /** vertices that are pulled */
   selection: Selection;
@@ -1332,26 +1332,26 @@ export interface Pull {
 
 /** a scripted cut, for measurements */
 export interface Cut {
-  /** tool of the scene */
+  /** name of the tool in the scene */
   tool: string;
-  /** where the tip dwells (-100 to 100 m) */
+  /** where the tip waits before the cut (-100 to 100 m) */
   from_m: [number, number, number];
-  /** where it is drawn to (-100 to 100 m) */
+  /** where the tip moves to (-100 to 100 m) */
   to_m: [number, number, number];
   /** unit quaternion w, x, y, z of the tool */
   rotation?: [number, number, number, number];
-  /** time before it is drawn (0 to 3600 s) */
+  /** time that the tip waits at from_m (0 to 3600 s) */
   dwell_s?: number;
-  /** speed of drawing (1e-05 to 1 m/s) */
+  /** speed of the tip on the cut (1e-05 to 1 m/s) */
   speed_m_s?: number;
 }
 
 /** a layer of tissue */
 export type Layer = FasciaLayer | MembraneLayer | FatLayer | LinksLayer;
 
-/** what differs from the layer's material in a region */
+/** members of a region's material that differ from the layer's material */
 export interface FasciaRegion {
-  /** of the mesh file (0 to 2147483647) */
+  /** number of a region in the mesh file (0 to 2147483647) */
   region: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
@@ -1359,9 +1359,9 @@ export interface FasciaRegion {
   density_kg_m3?: number;
   /** stiffness k of the strain limit (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** bending; 0: no hinges (0 to 10 N m) */
+  /** bending stiffness; 0: bending is not resisted (0 to 10 N m) */
   bending_stiffness_nm?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -1371,39 +1371,39 @@ export interface FasciaRegion {
   target?: [number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
 /** a layer of this kind, with its material */
 export interface FasciaLayer {
-  /** tissue */
+  /** kind of tissue */
   kind: 'fascia';
   /** name of the layer */
   name: string;
   /** mesh whose triangles or tetrahedra the layer takes */
   mesh?: string;
-  /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
+  /** material direction of a mesh without UV coordinates; fat: first material axis (-1000000 to 1000000) */
   fibre?: [number, number, number];
-  /** with energy `tissue`: what heat and current find in it */
+  /** with energy `tissue`: the tissue whose thermal and electric properties the layer has */
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
-  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  /** with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10) */
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
-  /** retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s) */
+  /** retardation time, viscosity over stiffness; a swing at f Hz has the damping ratio pi f viscosity_s; not with solver `diagonal` (0 to 10 s) */
   viscosity_s?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
@@ -1411,9 +1411,9 @@ export interface FasciaLayer {
   density_kg_m3?: number;
   /** stiffness k of the strain limit (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** bending; 0: no hinges (0 to 10 N m) */
+  /** bending stiffness; 0: bending is not resisted (0 to 10 N m) */
   bending_stiffness_nm?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -1423,27 +1423,27 @@ export interface FasciaLayer {
   target?: [number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
-  /** what differs in regions of the mesh file */
+  /** regions of the mesh file, with the members that differ */
   regions?: FasciaRegion[];
 }
 
-/** what differs from the layer's material in a region */
+/** members of a region's material that differ from the layer's material */
 export interface MembraneRegion {
-  /** of the mesh file (0 to 2147483647) */
+  /** number of a region in the mesh file (0 to 2147483647) */
   region: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
@@ -1451,9 +1451,9 @@ export interface MembraneRegion {
   density_kg_m3?: number;
   /** stiffness k of the strain limit (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** bending; 0: no hinges (0 to 10 N m) */
+  /** bending stiffness; 0: bending is not resisted (0 to 10 N m) */
   bending_stiffness_nm?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -1463,41 +1463,41 @@ export interface MembraneRegion {
   target?: [number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
 /** a layer of this kind, with its material */
 export interface MembraneLayer {
-  /** tissue */
+  /** kind of tissue */
   kind: 'membrane';
   /** name of the layer */
   name: string;
   /** mesh whose triangles or tetrahedra the layer takes */
   mesh?: string;
-  /** membrane: the fat whose boundary it is; links: the upper layer */
+  /** membrane: the fat layer whose boundary it covers; links: the upper layer */
   of?: string;
-  /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
+  /** material direction of a mesh without UV coordinates; fat: first material axis (-1000000 to 1000000) */
   fibre?: [number, number, number];
-  /** with energy `tissue`: what heat and current find in it */
+  /** with energy `tissue`: the tissue whose thermal and electric properties the layer has */
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
-  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  /** with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10) */
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
-  /** retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s) */
+  /** retardation time, viscosity over stiffness; a swing at f Hz has the damping ratio pi f viscosity_s; not with solver `diagonal` (0 to 10 s) */
   viscosity_s?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
@@ -1505,9 +1505,9 @@ export interface MembraneLayer {
   density_kg_m3?: number;
   /** stiffness k of the strain limit (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** bending; 0: no hinges (0 to 10 N m) */
+  /** bending stiffness; 0: bending is not resisted (0 to 10 N m) */
   bending_stiffness_nm?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -1517,29 +1517,29 @@ export interface MembraneLayer {
   target?: [number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
-  /** what differs in regions of the mesh file */
+  /** regions of the mesh file, with the members that differ */
   regions?: MembraneRegion[];
 }
 
-/** what differs from the layer's material in a region */
+/** members of a region's material that differ from the layer's material */
 export interface FatRegion {
-  /** of the mesh file (0 to 2147483647) */
+  /** number of a region in the mesh file (0 to 2147483647) */
   region: number;
-  /** elastic energy */
+  /** elastic law */
   model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
   /** mass density (1 to 25000 kg/m^3) */
   density_kg_m3?: number;
@@ -1549,11 +1549,11 @@ export interface FatRegion {
   poisson_ratio?: number;
   /** stiffness of the strain limit and shrinkage (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10) */
+  /** deviatoric Green strain at which plastic flow begins (gamma_1) (0 to 10) */
   yield_strain?: number;
-  /** gamma_2; 0: no plasticity (0 to 10) */
+  /** largest plastic strain (gamma_2); 0: no plastic flow (0 to 10) */
   plastic_strain_max?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -1563,41 +1563,41 @@ export interface FatRegion {
   target?: [number, number, number, number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
 /** a layer of this kind, with its material */
 export interface FatLayer {
-  /** tissue */
+  /** kind of tissue */
   kind: 'fat';
   /** name of the layer */
   name: string;
   /** mesh whose triangles or tetrahedra the layer takes */
   mesh?: string;
-  /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
+  /** material direction of a mesh without UV coordinates; fat: first material axis (-1000000 to 1000000) */
   fibre?: [number, number, number];
-  /** with energy `tissue`: what heat and current find in it */
+  /** with energy `tissue`: the tissue whose thermal and electric properties the layer has */
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
-  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  /** with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10) */
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
-  /** retardation time, viscosity over stiffness: a swing at f Hz has a damping ratio of pi f times it; not with solver `diagonal` (0 to 10 s) */
+  /** retardation time, viscosity over stiffness; a swing at f Hz has the damping ratio pi f viscosity_s; not with solver `diagonal` (0 to 10 s) */
   viscosity_s?: number;
-  /** elastic energy */
+  /** elastic law */
   model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
   /** mass density (1 to 25000 kg/m^3) */
   density_kg_m3?: number;
@@ -1607,11 +1607,11 @@ export interface FatLayer {
   poisson_ratio?: number;
   /** stiffness of the strain limit and shrinkage (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10) */
+  /** deviatoric Green strain at which plastic flow begins (gamma_1) (0 to 10) */
   yield_strain?: number;
-  /** gamma_2; 0: no plasticity (0 to 10) */
+  /** largest plastic strain (gamma_2); 0: no plastic flow (0 to 10) */
   plastic_strain_max?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -1621,37 +1621,37 @@ export interface FatLayer {
   target?: [number, number, number, number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
-  /** what differs in regions of the mesh file */
+  /** regions of the mesh file, with the members that differ */
   regions?: FatRegion[];
 }
 
 /** a layer of this kind, with its material */
 export interface LinksLayer {
-  /** tissue */
+  /** kind of tissue */
   kind: 'links';
   /** name of the layer */
   name: string;
-  /** membrane: the fat whose boundary it is; links: the upper layer */
+  /** membrane: the fat layer whose boundary it covers; links: the upper layer */
   of?: string;
-  /** the lower layer */
+  /** lower layer of the links */
   to?: string;
-  /** with energy `tissue`: what heat and current find in it */
+  /** with energy `tissue`: the tissue whose thermal and electric properties the layer has */
   tissue?: 'connective' | 'fat' | 'liver' | 'muscle';
-  /** with energy `tissue`: blood flow, as a share of that of the living tissue; 0: none (0 to 10) */
+  /** with energy `tissue`: blood flow, as a share of the flow in living tissue; 0: none (0 to 10) */
   perfusion?: number;
   /** share of `tear_energy_j_m2` that a tear takes where exposure is 0.5 or more (0.01 to 1) */
   coagulated_tear?: number;
@@ -1659,67 +1659,67 @@ export interface LinksLayer {
   young_modulus_pa?: number;
   /** cross section of a truss (1e-12 to 1 m^2) */
   area_m2?: number;
-  /** longest truss (1e-06 to 1 m) */
+  /** length of the longest truss (1e-06 to 1 m) */
   reach_m?: number;
-  /** trusses from each vertex of the upper sheet (1 to 8) */
+  /** number of trusses from each vertex of the upper sheet (1 to 8) */
   per_vertex?: number;
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
-/** the plain data from which a session is made */
+/** the data from which a session is created */
 export interface Scene {
   /** name of the scene */
   name: string;
-  /** a sentence for people */
+  /** description of the scene in words */
   description?: string;
   /** time step; one tick (0.001 to 0.03333333333333333 s) */
   step_s?: number;
-  /** v <- v exp(-c dt) (0 to 1000 1/s) */
+  /** damping rate c: each step multiplies velocities by exp(-c step_s) (0 to 1000 1/s) */
   damping_per_s?: number;
   /** temperature of the body around the tools (-20 to 60 degC) */
   ambient_c?: number;
-  /** stop a step at this relative residual; 0: never (0 to 1) */
+  /** relative residual at which a step ends; 0: not used (0 to 1) */
   tolerance?: number;
-  /** end a step at this error relative to its motion; 0: never (0 to 1) */
+  /** largest error of a step, relative to its motion; 0: all iterations (0 to 1) */
   accuracy?: number;
-  /** tissue keeps this far from tissue; 0: it crosses (0 to 0.01 m) */
+  /** least distance between tissue surfaces; 0: no tissue contact (0 to 0.01 m) */
   contact_thickness_m?: number;
-  /** of tissue on tissue (0 to 2) */
+  /** Coulomb coefficient of tissue on tissue (0 to 2) */
   contact_friction?: number;
-  /** side of the cells of heat, with energy `tissue` (0.0001 to 0.005 m) */
+  /** edge length of one cell of the heat computation; for energy tissue (0.0001 to 0.005 m) */
   cell_m?: number;
-  /** iterations of a step at most (small tissue: up to 64); with `accuracy` 0, of each (1 to 1000) */
+  /** largest number of iterations of a step (small tissue: up to 64); with `accuracy` 0, each step takes all (1 to 1000) */
   iterations?: number;
-  /** global system; `newton`: and Newton's method for all sheets */
+  /** how the global step is solved; `newton` also uses Newton's method for all sheets */
   solver?: 'cholesky' | 'diagonal' | 'newton';
-  /** of the local and global steps */
+  /** number format of the local and global steps */
   precision?: 'single' | 'double';
-  /** how a tick advances motion: `euler` damps by the step; `sdirk2`, of second order, keeps 0.997 of a 5 Hz swing a period at 60 steps/s, for two solves a tick */
+  /** how a tick advances motion: `euler` damps, more for longer steps; `sdirk2` is of second order and solves twice a tick; at 60 steps/s it keeps 0.997 of a 5 Hz swing each period */
   integrator?: 'euler' | 'sdirk2';
-  /** what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh */
+  /** what heat parts: `edges`, each with all elements that share it, as in the paper; or `elements` one by one, so that a cut does not depend on the mesh */
   parting?: 'edges' | 'elements';
-  /** what an energized tool does: `paper` holds a temperature; `tissue` gives power, boils water and parts elements, and needs parting `elements` */
+  /** model of an energized tool: with `paper` the hot part has a set temperature; with `tissue` a generator heats tissue, boils its water and parts elements (needs parting `elements`) */
   energy?: 'paper' | 'tissue';
-  /** of everything drawn at random (0 to 9007199254740991) */
+  /** seed of all random numbers (0 to 9007199254740991) */
   seed?: number;
   /** gravity (-100 to 100 m/s^2) */
   gravity_m_s2?: [number, number, number];
-  /** meshes that layers take */
+  /** meshes of the layers */
   meshes?: Mesh[];
   /** layers of tissue */
   layers?: Layer[];
-  /** vertices that are held */
+  /** pinned vertices */
   pins?: Selection[];
-  /** tools that are there from the start */
+  /** tools at the start */
   tools?: Tool[];
   /** blood vessels */
   vessels?: Vessel[];
@@ -1729,15 +1729,15 @@ export interface Scene {
   cut?: Cut;
 }
 
-/** a new tool, driven by the caller */
+/** adds a tool, which the caller drives */
 export interface ToolAdd {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
   /** shape */
   shape?: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
@@ -1755,79 +1755,79 @@ export interface ToolAdd {
   temperature_c?: number;
   /** nodes of the heat grid along each axis (8 to 64) */
   grid_cells?: number;
-  /** spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m) */
+  /** spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m) */
   grid_step_m?: number;
-  /** alpha of eq. 18 (0 to 0.001 m^2/s) */
+  /** thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s) */
   diffusivity_m2_s?: number;
-  /** faster commands are followed at this speed (0.001 to 5 m/s) */
+  /** largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s) */
   max_speed_m_s?: number;
-  /** fastest turning of the tool (0.1 to 100 rad/s) */
+  /** largest angular speed of the tool (0.1 to 100 rad/s) */
   max_turn_rad_s?: number;
   /** Coulomb coefficient of the cold parts (0 to 2) */
   friction?: number;
   /** viscous drag of the hot part on each vertex in it (0 to 100 N s/m) */
   drag_ns_m?: number;
-  /** of the attachment of one grasped vertex (1 to 1000000 N/m) */
+  /** stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m) */
   grasp_stiffness_n_m?: number;
-  /** an attached vertex slips above this force (0 to 1000 N) */
+  /** force above which a grasped vertex slips (0 to 1000 N) */
   slip_force_n?: number;
-  /** the tool pushes with this at most; drivers read it (0.01 to 1000 N) */
+  /** largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N) */
   force_max_n?: number;
-  /** its jaws press what they hold with this at most (0.01 to 1000 N) */
+  /** largest force of the jaws on what they hold (0.01 to 1000 N) */
   close_force_n?: number;
-  /** power that is set, with energy `tissue` (0 to 400 W) */
+  /** power to which the generator is set; for energy tissue (0 to 400 W) */
   power_w?: number;
-  /** most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V) */
+  /** largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V) */
   peak_v?: number;
-  /** of the voltage: its peak over its root mean square (1.4 to 20) */
+  /** peak voltage over root mean square voltage (1.4 to 20) */
   crest_factor?: number;
-  /** most current, root mean square (0.01 to 10 A) */
+  /** largest current, root mean square (0.01 to 10 A) */
   current_max_a?: number;
-  /** time constant of its filtered force; 0: no filter (0 to 1 s) */
+  /** time constant of the force filter; 0: no filter (0 to 1 s) */
   force_filter_s?: number;
-  /** heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K) */
+  /** heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K) */
   blade_heat_j_k?: number;
-  /** heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K) */
+  /** heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K) */
   blade_cooling_w_k?: number;
-  /** power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100) */
+  /** power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100) */
   load_rise_off?: number;
   /** name of the tool */
   name: string;
-  /** first place of the tip (-100 to 100 m) */
+  /** position of the tip at the start (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
   rotation?: [number, number, number, number];
-  /** profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none */
+  /** profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out */
   instrument?: string;
-  /** mode of the instrument; its first by default */
+  /** mode of the instrument (default: its first) */
   mode?: string;
 }
 
-/** takes it away */
+/** removes a tool */
 export interface ToolRemove {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
 }
 
-/** replaces shape and sizes; an absent member takes the instrument's value, or the default */
+/** replaces shape and sizes of a tool; a missing member takes the instrument's value, or the default */
 export interface ToolConfigure {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
   /** shape */
   shape?: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
@@ -1845,174 +1845,174 @@ export interface ToolConfigure {
   temperature_c?: number;
   /** nodes of the heat grid along each axis (8 to 64) */
   grid_cells?: number;
-  /** spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m) */
+  /** spacing of the heat grid; at most the smallest radius of the hot part (5e-05 to 0.01 m) */
   grid_step_m?: number;
-  /** alpha of eq. 18 (0 to 0.001 m^2/s) */
+  /** thermal diffusivity of the heat grid (alpha of eq. 18) (0 to 0.001 m^2/s) */
   diffusivity_m2_s?: number;
-  /** faster commands are followed at this speed (0.001 to 5 m/s) */
+  /** largest speed of the tool; it follows faster commands at this speed (0.001 to 5 m/s) */
   max_speed_m_s?: number;
-  /** fastest turning of the tool (0.1 to 100 rad/s) */
+  /** largest angular speed of the tool (0.1 to 100 rad/s) */
   max_turn_rad_s?: number;
   /** Coulomb coefficient of the cold parts (0 to 2) */
   friction?: number;
   /** viscous drag of the hot part on each vertex in it (0 to 100 N s/m) */
   drag_ns_m?: number;
-  /** of the attachment of one grasped vertex (1 to 1000000 N/m) */
+  /** stiffness of the spring that attaches one grasped vertex (1 to 1000000 N/m) */
   grasp_stiffness_n_m?: number;
-  /** an attached vertex slips above this force (0 to 1000 N) */
+  /** force above which a grasped vertex slips (0 to 1000 N) */
   slip_force_n?: number;
-  /** the tool pushes with this at most; drivers read it (0.01 to 1000 N) */
+  /** largest force of the tool on tissue, and largest force sent to drivers (0.01 to 1000 N) */
   force_max_n?: number;
-  /** its jaws press what they hold with this at most (0.01 to 1000 N) */
+  /** largest force of the jaws on what they hold (0.01 to 1000 N) */
   close_force_n?: number;
-  /** power that is set, with energy `tissue` (0 to 400 W) */
+  /** power to which the generator is set; for energy tissue (0 to 400 W) */
   power_w?: number;
-  /** most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V) */
+  /** largest peak voltage; from 200 V the tool sparks and cuts (1 to 10000 V) */
   peak_v?: number;
-  /** of the voltage: its peak over its root mean square (1.4 to 20) */
+  /** peak voltage over root mean square voltage (1.4 to 20) */
   crest_factor?: number;
-  /** most current, root mean square (0.01 to 10 A) */
+  /** largest current, root mean square (0.01 to 10 A) */
   current_max_a?: number;
-  /** time constant of its filtered force; 0: no filter (0 to 1 s) */
+  /** time constant of the force filter; 0: no filter (0 to 1 s) */
   force_filter_s?: number;
-  /** heat capacity of the hot part, with energy `tissue`; 0: that of its shape (0 to 100 J/K) */
+  /** heat capacity of the hot part, for energy tissue; 0: computed from its shape (0 to 100 J/K) */
   blade_heat_j_k?: number;
-  /** heat that the hot part loses along the shaft; 0: that of its shape (0 to 1 W/K) */
+  /** heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape (0 to 1 W/K) */
   blade_cooling_w_k?: number;
-  /** power ends when the load is so many times its least; off and on begins again; 0: never (0 to 100) */
+  /** power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never (0 to 100) */
   load_rise_off?: number;
-  /** profile of an instrument (`deploy/instruments`): it has its shape, sizes and settings where this object has none */
+  /** profile of an instrument (`deploy/instruments`), which gives the shape, the sizes and the settings that this object leaves out */
   instrument?: string;
-  /** mode of the instrument; its first by default */
+  /** mode of the instrument (default: its first) */
   mode?: string;
 }
 
-/** moves it, at its speed limit; needs to be its driver */
+/** moves a tool, at most at its largest speed; driver only */
 export interface ToolMove {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
-  /** place of the tip (-100 to 100 m) */
+  /** position of the tip (-100 to 100 m) */
   position_m: [number, number, number];
   /** unit quaternion w, x, y, z */
   rotation: [number, number, number, number];
-  /** 0 closed to 1 open (0 to 1) */
+  /** opening of the jaws: 0 closed to 1 open (0 to 1) */
   jaw?: number;
 }
 
-/** energy on (driver only), for as many ticks as `ticks` says; or off */
+/** turns energy on (driver only), for at most `ticks` ticks, or off */
 export interface ToolEnergize {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
-  /** on or off */
+  /** whether energy is turned on or off */
   energized: boolean;
-  /** of an enable: its energy goes off after so many ticks; 0: no limit (0 to 2147483647) */
+  /** energy goes off this many ticks after an enable; 0: no limit (0 to 2147483647) */
   ticks?: number;
 }
 
-/** closes the jaws on what is between them; driver only */
+/** closes the jaws on the tissue between them; driver only */
 export interface ToolGrasp {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
 }
 
-/** opens them; driver only */
+/** opens the jaws; driver only */
 export interface ToolRelease {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
 }
 
-/** keeps the tool where it is, until it is moved again; driver only */
+/** keeps a tool where it is until it is moved again; driver only */
 export interface ToolHold {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** which tool */
+  /** name of the tool */
   tool: string;
 }
 
-/** holds vertices where they are */
+/** pins vertices at their present positions */
 export interface Pin {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
   /** which vertices */
   selection: Selection;
 }
 
-/** lets them go */
+/** releases pinned vertices */
 export interface Unpin {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
   /** which vertices */
   selection: Selection;
 }
 
-/** replaces a layer's material */
+/** replaces the material of a layer */
 export type MaterialSet = MaterialSetFascia | MaterialSetMembrane | MaterialSetFat | MaterialSetLinks;
 
-/** replaces a layer's material */
+/** replaces the material of a layer */
 export interface MaterialSetFascia {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** the layer's kind */
+  /** kind of the layer */
   kind: 'fascia';
-  /** which layer */
+  /** name of the layer */
   layer: string;
-  /** of the mesh file; 0: the layer's default (0 to 2147483647) */
+  /** number of a region in the mesh file; 0: the layer's own material (0 to 2147483647) */
   region?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
@@ -2020,9 +2020,9 @@ export interface MaterialSetFascia {
   density_kg_m3?: number;
   /** stiffness k of the strain limit (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** bending; 0: no hinges (0 to 10 N m) */
+  /** bending stiffness; 0: bending is not resisted (0 to 10 N m) */
   bending_stiffness_nm?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -2032,37 +2032,37 @@ export interface MaterialSetFascia {
   target?: [number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
-/** replaces a layer's material */
+/** replaces the material of a layer */
 export interface MaterialSetMembrane {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** the layer's kind */
+  /** kind of the layer */
   kind: 'membrane';
-  /** which layer */
+  /** name of the layer */
   layer: string;
-  /** of the mesh file; 0: the layer's default (0 to 2147483647) */
+  /** number of a region in the mesh file; 0: the layer's own material (0 to 2147483647) */
   region?: number;
   /** sheet thickness (1e-06 to 0.05 m) */
   thickness_m?: number;
@@ -2070,9 +2070,9 @@ export interface MaterialSetMembrane {
   density_kg_m3?: number;
   /** stiffness k of the strain limit (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** bending; 0: no hinges (0 to 10 N m) */
+  /** bending stiffness; 0: bending is not resisted (0 to 10 N m) */
   bending_stiffness_nm?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -2082,39 +2082,39 @@ export interface MaterialSetMembrane {
   target?: [number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
-/** replaces a layer's material */
+/** replaces the material of a layer */
 export interface MaterialSetFat {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** the layer's kind */
+  /** kind of the layer */
   kind: 'fat';
-  /** which layer */
+  /** name of the layer */
   layer: string;
-  /** of the mesh file; 0: the layer's default (0 to 2147483647) */
+  /** number of a region in the mesh file; 0: the layer's own material (0 to 2147483647) */
   region?: number;
-  /** elastic energy */
+  /** elastic law */
   model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
   /** mass density (1 to 25000 kg/m^3) */
   density_kg_m3?: number;
@@ -2124,11 +2124,11 @@ export interface MaterialSetFat {
   poisson_ratio?: number;
   /** stiffness of the strain limit and shrinkage (1 to 10000000000 Pa) */
   limit_stiffness_pa?: number;
-  /** range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99) */
+  /** limit range: largest shear, the cosine of the angle between material axes (0 to 0.99) */
   shear_max?: number;
-  /** gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10) */
+  /** deviatoric Green strain at which plastic flow begins (gamma_1) (0 to 10) */
   yield_strain?: number;
-  /** gamma_2; 0: no plasticity (0 to 10) */
+  /** largest plastic strain (gamma_2); 0: no plastic flow (0 to 10) */
   plastic_strain_max?: number;
   /** strain limit */
   limit?: 'none' | 'target' | 'range';
@@ -2138,81 +2138,81 @@ export interface MaterialSetFat {
   target?: [number, number, number, number, number, number];
   /** range: least engineering strain along each axis (-0.99 to 0) */
   strain_min?: [number, number, number];
-  /** range: largest (0 to 100) */
+  /** range: largest engineering strain along each axis (0 to 100) */
   strain_max?: [number, number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
+  /** squared stretches to which the rims of cuts shrink (S of eq. 21); 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number, number];
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
-/** replaces a layer's material */
+/** replaces the material of a layer */
 export interface MaterialSetLinks {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** the layer's kind */
+  /** kind of the layer */
   kind: 'links';
-  /** which layer */
+  /** name of the layer */
   layer: string;
   /** Young's modulus of a truss (1 to 100000000000 Pa) */
   young_modulus_pa?: number;
   /** cross section of a truss (1e-12 to 1 m^2) */
   area_m2?: number;
-  /** longest truss (1e-06 to 1 m) */
+  /** length of the longest truss (1e-06 to 1 m) */
   reach_m?: number;
-  /** trusses from each vertex of the upper sheet (1 to 8) */
+  /** number of trusses from each vertex of the upper sheet (1 to 8) */
   per_vertex?: number;
-  /** it parts when its exposure exceeds this (1 to 2000 degC) */
+  /** tissue parts when exposure times absorption_per_s exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation, drawn by seed (0 to 500 degC) */
+  /** standard deviation of ignition_c in the tissue, drawn from the seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
+  /** width of fibre bundles that share one ignition temperature; 0: no bundles (0 to 0.1 m) */
   ignition_bundle_m?: number;
-  /** xi of eq. 20 (0 to 1000 1/s) */
+  /** rate at which tissue takes up heat (xi of eq. 20) (0 to 1000 1/s) */
   absorption_per_s?: number;
-  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  /** energy of a tear per area; 0: tissue does not tear (0 to 1000000 J/m^2) */
   tear_energy_j_m2?: number;
 }
 
-/** for the whole session */
+/** sets the gravity of a session */
 export interface GravitySet {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
   /** gravity (-100 to 100 m/s^2) */
   gravity_m_s2: [number, number, number];
 }
 
-/** an outer force on vertices */
+/** applies an outer force to vertices */
 export interface ForceSet {
-  /** its id; that of the connection's URL by default */
+  /** id of the session (default: the session in the connection's URL) */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  /** the command takes effect at the first tick border at or after this tick; 0: the next (0 to 9007199254740991) */
   tick?: number;
-  /** the driver's own count (0 to 9007199254740991) */
+  /** number that the driver gives the command (0 to 9007199254740991) */
   sequence?: number;
-  /** on each chosen vertex (-1000 to 1000 N) */
+  /** force on each chosen vertex (-1000 to 1000 N) */
   force_n: [number, number, number];
   /** which vertices */
   selection: Selection;
@@ -2220,155 +2220,155 @@ export interface ForceSet {
 
 /** Requests: params and result of each method. */
 export interface Requests {
-  /** first of all; nothing else is served before it */
+  /** must be the first message; before it no other request is served */
   'hello': { params: Hello; result: HelloResult };
-  /** sign of life of a driver, every 100 ms while energy is on */
+  /** reports to the server that a driver is alive, every 100 ms while energy is on */
   'heartbeat': { params: Heartbeat; result: HeartbeatResult };
-  /** scenes of the daemon */
+  /** lists the scenes of the daemon */
   'scene.list': { params: Nothing; result: SceneList };
-  /** one of them whole */
+  /** returns one scene with all members */
   'scene.get': { params: SceneRef; result: SceneResult };
-  /** profiles of instruments */
+  /** lists the profiles of instruments */
   'instrument.list': { params: Nothing; result: InstrumentList };
-  /** sessions of the daemon */
+  /** lists the sessions of the daemon */
   'session.list': { params: Nothing; result: SessionList };
   /** makes a session */
   'session.create': { params: SessionCreate; result: SessionDescription };
-  /** layers, drivers, scene */
+  /** returns layers, drivers and scene of a session */
   'session.describe': { params: SessionRef; result: SessionDescription };
-  /** asks for frames; again to change the profile */
+  /** asks for frames; call it again to change the profile */
   'session.join': { params: SessionJoin; result: StreamDescription };
-  /** no more frames */
+  /** ends the stream of frames */
   'session.leave': { params: SessionRef; result: Nothing };
-  /** stops time at a tick border; cuts energy */
+  /** stops time at a tick border; energy goes off */
   'session.pause': { params: SessionChange; result: SessionSummary };
-  /** lets time run */
+  /** resumes a paused session */
   'session.resume': { params: SessionChange; result: SessionSummary };
-  /** advances a paused session; answered when done */
+  /** advances a paused session; the answer comes when the steps are done */
   'session.step': { params: SessionStep; result: TickResult };
-  /** lock-step: commands, ticks and what came of them in one request. The session must be paused. It has no client_sequence: `tick` says whether it was done */
+  /** advances a paused session in lock-step: commands, ticks and observation in one request. There is no client_sequence: `tick` shows whether the request was done */
   'session.advance': { params: SessionAdvance; result: Advanced };
-  /** sets the pace */
+  /** sets the speed of a session */
   'session.speed': { params: SessionSpeed; result: SessionSummary };
-  /** back to tick 0; a new branch */
+  /** resets a session to tick 0, on a new branch */
   'session.reset': { params: SessionChange; result: Restored };
-  /** ends it and removes it from the store, also one that the daemon could not bring up */
+  /** ends a session and removes it from the store, also a session that the daemon could not start */
   'session.destroy': { params: SessionChange; result: Nothing };
-  /** a new session from this state, energy off */
+  /** creates a new session from the state of this session, energy off */
   'session.fork': { params: SessionFork; result: SessionDescription };
   /** stores the state under a name */
   'session.snapshot': { params: SessionSnapshot; result: SnapshotResult };
-  /** the snapshots that session.restore can restore, those of other branches too */
+  /** lists the snapshots that session.restore can restore, also those of other branches */
   'session.snapshots': { params: SessionRef; result: SnapshotList };
-  /** back to a snapshot */
+  /** restores a snapshot */
   'session.restore': { params: SessionRestore; result: Restored };
-  /** back to a tick */
+  /** rewinds to a tick */
   'session.rewind': { params: SessionRewind; result: Restored };
-  /** the tissue as a file; binary chunks follow */
+  /** returns the tissue as a file, which follows in binary chunks */
   'session.export': { params: SessionExport; result: Transfer };
-  /** the command log as a script; binary chunks follow */
+  /** returns the command log as a script, which follows in binary chunks */
   'session.log': { params: SessionLog; result: Transfer };
-  /** cuts and other events */
+  /** returns cuts and other events */
   'session.timeline': { params: SessionTimeline; result: Timeline };
-  /** the key frame of a past tick; nothing is rewound; binary chunks follow. A second request of a client cancels its first */
+  /** returns the key frame of a past tick without a rewind; binary chunks follow. A second request of a client cancels its first */
   'session.frame_at': { params: SessionFrameAt; result: PastFrame };
-  /** gives up the client's session.frame_at that is under way, if there is one */
+  /** cancels the running session.frame_at of the client, if there is one */
   'session.frame_cancel': { params: SessionRef; result: Nothing };
-  /** the commands that wait for later ticks */
+  /** lists the commands that wait for later ticks */
   'session.waiting': { params: SessionRef; result: WaitingList };
-  /** takes back commands that wait for later ticks: the caller's own; with a number and role admin anybody's. Each is answered with `bad_state` */
+  /** cancels waiting commands of the caller; with a number and role admin, of any client. Each cancelled command is answered with `bad_state` */
   'session.cancel': { params: SessionCancel; result: Cancelled };
-  /** asks for a key frame; at most one a second */
+  /** asks for a key frame, at most once a second */
   'stream.key_frame': { params: SessionRef; result: Nothing };
-  /** a new tool, driven by the caller */
+  /** adds a tool, which the caller drives */
   'tool.add': { params: ToolAdd; result: CommandResult };
-  /** takes it away */
+  /** removes a tool */
   'tool.remove': { params: ToolRemove; result: CommandResult };
-  /** replaces shape and sizes; an absent member takes the instrument's value, or the default */
+  /** replaces shape and sizes of a tool; a missing member takes the instrument's value, or the default */
   'tool.configure': { params: ToolConfigure; result: CommandResult };
-  /** moves it, at its speed limit; needs to be its driver */
+  /** moves a tool, at most at its largest speed; driver only */
   'tool.move': { params: ToolMove; result: CommandResult };
-  /** energy on (driver only), for as many ticks as `ticks` says; or off */
+  /** turns energy on (driver only), for at most `ticks` ticks, or off */
   'tool.energize': { params: ToolEnergize; result: CommandResult };
-  /** closes the jaws on what is between them; driver only */
+  /** closes the jaws on the tissue between them; driver only */
   'tool.grasp': { params: ToolGrasp; result: CommandResult };
-  /** opens them; driver only */
+  /** opens the jaws; driver only */
   'tool.release': { params: ToolRelease; result: CommandResult };
-  /** keeps the tool where it is, until it is moved again; driver only */
+  /** keeps a tool where it is until it is moved again; driver only */
   'tool.hold': { params: ToolHold; result: CommandResult };
-  /** becomes the driver: of a tool without a driver, or with role admin; energy off */
+  /** makes the caller the driver, if the tool has no driver or the caller has role admin; energy goes off */
   'tool.take_over': { params: ToolRef; result: Driver };
-  /** asks its driver, who sees takeover.requested */
+  /** asks the driver for the tool; the driver receives takeover.requested */
   'tool.request_takeover': { params: ToolRef; result: Nothing };
-  /** gives it up; energy off; driver only */
+  /** gives up a tool or hands it to another client; energy goes off; driver only */
   'tool.hand_over': { params: ToolHandOver; result: Driver };
-  /** holds vertices where they are */
+  /** pins vertices at their present positions */
   'pin': { params: Pin; result: CommandResult };
-  /** lets them go */
+  /** releases pinned vertices */
   'unpin': { params: Unpin; result: CommandResult };
-  /** replaces a layer's material */
+  /** replaces the material of a layer */
   'material.set': { params: MaterialSet; result: CommandResult };
-  /** for the whole session */
+  /** sets the gravity of a session */
   'gravity.set': { params: GravitySet; result: CommandResult };
-  /** an outer force on vertices */
+  /** applies an outer force to vertices */
   'force.set': { params: ForceSet; result: CommandResult };
   /** announces a mesh file */
   'upload.begin': { params: UploadBegin; result: UploadBeginResult };
-  /** checks its length and hash */
+  /** checks length and hash of an upload */
   'upload.end': { params: UploadEnd; result: UploadResult };
-  /** reads an upload as a mesh: the report, and a scene around it for session.create */
+  /** reads an upload as a mesh; returns a report, and a scene with the mesh for session.create */
   'mesh.read': { params: MeshRead; result: MeshReading };
-  /** forgets it; sessions made of it stay */
+  /** removes an upload; sessions that use it stay */
   'upload.discard': { params: UploadDiscard; result: Nothing };
-  /** copies the daemon's store while everybody goes on, to a file on its machine; one at a time */
+  /** copies the daemon's store to a file on its machine, without interrupting clients; one copy at a time */
   'store.backup': { params: StoreBackup; result: StoreCopy };
-  /** a session is to go to another daemon; it is served meanwhile */
+  /** begins to move a session to another daemon; the session is served meanwhile */
   'move.begin': { params: MoveBegin; result: MoveBegun };
-  /** the next piece of it; binary chunks follow */
+  /** returns the next piece of the session, which follows in binary chunks */
   'move.read': { params: MoveRef; result: Transfer };
   /** suspends the session, energy off; requests to it wait */
   'move.hold': { params: MoveRef; result: MoveHeld };
-  /** by the receipt that the other daemon has all pieces on its disk, the session ends here; the answer lets the other daemon serve it */
+  /** ends the session here, given the receipt for all pieces; the answer has the proof with which the target daemon serves the session */
   'move.commit': { params: MoveCommit; result: MoveDecision };
-  /** it stays, unless it has moved: the answer says which */
+  /** cancels the move, unless the session has moved already: the answer says which */
   'move.cancel': { params: MoveRef; result: MoveDecision };
-  /** an upload is a piece of a session that comes here; answered when it is on the disk */
+  /** delivers an upload as a piece of an arriving session; the answer comes when the piece is on the disk */
   'move.receive': { params: MoveReceive; result: MoveReceived };
-  /** builds what has come, and answers when it could be served soon */
+  /** builds the arrived session; the answer comes when the session could soon be served */
   'move.ready': { params: MoveRef; result: MoveHeld };
-  /** it is this daemon's, by the proof of move.commit; answered when it is served */
+  /** serves the arrived session, given the proof of move.commit; the answer comes when the session is served */
   'move.accept': { params: MoveAccept; result: SessionDescription };
-  /** removes the pieces of a move, by the release of move.cancel */
+  /** removes the pieces of a move, given the release of move.cancel */
   'move.forget': { params: MoveForget; result: Nothing };
-  /** sessions that come, are in doubt, are leaving, or have gone */
+  /** lists sessions that arrive, are in doubt, are leaving, or have moved away */
   'move.list': { params: Nothing; result: MoveList };
 }
 
 /** Notifications from the client. */
 export interface Notices {
-  /** sign of life of a driver, every 100 ms while energy is on */
+  /** reports to the server that a driver is alive, every 100 ms while energy is on */
   'heartbeat': Heartbeat;
-  /** how far the client has decoded */
+  /** reports the newest frame that the client has decoded */
   'stream.ack': StreamAck;
-  /** moves it, at its speed limit; needs to be its driver */
+  /** moves a tool, at most at its largest speed; driver only */
   'tool.move': ToolMove;
 }
 
 /** Notifications from the server. */
 export interface Pushes {
-  /** to everybody who joined the session, and to all for created and destroyed */
+  /** sent to all clients that joined the session; created and destroyed go to all clients */
   'session.changed': SessionChanged;
-  /** to everybody who joined the session */
+  /** sent to all clients that joined the session */
   'session.faulted': SessionFaulted;
-  /** to everybody who joined the session */
+  /** sent to all clients that joined the session */
   'tool.driver_changed': DriverChanged;
-  /** to the tool's driver */
+  /** sent to the tool's driver */
   'tool.refused': ToolRefused;
-  /** to the tool's driver */
+  /** sent to the tool's driver */
   'takeover.requested': TakeoverRequested;
-  /** to who waits for session.frame_at, about ten times a second */
+  /** sent to the client that waits for session.frame_at, about ten times a second */
   'session.frame_progress': FrameProgress;
-  /** to everybody who joined the session */
+  /** sent to all clients that joined the session */
   'event': EventNotice;
 }
 
@@ -2439,20 +2439,20 @@ export type ErrorStatus = keyof typeof ERROR_CODES;
 export const CLOSE_REASONS: Readonly<Record<number, string>> = {
   1000: 'done',
   1001: 'the server is shutting down',
-  1002: 'the WebSocket protocol was broken',
-  1003: 'a binary message that is no chunk of an upload',
-  1007: 'a text message that is not UTF-8',
-  1009: 'a message beyond the limit',
-  1011: 'the server met an error of its own',
-  1013: 'too many connections',
-  4001: 'no hello within 5 s',
-  4002: 'the token is missing or not known',
-  4003: 'no common version',
-  4004: 'frames were not read fast enough',
-  4005: 'too many messages a second',
-  4006: 'pings were not answered',
-  4007: 'another connection resumed this one',
-  4008: 'too many malformed messages',
+  1002: 'the client violated the WebSocket protocol',
+  1003: 'a binary message was not a chunk of an upload',
+  1007: 'a text message was not UTF-8',
+  1009: 'a message was longer than the limit',
+  1011: 'the server has an internal error',
+  1013: 'the server has too many connections',
+  4001: 'the client sent no hello within 5 s',
+  4002: 'the token is missing or unknown',
+  4003: 'client and server support no common version of the protocol',
+  4004: 'the client did not read its frames fast enough',
+  4005: 'the client sends too many messages a second',
+  4006: 'the client did not answer pings',
+  4007: 'another connection took over this one',
+  4008: 'the client sent too many malformed messages',
 };
 
 export const FRAME_KIND = { key: 1, delta: 2, topology: 3, } as const;
@@ -2482,13 +2482,13 @@ export const SECTION = {
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
  * Step 0: the stream states it, as stress_step_pa. */
 export const SCALARS = {
-  /** the largest of the vertex's edges': heat taken up over what ignites it, 0 to 1 */
+  /** largest heat exposure of the vertex's edges, over the exposure that parts the edge, 0 to 1 */
   exposure: { section: 3, byDefault: true, least: 0, step: 0.00392156862745098, most: 255, unit: '1' },
   /** share of the vertex's edges that have parted, 0 to 1 */
   charring: { section: 4, byDefault: true, least: 0, step: 0.00392156862745098, most: 255, unit: '1' },
   /** von Mises stress of fat, volume weighted */
   stress: { section: 5, byDefault: false, least: 0, step: 0, most: 65535, unit: 'Pa' },
-  /** what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c */
+  /** temperature of the tools' heat grids at the vertex; outside of the grids ambient_c of the scene */
   temperature: { section: 9, byDefault: false, least: -20, step: 0.25, most: 65535, unit: 'degC' },
   /** depth of blood on the surface */
   blood: { section: 11, byDefault: false, least: 0, step: 2e-05, most: 255, unit: 'm' },
@@ -2502,7 +2502,7 @@ export const ENERGY_OFF_REASONS = ['never_enabled', 'commanded', 'watchdog', 're
 /** What a tool of a shape has. */
 export const SHAPE_TRAITS: Readonly<Record<(typeof TOOL_SHAPES)[number], { hot: boolean; jaws: boolean; meaning: string }>> = {
   sphere: { hot: true, jaws: false, meaning: 'hot ball at the tip, cold shaft' },
-  capsule: { hot: true, jaws: false, meaning: 'hot needle of tip_length_m, cold shaft' },
+  capsule: { hot: true, jaws: false, meaning: 'hot needle, cold shaft' },
   hook: { hot: true, jaws: false, meaning: 'monopolar L hook: hot foot and heel, cold shaft' },
   spatula: { hot: true, jaws: false, meaning: 'hot flat blade, cold shaft' },
   bipolar: { hot: true, jaws: true, meaning: 'two jaws that close, hot inner faces' },
@@ -2530,19 +2530,19 @@ export const PARAMETERS = {
     { name: 'step_s', unit: 's', least: 0.001, most: 0.03333333333333333, default: 0.01666666666666667,
       meaning: "time step; one tick" },
     { name: 'damping_per_s', unit: '1/s', least: 0, most: 1000, default: 0,
-      meaning: "v <- v exp(-c dt)" },
+      meaning: "damping rate c: each step multiplies velocities by exp(-c step_s)" },
     { name: 'ambient_c', unit: 'degC', least: -20, most: 60, default: 37,
       meaning: "temperature of the body around the tools" },
     { name: 'tolerance', unit: '1', least: 0, most: 1, default: 0,
-      meaning: "stop a step at this relative residual; 0: never" },
+      meaning: "relative residual at which a step ends; 0: not used" },
     { name: 'accuracy', unit: '1', least: 0, most: 1, default: 0.01,
-      meaning: "end a step at this error relative to its motion; 0: never" },
+      meaning: "largest error of a step, relative to its motion; 0: all iterations" },
     { name: 'contact_thickness_m', unit: 'm', least: 0, most: 0.01, default: 0,
-      meaning: "tissue keeps this far from tissue; 0: it crosses" },
+      meaning: "least distance between tissue surfaces; 0: no tissue contact" },
     { name: 'contact_friction', unit: '1', least: 0, most: 2, default: 0.1,
-      meaning: "of tissue on tissue" },
+      meaning: "Coulomb coefficient of tissue on tissue" },
     { name: 'cell_m', unit: 'm', least: 0.0001, most: 0.005, default: 0.00025,
-      meaning: "side of the cells of heat, with energy `tissue`" },
+      meaning: "edge length of one cell of the heat computation; for energy tissue" },
   ],
   tool: [
     { name: 'hot_radius_m', unit: 'm', least: 0.0002, most: 0.05, default: 0.003,
@@ -2560,41 +2560,41 @@ export const PARAMETERS = {
     { name: 'grid_cells', unit: '1', least: 8, most: 64, default: 16,
       meaning: "nodes of the heat grid along each axis" },
     { name: 'grid_step_m', unit: 'm', least: 5e-05, most: 0.01, default: 0.001,
-      meaning: "spacing dl of the heat grid; at most the thinnest hot radius" },
+      meaning: "spacing of the heat grid; at most the smallest radius of the hot part" },
     { name: 'diffusivity_m2_s', unit: 'm^2/s', least: 0, most: 0.001, default: 4.2e-06,
-      meaning: "alpha of eq. 18" },
+      meaning: "thermal diffusivity of the heat grid (alpha of eq. 18)" },
     { name: 'max_speed_m_s', unit: 'm/s', least: 0.001, most: 5, default: 0.5,
-      meaning: "faster commands are followed at this speed" },
+      meaning: "largest speed of the tool; it follows faster commands at this speed" },
     { name: 'max_turn_rad_s', unit: 'rad/s', least: 0.1, most: 100, default: 12,
-      meaning: "fastest turning of the tool" },
+      meaning: "largest angular speed of the tool" },
     { name: 'friction', unit: '1', least: 0, most: 2, default: 0.2,
       meaning: "Coulomb coefficient of the cold parts" },
     { name: 'drag_ns_m', unit: 'N s/m', least: 0, most: 100, default: 0.05,
       meaning: "viscous drag of the hot part on each vertex in it" },
     { name: 'grasp_stiffness_n_m', unit: 'N/m', least: 1, most: 1000000, default: 200,
-      meaning: "of the attachment of one grasped vertex" },
+      meaning: "stiffness of the spring that attaches one grasped vertex" },
     { name: 'slip_force_n', unit: 'N', least: 0, most: 1000, default: 2,
-      meaning: "an attached vertex slips above this force" },
+      meaning: "force above which a grasped vertex slips" },
     { name: 'force_max_n', unit: 'N', least: 0.01, most: 1000, default: 20,
-      meaning: "the tool pushes with this at most; drivers read it" },
+      meaning: "largest force of the tool on tissue, and largest force sent to drivers" },
     { name: 'close_force_n', unit: 'N', least: 0.01, most: 1000, default: 8,
-      meaning: "its jaws press what they hold with this at most" },
+      meaning: "largest force of the jaws on what they hold" },
     { name: 'power_w', unit: 'W', least: 0, most: 400, default: 30,
-      meaning: "power that is set, with energy `tissue`" },
+      meaning: "power to which the generator is set; for energy tissue" },
     { name: 'peak_v', unit: 'V', least: 1, most: 10000, default: 1150,
-      meaning: "most voltage, peak; from 200 V on it sparks and cuts" },
+      meaning: "largest peak voltage; from 200 V the tool sparks and cuts" },
     { name: 'crest_factor', unit: '1', least: 1.4, most: 20, default: 1.4,
-      meaning: "of the voltage: its peak over its root mean square" },
+      meaning: "peak voltage over root mean square voltage" },
     { name: 'current_max_a', unit: 'A', least: 0.01, most: 10, default: 2,
-      meaning: "most current, root mean square" },
+      meaning: "largest current, root mean square" },
     { name: 'force_filter_s', unit: 's', least: 0, most: 1, default: 0.02,
-      meaning: "time constant of its filtered force; 0: no filter" },
+      meaning: "time constant of the force filter; 0: no filter" },
     { name: 'blade_heat_j_k', unit: 'J/K', least: 0, most: 100, default: 0,
-      meaning: "heat capacity of the hot part, with energy `tissue`; 0: that of its shape" },
+      meaning: "heat capacity of the hot part, for energy tissue; 0: computed from its shape" },
     { name: 'blade_cooling_w_k', unit: 'W/K', least: 0, most: 1, default: 0,
-      meaning: "heat that the hot part loses along the shaft; 0: that of its shape" },
+      meaning: "heat flow from the hot part along the shaft, per kelvin; 0: computed from its shape" },
     { name: 'load_rise_off', unit: '1', least: 0, most: 100, default: 0,
-      meaning: "power ends when the load is so many times its least; off and on begins again; 0: never" },
+      meaning: "power ends when the load reaches this multiple of its minimum, until energy is turned off and on; 0: never" },
   ],
   fascia: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,
@@ -2604,19 +2604,19 @@ export const PARAMETERS = {
     { name: 'limit_stiffness_pa', unit: 'Pa', least: 1, most: 10000000000, default: 1000000,
       meaning: "stiffness k of the strain limit" },
     { name: 'shear_max', unit: '1', least: 0, most: 0.99, default: 0,
-      meaning: "range: |k_12| / sqrt(k_11 k_22) stays below" },
+      meaning: "limit range: largest shear, the cosine of the angle between material axes" },
     { name: 'bending_stiffness_nm', unit: 'N m', least: 0, most: 10, default: 0,
-      meaning: "bending; 0: no hinges" },
+      meaning: "bending stiffness; 0: bending is not resisted" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 172,
-      meaning: "it parts when its exposure exceeds this" },
+      meaning: "tissue parts when exposure times absorption_per_s exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation, drawn by seed" },
+      meaning: "standard deviation of ignition_c in the tissue, drawn from the seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: none" },
+      meaning: "width of fibre bundles that share one ignition temperature; 0: no bundles" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
-      meaning: "xi of eq. 20" },
+      meaning: "rate at which tissue takes up heat (xi of eq. 20)" },
     { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
-      meaning: "energy that a tear takes by its area; 0: none does" },
+      meaning: "energy of a tear per area; 0: tissue does not tear" },
   ],
   membrane: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,
@@ -2626,19 +2626,19 @@ export const PARAMETERS = {
     { name: 'limit_stiffness_pa', unit: 'Pa', least: 1, most: 10000000000, default: 1000000,
       meaning: "stiffness k of the strain limit" },
     { name: 'shear_max', unit: '1', least: 0, most: 0.99, default: 0,
-      meaning: "range: |k_12| / sqrt(k_11 k_22) stays below" },
+      meaning: "limit range: largest shear, the cosine of the angle between material axes" },
     { name: 'bending_stiffness_nm', unit: 'N m', least: 0, most: 10, default: 0,
-      meaning: "bending; 0: no hinges" },
+      meaning: "bending stiffness; 0: bending is not resisted" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 96.40000000000001,
-      meaning: "it parts when its exposure exceeds this" },
+      meaning: "tissue parts when exposure times absorption_per_s exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation, drawn by seed" },
+      meaning: "standard deviation of ignition_c in the tissue, drawn from the seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: none" },
+      meaning: "width of fibre bundles that share one ignition temperature; 0: no bundles" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
-      meaning: "xi of eq. 20" },
+      meaning: "rate at which tissue takes up heat (xi of eq. 20)" },
     { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
-      meaning: "energy that a tear takes by its area; 0: none does" },
+      meaning: "energy of a tear per area; 0: tissue does not tear" },
   ],
   fat: [
     { name: 'density_kg_m3', unit: 'kg/m^3', least: 1, most: 25000, default: 911,
@@ -2650,21 +2650,21 @@ export const PARAMETERS = {
     { name: 'limit_stiffness_pa', unit: 'Pa', least: 1, most: 10000000000, default: 1000,
       meaning: "stiffness of the strain limit and shrinkage" },
     { name: 'shear_max', unit: '1', least: 0, most: 0.99, default: 0,
-      meaning: "range: |k_ab| / sqrt(k_aa k_bb) stays below" },
+      meaning: "limit range: largest shear, the cosine of the angle between material axes" },
     { name: 'yield_strain', unit: '1', least: 0, most: 10, default: 0,
-      meaning: "gamma_1 (strain with the half); plastic if gamma_2 > 0" },
+      meaning: "deviatoric Green strain at which plastic flow begins (gamma_1)" },
     { name: 'plastic_strain_max', unit: '1', least: 0, most: 10, default: 0,
-      meaning: "gamma_2; 0: no plasticity" },
+      meaning: "largest plastic strain (gamma_2); 0: no plastic flow" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 76,
-      meaning: "it parts when its exposure exceeds this" },
+      meaning: "tissue parts when exposure times absorption_per_s exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation, drawn by seed" },
+      meaning: "standard deviation of ignition_c in the tissue, drawn from the seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: none" },
+      meaning: "width of fibre bundles that share one ignition temperature; 0: no bundles" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
-      meaning: "xi of eq. 20" },
+      meaning: "rate at which tissue takes up heat (xi of eq. 20)" },
     { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
-      meaning: "energy that a tear takes by its area; 0: none does" },
+      meaning: "energy of a tear per area; 0: tissue does not tear" },
   ],
   links: [
     { name: 'young_modulus_pa', unit: 'Pa', least: 1, most: 100000000000, default: 100000,
@@ -2672,18 +2672,18 @@ export const PARAMETERS = {
     { name: 'area_m2', unit: 'm^2', least: 1e-12, most: 1, default: 1e-06,
       meaning: "cross section of a truss" },
     { name: 'reach_m', unit: 'm', least: 1e-06, most: 1, default: 0.005,
-      meaning: "longest truss" },
+      meaning: "length of the longest truss" },
     { name: 'per_vertex', unit: '1', least: 1, most: 8, default: 3,
-      meaning: "trusses from each vertex of the upper sheet" },
+      meaning: "number of trusses from each vertex of the upper sheet" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 172,
-      meaning: "it parts when its exposure exceeds this" },
+      meaning: "tissue parts when exposure times absorption_per_s exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation, drawn by seed" },
+      meaning: "standard deviation of ignition_c in the tissue, drawn from the seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: none" },
+      meaning: "width of fibre bundles that share one ignition temperature; 0: no bundles" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
-      meaning: "xi of eq. 20" },
+      meaning: "rate at which tissue takes up heat (xi of eq. 20)" },
     { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
-      meaning: "energy that a tear takes by its area; 0: none does" },
+      meaning: "energy of a tear per area; 0: tissue does not tear" },
   ],
 } satisfies Record<string, Parameter[]>;
