@@ -6,7 +6,8 @@
 
 #include "cautery/assert.h"
 
-static const double swap_after_s = 1.0 / 60.0; // from the start of a new factor to its use
+// time, s, from the start of a new factor's computation to its use
+static const double swap_after_s = 1.0 / 60.0;
 
 enum { PER_UPDATE = CAU_UPDATE_RANK / 3 }; // elements that always fit in one update
 

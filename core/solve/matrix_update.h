@@ -15,9 +15,10 @@
 enum {
 	CAU_LEAST_UPDATES = 2, // updates of rank 8 in a tick, while any element waits
 	CAU_MOST_UPDATES = 6,
-	// an element that has waited this many ticks is downdated as soon as possible
+	// ticks of waiting after which an element is downdated as soon as possible
 	CAU_WAITING_TICKS = 2,
-	CAU_DOWNDATES_AT_MOST = 2000, // elements; after as many, a canonical factorisation follows
+	// downdated elements after which a canonical factorisation follows
+	CAU_DOWNDATES_AT_MOST = 2000,
 };
 
 typedef struct cau_waiting {

@@ -8,12 +8,15 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// R is settled once a step of Newton's method moves none of its vertices by more than a tenth of
-// the error that the session's step may have. That error is `accuracy` times the motion of the
-// tick, and at least half a micrometre (accuracy.c).
+// SETTLED: R is settled once a step of Newton's method moves none of R's vertices by more than this
+// share of the error that the session's step may have. SETTLED_M: least value of this limit, m. The
+// allowed error is `accuracy` times the motion of the tick, and at least half a micrometre
+// (accuracy.c).
 static const double SETTLED = 0.1, SETTLED_M = 5e-8;
-static const double SETTLED_EXACTLY_M = 1e-12; // if a step has no accuracy to reach: rounding
-// A motion that counts as none, m. Its error may be half a micrometre, which is 1 % of this.
+// SETTLED_M for a step without a wanted accuracy; this is rounding
+static const double SETTLED_EXACTLY_M = 1e-12;
+// Least motion of R, m, by which a length is divided to get a relative error. So with little
+// motion, an error of half a micrometre is 1 %.
 static const double NOTHING_M = 5e-5;
 // Bounds, m, of the way of a vertex while R settles once, with tissue contact. Within the bounds,
 // the way is that of the fastest vertex of R in the tick. All pairs within the way must be known.
@@ -21,11 +24,11 @@ static const double LEAST_WAY_M = 1e-4, MOST_WAY_M = 1e-3;
 // Most steps of Newton's method for R in one iteration, and for the part that still moves after
 // each of them. A tab that comes free and buckles takes up to 25.
 enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
-// Least share of the decrease predicted by the slope that a step must bring [Armijo 1966].
+// Least decrease of E in a step, as a share of the decrease that the slope predicts [Armijo 1966].
 static const double ARMIJO = 1e-4;
-// On a quadratic, a full step lowers the energy by half of what the slope predicts. A step that
-// lowers it by more than this share was too short. The next step then replaces negative eigenvalues
-// by 0.
+// Share of the decrease that the slope predicts. A step that lowers the energy by more than this
+// share was too short. (On a quadratic, a full step lowers the energy by half of what the slope
+// predicts.) The next step then replaces negative eigenvalues by 0.
 static const double TOO_SHORT = 0.8;
 
 // ---- vectors by row
@@ -101,8 +104,9 @@ static void keep_rows(const cau_newton *newton, const cau_step_solver *solver)
 		       3 * sizeof(double));
 }
 
-// Returns the part of the step to try next: the minimum of E + slope t + c t^4. A sheet that turns
-// along a straight step is stretched by the square of the part, so E rises by its fourth power.
+// Returns the part of the step to try next: the minimum of E + slope t + c t^4, with the part t. A
+// sheet that turns along a straight step is stretched by the square of the part, so E rises by the
+// part's fourth power.
 static double shorter(double scale, double rise, double slope)
 {
 	double least = rise > 0 && isfinite(rise) ? cbrt(-slope * scale / (4 * rise)) : 0;

@@ -30,11 +30,11 @@
 #include "solve/vectors.h"
 
 enum {
-	// with more tasks, more supernodes are above all tasks and run on one thread
+	// most tasks; with more, more supernodes would be above all tasks and run on one thread
 	CAU_SWEEP_TASKS = 8,
 	CAU_NODE_COLUMNS = 128,     // most columns of a supernode
 	CAU_PACK_PARTS = 2,         // threads that pack supernodes together
-	CAU_WHOLE_PANELS = 1 << 20, // bytes: a core's own cache; larger panels are narrow
+	CAU_WHOLE_PANELS = 1 << 20, // bytes: a core's own cache; larger panels have narrow entries
 };
 
 struct cau_kernels;
