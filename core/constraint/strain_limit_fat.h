@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of tetrahedra: those of strain_limit_sheet.h for the 3x3 metric.
+// Strain limits of tetrahedra: the limits of strain_limit_sheet.h for the 3x3 metric.
 #pragma once
 
 #include "constraint/polar.h"
@@ -49,10 +49,10 @@ INLINE vreal sym3_distance(sym3 a, sym3 b)
 	             v_max(v_abs(a.a01 - b.a01), v_max(v_abs(a.a02 - b.a02), v_abs(a.a12 - b.a12))));
 }
 
-// Square roots of symmetric positive definite 3x3 matrices, and their inverses, by the
-// Denman-Beavers iteration. It converges quadratically. So it ends after a step as small as the
-// square root of rounding (1e-4 for 1e-8, 1e-9 for 1e-16). Ten steps are enough for stretches from
-// 1/30 to 30.
+// Most steps of the Denman-Beavers iteration, which computes square roots of symmetric positive
+// definite 3x3 matrices and the inverses of these roots. It converges quadratically. So it ends
+// after a step as small as the square root of rounding (1e-4 for 1e-8, 1e-9 for 1e-16). Ten steps
+// are enough for stretches from 1/30 to 30.
 enum { SQRT_STEPS = 10 };
 
 // One step of the iteration. Returns whether another step is needed.

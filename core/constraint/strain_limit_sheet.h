@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of triangles (section 5.1, Appendix A). P is the nearest admissible F, and R = F -
-// P is the residual. A triangle's energy is w/2 |R|^2 and its stress w R. f_1 and f_2 are the
-// columns of F.
+// Strain limits of triangles (section 5.1, Appendix A). P is the matrix nearest to F that the limit
+// allows, and R = F - P is the residual. A triangle's energy is w/2 |R|^2 and its stress w R. f_1
+// and f_2 are the columns of F.
 #pragma once
 
 #include "constraint/strain_range.h"
@@ -39,15 +39,16 @@ INLINE sheet_gradient sheet_times(sheet_gradient f, sym2 b)
 // TARGET in closed form: P = Q T^(1/2), where Q is the orthonormal polar factor of F T^(1/2). With
 // K = F^T F and S = (T^(1/2) K T^(1/2))^(1/2), Q = F T^(1/2) S^-1. So R = F (I - T^(1/2) S^-1
 // T^(1/2)). At rest with T = I this is exactly zero. Where F has lost rank, Q is not defined, and
-// the last one (`polar`) is used. `slack` marks the lanes with little stiffness along the normal,
-// which is w (I - T^(1/2) S^-1 T^(1/2)).
+// the Q of the last evaluation (`polar`) is used. `slack` marks the lanes with little stiffness
+// along the normal. This stiffness is w (I - T^(1/2) S^-1 T^(1/2)).
 INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 target_root,
                                             sheet_gradient *polar, vmask *slack)
 {
 	vreal s;
 	sym2 m = sym2_sandwich(target_root, k);
 	sym2 root = sym2_sqrt(m, &s);
-	// the ratio of singular values is below about 2000, and K is above its own rounding
+	// `full` is true if the ratio of singular values is below about 2000, and K is above its own
+	// rounding
 	vreal trace = m.a00 + m.a11;
 	vmask full = (s > (real)1e-3 * trace) & (trace > v_set(64 * REAL_EPSILON));
 	vreal inverse = 1 / v_select(full, s, v_set(1));

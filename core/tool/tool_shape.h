@@ -15,9 +15,10 @@ typedef enum cau_tool_part {
 
 // Returns the signed distance (m) to the part's surface at `point` in the tool's frame: tip at the
 // origin, shaft along +z, jaws open in x. The distance is negative inside and 1-Lipschitz, so it
-// may be sphere-traced. If the shape has no such part, it is INFINITY. `jaw` is 0 closed to 1 open.
-// `gradient` (unit, outward; may be NULL) is the direction away from the nearest surface point; if
-// several are equally near, that of one of them.
+// may be sphere-traced. If the shape has no such part, the distance is INFINITY. `jaw` is 0 for
+// closed jaws to 1 for open jaws. `gradient` (unit, outward; may be NULL) is the direction away
+// from the nearest surface point. If several surface points are equally near, it is the direction
+// from one of them.
 double cau_tool_distance(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 point,
                          cau_vec3 *gradient);
 
