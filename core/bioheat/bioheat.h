@@ -35,7 +35,8 @@ typedef struct cau_blade {
 
 typedef struct cau_contact_cell { // contact of a blade with a cell
 	int32_t blade, cell;
-	double over_length_m; // area of contact over the length from the contact to the cell's middle
+	// area of contact over the length from the contact to the middle of the cell
+	double over_length_m;
 } cau_contact_cell;
 
 typedef struct cau_bioheat {
@@ -81,8 +82,8 @@ enum { CAU_BIOHEAT_PARTS = 512 };
 bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count,
                       double duration_s);
 
-// Return the present conductivity (W/(m K)), electric conductivity (S/m) and heat capacity (J/K) of
-// a cell.
+// These functions return the present properties of a cell: conductivity (W/(m K)), electric
+// conductivity (S/m) and heat capacity (J/K).
 double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell);
 double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell);
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell);

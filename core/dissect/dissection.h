@@ -37,8 +37,9 @@ typedef struct cau_tears {
 	double widest_m[CAU_PRIMITIVE_KINDS]; // greatest size of an element, by kind of primitive
 	// Scratch.
 	cau_over *before;
-	int32_t *now, *found; // elements overloaded in this tick; number found in each part
-	double *load;         // loads of the elements in `now`
+	// elements overloaded in this tick; number of elements that each part of the loop found
+	int32_t *now, *found;
+	double *load;  // loads of the elements in `now`
 	int32_t *most; // (vertex_count): 1 + index in `now` of the most loaded element there; 0: none
 } cau_tears;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interfaces between the files of core/dissect. books.c is the lowest. The two rules of parting use
-// it: by elements and their doses (doses.c), and by edges (dissection.c). dissection.c calls the
-// others.
+// Interfaces between the files of core/dissect. Two files have the rules of parting: by elements
+// and their doses (doses.c), and by edges (dissection.c). Both use books.c, which uses no other
+// file. dissection.c also calls the other files.
 #pragma once
 
 #include <stdbool.h>
