@@ -81,7 +81,8 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_false(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&a, 30));
 	assert_false(is_patterned(&b, 20));
-	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image); // the image is unchanged
+	// the image is unchanged, so the call returns it
+	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image);
 	assert_int_equal(cau_image_show(image, &c, 1, false), (size_t)PAGES * page);
 	for (int i = 0; i < 3; i++)
 		cau_image_release(image);
@@ -134,7 +135,8 @@ static void nothing_can_write_an_image(void **state)
 	cau_pages_give_back(&a);
 }
 
-// Runs shorter than 16 KiB, parts of another size, and parts at another position stay unchanged.
+// Runs shorter than 16 KiB, parts of another size, and parts at another position are not replaced
+// by pages of the image.
 static void short_runs_and_others_stay_as_they_are(void **state)
 {
 	(void)state;
@@ -213,7 +215,8 @@ static void zeros_of_one_are_not_shown_to_another(void **state)
 	cau_pages_give_back(&c);
 }
 
-// No file can be opened, so all pages count as touched.
+// The system's list of touched pages cannot be opened, because no file can. So all pages count as
+// touched.
 static void without_the_systems_word_all_are_read(void **state)
 {
 	(void)state;

@@ -48,7 +48,7 @@ static void test_too_much_is_refused(void **state)
 static void test_touched_pages_are_known(void **state)
 {
 	(void)state;
-	enum { COUNT = 1500 }; // more than one read of cau_pages_touched
+	enum { COUNT = 1500 }; // more pages than one read of cau_pages_touched reports
 	static uint8_t touched[COUNT];
 	size_t page = (size_t)sysconf(_SC_PAGESIZE);
 	cau_pages pages;

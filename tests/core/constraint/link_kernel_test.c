@@ -5,7 +5,8 @@
 #include "core/constraint/element.h"
 #include "core/rig/law_scenes.h"
 
-// a dozen roundings; the change of length is a small difference
+// Largest relative error of a link's force: a dozen roundings, enlarged because the change of
+// length is a small difference of two lengths.
 static const double FORCE_TOLERANCE = 1e-11;
 
 static void test_links_are_springs(void **state)

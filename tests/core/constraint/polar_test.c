@@ -5,7 +5,8 @@
 
 enum { DRAWS = 300, RIVALS = 200 };
 static const double YOUNG = 1000; // equals 2 mu, because Poisson's ratio is 0
-// The last Newton step leaves about epsilon, and D_m^-1 adds ten roundings.
+// Largest error of an entry of R. The last Newton step leaves about epsilon, and D_m^-1 adds ten
+// roundings.
 static const double ROTATION_DOUBLE = 1e-12, ROTATION_SINGLE = 5e-6;
 
 static void make(rig *r, int precision)

@@ -7,7 +7,7 @@
 #include "core/dissect/cutting.h"
 
 static const double RAMP_S = 0.2, STEP_S = 1.0 / 60;
-// Ten roundings, and two square roots of numbers between 0.01 and 1.
+// Largest error of a target: ten roundings, and two square roots of numbers between 0.01 and 1.
 static const double TARGET_TOLERANCE = 1e-12;
 static const double SHEET_SHRINK[2] = {0.1, 0.3}, FAT_SHRINK[3] = {0.1, 0.6, 0.9};
 static const double SHEET_TARGET[3] = {0.4, 0.7, 0.1};
@@ -272,7 +272,7 @@ static void test_ramp(void **state)
 			            TARGET_TOLERANCE);
 		assert_true(ticks < 100);
 	}
-	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // within one tick of the ramp's time
+	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // the tolerance is one tick
 	rig_finish(&b.r);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene made in C, with its tissue, laws and solver, but without a session. Tests of laws, solver
-// and other core folders use it. If a module refuses its input, the functions fail the running
-// test.
+// A scene made in C, with its tissue, laws and solver, but without a session. Tests of laws, of the
+// solver and of other core folders use it. If a module refuses its input, the functions of this
+// file fail the running test.
 #pragma once
 
 // clang-format off

@@ -12,7 +12,7 @@
 
 #include "core/tool/tools.h"
 
-// Rounding of a few operations on lengths near 1.
+// Largest error: rounding of a few operations on lengths near 1.
 static const double ROUNDING = 1e-14;
 
 static void test_capsule(void **state)
