@@ -15,12 +15,12 @@
 enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
 
 // LEAST_ALONE, MOST_ALONE: least and most parts that the caller runs alone after a long wait. CALM:
-// parts without a long wait after which the next time alone is LEAST_ALONE again. If other programs
+// parts without a long wait after which the count starts at LEAST_ALONE again. If other programs
 // use the machine, a helper may lose its core in the middle of a part. The caller then waits for as
-// long as the scheduler decides, hundreds of times a step. So after such a wait the caller works
-// alone for a while, and twice as long each time a long wait happens again soon. The while is
-// counted in parts, and is at least some milliseconds. A part takes a few microseconds, while a
-// loop takes a hundred times longer in a large session than in a small one.
+// long as the scheduler decides, hundreds of times a step. So after a long wait the caller runs
+// some thousand parts alone, and twice as many each time a long wait follows soon. Parts are
+// counted, not loops. A part takes a few microseconds, while a loop takes a hundred times longer in
+// a large session than in a small one.
 enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // all in parts
 
 struct cau_pool {

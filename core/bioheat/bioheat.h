@@ -66,7 +66,7 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
                               const cau_bioheat_material *material, int32_t material_count,
                               double ambient_c, cau_arena *arena, cau_error *error);
 
-// Adds a cell at ambient temperature, with all its water. Results and errors are those of
+// Adds a cell at ambient temperature, with all its water. Returns the same results as
 // cau_cells_add.
 int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t material, float fill);
 

@@ -90,6 +90,6 @@ void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from);
 // Continues `hash` with the state of all cells.
 uint64_t cau_tissue_cells_hash(const cau_tissue_cells *cells, uint64_t hash);
 
-// Returns the temperature at a vertex, degC: the mean of the cells around its rest position.
-// Without such cells it is ambient.
+// Returns the temperature at a vertex, degC: the mean of the cells around the vertex's rest
+// position, or ambient if there are no such cells.
 double cau_tissue_cells_temperature(const cau_tissue_cells *cells, int32_t vertex);

@@ -42,7 +42,7 @@ typedef struct cau_sheet_group {
 	int limit, projection;                 // values CAU_LIMIT_* and CAU_PROJECTION_*
 	double stretch_min[2], stretch_max[2]; // for RANGE: limits of sqrt(k_aa)
 	double shear_max;
-	double viscosity_s; // retardation time; 0: none
+	double viscosity_s; // retardation time, s; 0: the layer is not viscous
 } cau_sheet_group;
 
 typedef struct cau_fat_group {

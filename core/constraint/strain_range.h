@@ -19,7 +19,7 @@
 #define RANGE_ROUNDING (CAU_SINGLE ? (real)1e-5 : (real)1e-10)
 
 // Handles a column f of length sqrt(k): adds F - P to `residual` and returns the squared distance.
-// If k is less than the rounding of I + ..., the length is taken to be that of the rounding.
+// If k is less than its own rounding, the length is taken to be that of the rounding.
 INLINE vreal range_stretch(v3 f, vreal k, double least, double most, v3 *residual)
 {
 	vreal length = v_sqrt(v_max(k, v_set(64 * REAL_EPSILON)));

@@ -39,7 +39,8 @@ static const cau_heat_material *heat_at(const cau_dissection *dissection, int pr
 	return cau_dissection_heat_of(dissection->tissue, primitive, edges->sharer[primitive][k]);
 }
 
-// Stores the largest exposure that a material of the edge needs for this share.
+// Raises the edge's exposure to the largest exposure that one of its materials needs for this
+// share.
 void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double share)
 {
 	double exposure = dissection->exposure[edge];

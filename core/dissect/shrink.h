@@ -11,11 +11,10 @@ typedef struct cau_shrinking { // an element that is shrinking towards its targe
 	double age_s;
 } cau_shrinking;
 
-// CAU_SHRINKING_LEAST and CAU_SHRINKING_SHARE: the capacity for shrinking elements is the larger of
-// CAU_SHRINKING_LEAST and all elements over CAU_SHRINKING_SHARE. A cut exposes a strip at a time,
-// and each element shrinks for 0.2 s. An eighth of all elements is far more than such a strip, and
-// small tissues have capacity for all elements. An element beyond the capacity gets its target at
-// once.
+// CAU_SHRINKING_LEAST is the least capacity for shrinking elements. Large tissues have capacity for
+// all elements over CAU_SHRINKING_SHARE. A cut exposes a strip at a time, and each element shrinks
+// for 0.2 s. An eighth of all elements is far more than such a strip, and small tissues have
+// capacity for all elements. An element beyond the capacity gets its target at once.
 enum { CAU_SHRINKING_LEAST = 1024, CAU_SHRINKING_SHARE = 8 };
 
 typedef struct cau_shrink {

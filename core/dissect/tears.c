@@ -10,18 +10,19 @@
 // (Away from any tip or held edge, the stretch is even and there is no crack yet. There a finer
 // mesh bears more, in proportion to 1 / sqrt(h).)
 //
-// The stretch beyond the rest shape counts, not the energy of the law. A fascia whose target is 0.1
-// stores much energy at rest and is always taut; this does not tear it. So with the principal
-// stretches s of F
+// The load of an element comes from its stretch beyond the rest shape, not from the energy of its
+// law. A fascia whose target is 0.1 stores much energy at rest and is always taut, but does not
+// tear. So with the principal stretches s of F
 //     psi = E/2 sum (s - 1)+^2 + k/2 sum (s - s_free)+^2,
 // where E is Young's modulus of fat and links, and k is the stiffness of the strain limit of sheets
 // and fat. s_free is 1, or for a range, the largest stretch in the range along that axis.
-// Compression does not count. Along one axis psi is the energy of the laws at small strain. It
-// leaves out what Poisson's ratio adds when two axes are stretched. It counts plastic strain as
+// Compression adds nothing. Along one axis psi is the energy of the laws at small strain. psi
+// leaves out what Poisson's ratio adds when two axes are stretched. It includes plastic strain as
 // stored energy, although a band has spent that energy.
 //
 // If a layer's `coagulated_tear` is below 1, heat weakens the layer. G_c falls in proportion to the
-// exposure of the element's edges. From an exposure of 0.5 on, it is that share of its fresh value.
+// exposure of the element's edges. From an exposure of 0.5 on, G_c is `coagulated_tear` times its
+// fresh value.
 //
 // An element tears after two consecutive converged ticks in which it was overloaded, or after six
 // consecutive ticks of any kind. An iterate may be far from the solution, but not for a tenth of a

@@ -75,9 +75,9 @@ static void fill_block(const search *s, const int32_t least[3], int32_t size, fl
 			}
 }
 
-// Finds the distances of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz,
-// so its value in the middle decides the whole block, unless the surface may be near one of the
-// nodes. In that case the block is divided into eight parts.
+// Finds the distances of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz.
+// So the distance in the block's middle decides for all its nodes, unless the surface may be near
+// one of the nodes. In that case the block is divided into eight parts.
 static void find_block(const search *s, const int32_t least[3], int32_t size)
 {
 	CAU_ASSERT(size >= 2 && (size & (size - 1)) == 0, "a block of %d nodes", size);

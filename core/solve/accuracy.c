@@ -21,7 +21,7 @@ static const double least_force_n = 1e-4;
 static const double force_share = 2;
 // Relative change of a tool's force, from step to step, up to which the force counts as steady.
 static const double steady = 0.25;
-// Relative change of a tool's force, from step to step, above which a step counts as moving.
+// Relative change of a tool's force, from step to step, above which the step teaches something.
 static const double still_force = 0.002;
 // Factor on the learned force error, because contact constraints of this step may have a larger one
 // than those of earlier steps.

@@ -13,15 +13,15 @@
 // such a push, the estimate needs a second increment.
 //
 // After j increments of lengths s_1 .. s_j the error is c_j s_j. There are three sources for c_j:
-// - The step itself. The norms of the gradient contract by a factor a in each iteration. The rest
-//   of such a sequence is a / (1 - a) of its last term.
+// - The step itself. The norms of the gradient contract by a factor a in each iteration. The sum of
+//   all further terms of such a sequence is a / (1 - a) times the last term.
 // - Earlier steps, with delay [Hestenes and Stiefel 1952; Meurant and Tichy 2013]. The increments
-//   that came after the j-th are the error that it left. The largest such ratio is kept, because
-//   the slowest mode hardly begins to show in a few iterations. One of every dozen steps takes
-//   enough increments to learn from.
+//   that came after increment j are the error that increment j left. The largest ratio of this
+//   error to s_j is kept, because the slowest mode hardly shows in a few iterations. One of every
+//   dozen steps takes enough increments to learn from.
 // - A bound by the energy. Where E is convex, its Hessian H is at least M / dt^2, and d = -A^-1
-//   grad E is smooth. The error is then at most dt^2 |d|_A^2 / |d|_M. It reaches this bound if d
-//   consists of the slow modes that are left over when an iteration stalls.
+//   grad E is smooth. The error is then at most dt^2 |d|_A^2 / |d|_M. The error reaches this bound
+//   if d consists of the slow modes that are left over when an iteration stalls.
 #pragma once
 
 #include <stdbool.h>

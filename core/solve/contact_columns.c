@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Computes the columns of A^-1 that contact needs, and keeps them from tick to tick: one column for
-// each corner. The first CAU_WHOLE_COLUMNS columns are whole. Of the other columns only the entries
-// of S are kept.
+// each corner. The first CAU_WHOLE_COLUMNS columns are whole. Further columns have only their
+// entries of S.
 #include <string.h>
 
 #include "cautery/assert.h"

@@ -124,7 +124,7 @@ static bool may_stand(cau_step_solver *solver, double scale, double value, doubl
 }
 
 // Takes the trial step if it is accepted. Otherwise tries the plain step, whose slope is `slope`,
-// and then shorter ones. Returns false if none is accepted: the position is unchanged.
+// and then shorter steps. Returns false if no step is accepted: the position is then unchanged.
 static bool take_step(cau_step_solver *solver, bool accelerated, double slope, double *objective)
 {
 	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
@@ -161,9 +161,9 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 	return false;
 }
 
-// Called when the first step had to be shortened: the objective at the guess x + dt v may be so
-// high that a few short steps cannot lower it enough. If the objective at the start of the tick is
-// lower, the iteration restarts there. Eq. 4 only falls from then on, so that a tick never ends
+// Restarts the iteration at the start of the tick if the objective is lower there. Called when the
+// first step had to be shortened: the objective at the guess x + dt v may be so high that a few
+// short steps cannot lower it enough. After a restart eq. 4 only falls, so that a tick never ends
 // with more energy than it began with. Returns true if the iteration restarted.
 static bool go_back(cau_step_solver *solver, double *objective)
 {

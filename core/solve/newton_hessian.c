@@ -84,8 +84,8 @@ typedef struct sheet_answer {
 	double squared;
 	sheet_hessian *to;
 	double negative; // factor for negative eigenvalues, as in cau_newton
-	// Viscosity's stress in the plane, over the element's weight. Across the plane it adds
-	// stiffness to that of the limit. If `across` is true, K already contains that part.
+	// Viscosity's stress in the plane, over the element's weight. Across the plane this stress adds
+	// to the limit's stiffness. If `across` is true, K already contains this addition.
 	symmetric2 tension;
 	bool across;
 } sheet_answer;

@@ -178,8 +178,8 @@ static void add_row(growth *of, int32_t column, int32_t row)
 	of->newton->row[of->count++] = row;
 }
 
-// Finds the rows of a column of L: those of A's column, and those of the column's children, without
-// the column itself.
+// Finds the rows of a column of L: the rows of A's column and of the children's columns, without
+// the row of the column itself.
 static bool grow(growth *of, int32_t column)
 {
 	cau_newton *newton = of->newton;

@@ -58,7 +58,7 @@ struct cau_step_solver {
 
 	bool diagonal;      // diagonal system instead of A: CAU_SOLVER_DIAGONAL
 	bool conservative;  // every law is the gradient of an energy
-	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets count as loose
+	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are treated as loose
 	bool none_loose;    // in this tick no tissue counts as loose: some is inverted, diverges or
 	                    // crosses (exempt.c)
 	// most iterations of a step; if the step has a wanted accuracy, see CAU_SOLVER_EFFORT

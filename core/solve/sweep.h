@@ -16,8 +16,9 @@
 // applied matrix is symmetric and positive definite whatever the rounding, and is A^-1 within 1e-4.
 // The iteration uses it for increments only, and each increment corrects the error of the last.
 //
-// Disjoint subtrees are tasks. Each task has its own sums for the rows above it. These are added in
-// task order, so that the result does not depend on how many threads run the tasks.
+// Disjoint subtrees are tasks. Each task has its own sums for the rows above the task. The tasks'
+// sums are added in task order, so that the result does not depend on how many threads run the
+// tasks.
 #pragma once
 
 #include <stdbool.h>
@@ -97,8 +98,8 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
                             cau_error *error);
 void cau_sweep_finish(cau_sweep *sweep);
 
-// Returns the field index of the task's first sum. For task_count, returns that of the last spare
-// entry.
+// Returns the field index of the first sum of a task. For `task` = task_count, returns the index of
+// the last spare entry.
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task);
 
 // ---- sweep_pack.c: the factor's values in the panels

@@ -67,7 +67,8 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 {
 	cau_step_solver own = tangent->probe, *probe = &tangent->probe;
 	*probe = *solver;
-	probe->position = probe->predicted = tangent->position; // at the predicted state inertia is 0
+	// with the predicted state at the position, inertia is 0
+	probe->position = probe->predicted = tangent->position;
 	probe->displacement = own.displacement;
 	probe->gradient = own.gradient;
 	probe->chunk_energy = own.chunk_energy;
@@ -75,7 +76,7 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 	probe->collide = NULL;
 	probe->contact = NULL;
 	probe->now_s = NULL;
-	probe->elements.rate_per_s = 0; // no viscosity: a hand is slow
+	probe->elements.rate_per_s = 0; // without viscosity, because a hand is slow
 	probe->elements.gradient = own.elements.gradient;
 	probe->elements.energy = own.elements.energy;
 	probe->elements.slack = own.elements.slack;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The global step with tissue contact. A does not contain the stiffness K between touching tissue.
-// A step by A alone would move tissue that lies on something light far away from it. So the step
-// uses A + K: conjugate gradients with A^-1 as preconditioner, which costs a few more sweeps. With
-// z = A^-1 r and directions p that are sums of z's, A p is a sum of r's. So no product with A is
-// needed.
+// If tissue lies on something light, a step by A alone would move the light tissue far away. So the
+// step uses A + K: conjugate gradients with A^-1 as preconditioner, which costs a few more sweeps.
+// Here z = A^-1 r, and directions p are sums of z's, so A p is a sum of r's. So no product with A
+// is needed.
 #include <string.h>
 
 #include "cautery/assert.h"

@@ -23,7 +23,7 @@ typedef struct cau_plate {
 
 cau_jaw cau_jaw_of(double side, double hinge, double angle_rad);
 
-// Returns the mirror image of a jaw: the jaw on the other side.
+// Returns the mirror image of a jaw: the jaw on the other side of the tool.
 cau_jaw cau_jaw_opposite(const cau_jaw *jaw);
 
 // Returns a plate with |y| <= half_width. The plate is nowhere thinner than its rounding: its

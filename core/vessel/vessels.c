@@ -50,8 +50,9 @@ static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec
 	return fmin(least, weight[0]);
 }
 
-// Finds the tetrahedron of the layer that contains the point. If there is none, finds the
-// tetrahedron in which the point's least coordinate is greatest. Returns that least coordinate.
+// Finds the tetrahedron of the layer that contains the point. If no tetrahedron contains the point,
+// finds the tetrahedron in which the point's least coordinate is greatest. Returns that least
+// coordinate.
 static double embed(const cau_tissue *tissue, const cau_tissue_layer *layer, cau_vec3 at,
                     cau_tube_point *point)
 {
@@ -303,10 +304,11 @@ double cau_vessel_outflow(const cau_vessel_def *def, double pressure_pa, double 
 
 // The flow of blood from one end of a vessel.
 typedef struct run {
-	double flow_m3_s;    // flow that leaves the vessel
-	double open;         // area through which the flow leaves, over the lumen's area
-	double best_seal_pa; // strength of the best seal between this end and the cut, or the other end
-	bool sealed, shut;   // a seal, or compression, stops the flow
+	double flow_m3_s; // flow that leaves the vessel
+	double open;      // area through which the flow leaves, over the lumen's area
+	// strength of the best seal between this end and the cut, or the other end if there is no cut
+	double best_seal_pa;
+	bool sealed, shut; // a seal, or compression, stops the flow
 } run;
 
 typedef struct vessel_end { // the end of a vessel from which blood comes

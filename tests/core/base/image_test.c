@@ -42,7 +42,8 @@ static bool is_patterned(const cau_pages *pages, size_t but_for_page)
 	return true;
 }
 
-// Counts the private mappings of images with these rights in this process. *one is one of them.
+// Counts the private mappings of images with these rights in this process. Sets *one to the address
+// of one mapping.
 static int mappings(const char *rights, void **one)
 {
 	char line[512], found[5];
@@ -94,7 +95,8 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(mappings("rw-p", NULL), 0);
 }
 
-// The first session's pages are shown without a comparison. Those of further sessions are compared.
+// The first session's pages are mapped without a comparison. The pages of further sessions are
+// compared.
 static void who_made_it_knows(void **state)
 {
 	(void)state;

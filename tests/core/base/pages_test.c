@@ -44,7 +44,7 @@ static void test_too_much_is_refused(void **state)
 	cau_pages_give_back(&pages);
 }
 
-// Pages that were written count as touched. cau_pages_touched touches no page.
+// Pages that were written are reported as touched. cau_pages_touched itself touches no page.
 static void test_touched_pages_are_known(void **state)
 {
 	(void)state;

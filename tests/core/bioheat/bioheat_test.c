@@ -285,8 +285,8 @@ static void nothing_flows_through_a_cell_that_is_gone(void **state)
 	cau_arena_finish(&arena);
 }
 
-// If all cells are within half a degree of ambient, they are set to ambient in one step. Their heat
-// counts as perfused.
+// If all cells are within half a degree of ambient, they are set to ambient in one step. The ledger
+// adds their heat to the perfused heat.
 static void the_last_warmth_is_forgotten(void **state)
 {
 	(void)state;

@@ -60,8 +60,8 @@ static void test_a_link_of_no_length(void **state)
 	}
 }
 
-// The energy of a flat sheet's hinge is w/2 |e|^2, and that of a bent one w/2 (|e| - |rest|)^2. A
-// rotation of the whole sheet changes neither.
+// A flat sheet's hinge has the energy w/2 |e|^2, and a bent sheet's hinge w/2 (|e| - |rest|)^2. A
+// rotation of the whole sheet changes neither energy.
 static void test_hinges_keep_their_bend(void **state)
 {
 	(void)state;

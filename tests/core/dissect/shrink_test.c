@@ -240,7 +240,8 @@ static void test_denatured_elements(void **state)
 			burnt b;
 			make(&b, fat, targeted);
 			int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE, edges = fat ? 6 : 3;
-			// an edge heated by 0.5 counts as coagulated, so 0.24 is less than half
+			// an edge heated by 0.5 is coagulated, so at 0.24 the element is less than half
+			// coagulated
 			denature(&b, kind, 7, edges, 0.24, AXIS[fat]);
 			assert_int_equal(b.r.shrink.active_count, 0);
 			denature(&b, kind, 7, edges, 0.26, AXIS[fat]);

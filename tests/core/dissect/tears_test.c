@@ -54,10 +54,10 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 		cau_sheet_material *sheet = rig_add_sheet(&r, 5, 4)->sheet; // cells of 20 mm
 		sheet->limit_stiffness_pa = stiffness_pa;
 		sheet->heat.tear_energy_j_m2 = tear_j_m2;
-		// the sheet is taut at rest, which does not count as load
+		// the sheet is taut at rest, which adds no load
 		sheet->target[0] = sheet->target[1] = 0.1;
 		sheet->limit = ranged ? CAU_LIMIT_RANGE : CAU_LIMIT_TARGET;
-		sheet->strain_max[0] = 0.3; // stretch within the range does not count as load
+		sheet->strain_max[0] = 0.3; // stretch within the range adds no load
 		build(&r, CAU_PARTING_ELEMENTS);
 		double beyond = sqrt(2 * band_share * tear_j_m2 / 0.02 / stiffness_pa);
 		double least = (ranged ? 1.3 : 1) + beyond;

@@ -60,7 +60,7 @@ static void test_cut(void **state)
 		at_floor += wide == 0.1 * MEAN_C;
 		at_cut += wide == MEAN_C + 3 * (10 * MEAN_C);
 	}
-	assert_true(at_floor > DRAWS / 3); // both limits are reached, the upper one rarely
+	assert_true(at_floor > DRAWS / 3); // both limits are reached, the upper limit rarely
 	assert_true(at_cut > 0 && at_cut < DRAWS / 300);
 }
 

@@ -92,8 +92,8 @@ static void test_threads_change_nothing(void **state)
 	}
 }
 
-// Work that one thread does during the first local step of a tick is done once. The result is that
-// of the local step alone.
+// Work that one thread does during the first local step of a tick is done once. The result is the
+// same as without this work.
 static void count(void *context)
 {
 	++*(int *)context; // only one thread changes it

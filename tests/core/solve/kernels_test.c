@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Properties of every law: the gradient is that of the energy; an element has no net force or
-// torque; it has no force at rest or once removed; precisions and instruction sets agree.
+// Tests properties of every law. The gradient is the derivative of the energy. An element has no
+// net force or torque, and no force at rest or once it is removed. Precisions and instruction sets
+// agree.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
