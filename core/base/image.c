@@ -13,8 +13,8 @@
 #include "cautery/assert.h"
 
 // LEAST_RUN_BYTES: shortest run of equal pages that is mapped. MOST_RUNS: most runs that are
-// mapped. They are limited because a process may have 65,530 mappings by default. A session gets at
-// most twice as many mappings as it has mapped runs.
+// mapped. Runs are limited in length and number because a process may have 65,530 mappings by
+// default. A session gets at most twice as many mappings as it has mapped runs.
 enum { LEAST_RUN_BYTES = 16 << 10, MOST_RUNS = 64 };
 
 typedef struct image_part {

@@ -81,8 +81,8 @@ double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell)
 	return dry_w_mk + (wet - dry_w_mk) * bioheat->water[cell];
 }
 
-// The electric conductivity rises until the cell boils. It falls with the square of the water that
-// is left (Archie's law).
+// Returns the electric conductivity, S/m. It rises until the cell boils. It also falls with the
+// square of the water that is left (Archie's law).
 double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 {
 	double warm = fmin(bioheat->temperature[cell], CAU_BOILING_C) - CAU_BODY_C;
@@ -90,7 +90,8 @@ double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 	return material_of(bioheat, cell)->electric_s_m * (1 + electric_per_k * warm) * wet * wet;
 }
 
-// The dry mass keeps its heat capacity. The water that boils off takes its heat capacity along.
+// Returns the heat capacity of a cell, J/K. The dry mass keeps its heat capacity. The water that
+// boils off takes its heat capacity along.
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell)
 {
 	const cau_bioheat_material *material = material_of(bioheat, cell);
@@ -122,7 +123,8 @@ void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 	cau_cells_sever(&bioheat->cells, cell);
 }
 
-// Water that boils off takes its own heat along, besides the enthalpy of evaporation.
+// Returns the rate of vapour, kg/s. Water that boils off takes its own heat along, besides the
+// enthalpy of evaporation.
 double cau_bioheat_vapour(const cau_bioheat *bioheat)
 {
 	double warmth = water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);

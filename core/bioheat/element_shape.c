@@ -82,7 +82,7 @@ cau_vec3 cau_element_corner(const cau_element_shape *shape, int corner)
 	return corner ? cau_add(shape->first, shape->edge[corner - 1]) : shape->first;
 }
 
-// Whether the element contains a point at these coordinates. The element is enlarged by `margin` in
+// True if the element contains a point at these coordinates. The element is enlarged by `margin` in
 // coordinates, and by margin_m in thickness or radius. A margin below 0 makes the element smaller.
 static bool holds(const cau_element_shape *shape, cau_vec3 at, cau_vec3 margin, double margin_m)
 {

@@ -65,10 +65,10 @@ void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, cons
 // Sets the cell's pull-back (cells.h) from the deformation of its owner.
 void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position);
 
-// Whether the element's cells no longer connect its vertices.
+// True if the element's cells no longer connect its vertices.
 bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element);
 
-// Whether the element may have cells at positions from `least` to `most`.
+// True if the element may have cells at positions from `least` to `most`.
 bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, const int32_t least[3],
                             const int32_t most[3]);
 

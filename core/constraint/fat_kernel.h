@@ -64,7 +64,7 @@ INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 	return diagonal_scale_fat(r, m, v_load(set->position_scale, slot));
 }
 
-// The residual of eq. 13 in F. In the diagonal system each constraint has its own step.
+// Returns the residual of eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 root, m3 f,
                                   bool diagonal)
 {
@@ -93,7 +93,7 @@ INLINE m3 fat_shrunk_residual(sym3 root, m3 f, rotation_lanes *polar)
 	return m3_select(~targeted, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
 }
 
-// The residual of RANGE. *extra is the sum of the squared distances less |R|^2.
+// Returns the residual of RANGE. Sets *extra to the sum of the squared distances less |R|^2.
 INLINE m3 fat_ranged_residual(const cau_fat_group *group, sym3 root, m3 f, rotation_lanes *polar,
                               vreal *extra)
 {
@@ -194,7 +194,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	return limited ? m3_add_scaled(stress, fat_limit_weight(set, group, slot), r) : stress;
 }
 
-// The gradient at vertex i + 1 of four: stress (N m) times row i of D_m^-1.
+// Returns the gradient at vertex i + 1 of four: stress (N m) times row i of D_m^-1.
 INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, int i)
 {
 	v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);

@@ -6,8 +6,8 @@
 #include "base/simd.h"
 #include "constraint/elements.h"
 
-// R = e - |rest| e/|e| with e = rest + d. It is computed so that it is exactly zero at d = 0: |e| -
-// L = (2 rest.d + d.d) / (|e| + L). A flat hinge has L = 0 and R = e.
+// Returns R = e - |rest| e/|e| with e = rest + d. R is computed so that it is exactly zero at d =
+// 0: |e| - L = (2 rest.d + d.d) / (|e| + L). A flat hinge has L = 0 and R = e.
 INLINE v3 length_residual(v3 rest, v3 d, vreal rest_length)
 {
 	v3 e = v3_add(rest, d);

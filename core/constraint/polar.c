@@ -27,7 +27,7 @@ static double normalise(double a[3])
 	return length;
 }
 
-// Unit quaternion of a rotation matrix by rows r[row][column] [Shepperd 1978].
+// Computes the unit quaternion of a rotation matrix r[row][column] [Shepperd 1978].
 static void quaternion_of(double r[3][3], double q[4])
 {
 	double trace = r[0][0] + r[1][1] + r[2][2];
@@ -52,7 +52,7 @@ static void quaternion_of(double r[3][3], double q[4])
 
 void cau_polar_robust(const double a[9], double q[4])
 {
-	// Eigenvectors of A^T A, largest first.
+	// Computes the eigenvectors of A^T A, ordered by eigenvalue, the largest first.
 	const double *c0 = a, *c1 = a + 3, *c2 = a + 6;
 	const double metric[6] = {dot(c0, c0), dot(c1, c1), dot(c2, c2),
 	                          dot(c0, c1), dot(c0, c2), dot(c1, c2)};

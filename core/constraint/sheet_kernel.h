@@ -14,7 +14,7 @@ INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 	              v3_dot(f0[0], h[1]) + v3_dot(f0[1], h[0]) + v3_dot(h[0], h[1])};
 }
 
-// The residual of eq. 13 in F. In the diagonal system each constraint has its own step.
+// Returns the residual of eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 target_root,
                                                 const vreal dm_inverse[4], vreal g2, bool diagonal)
 {
@@ -126,7 +126,7 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	return (sheet_gradient){{v3_scale(w, r.c[0]), v3_scale(w, r.c[1])}};
 }
 
-// The gradient at vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
+// Returns the gradient at vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
 INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gradient stress,
                                 int i)
 {

@@ -14,11 +14,12 @@ const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int pr
 bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index);
 // Removes a live primitive and appends it to `removed`, with the hinges of a triangle.
 void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index);
-// Lists an edge among those that changed in the present tick.
+// Adds an edge to the list of edges that changed in the present tick.
 void cau_dissection_touch(cau_dissection *dissection, int32_t edge);
 // Returns the index of a triangle or a tetrahedron in the arrays of doses.
 int32_t cau_doses_place(const cau_tissue *tissue, int primitive, int32_t index);
-// Parts an edge in these layers (bits). It must not have parted in any of them before.
+// Parts an edge in these layers (bits). The edge must not have parted in any of these layers
+// before.
 void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t layers);
 
 // ---- doses.c

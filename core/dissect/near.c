@@ -70,8 +70,8 @@ static void own_faces(cau_near *near, const cau_face_table *faces, const int32_t
 		near->face_first[block_of[least_vertex(faces, f)] + 1]++;
 	for (int32_t b = 0; b < near->block_count; b++)
 		near->face_first[b + 1] += near->face_first[b];
-	for (int32_t f = faces->face_count;
-	     f-- > 0;) { // from the end of each block's range back to its start
+	// Each block's range is filled from its end back to its start.
+	for (int32_t f = faces->face_count; f-- > 0;) {
 		int32_t at = --near->face_first[block_of[least_vertex(faces, f)] + 1];
 		CAU_ASSERT_INDEX(at, faces->face_count);
 		near->face[at] = f;

@@ -71,7 +71,7 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point);
 // Computes the box outside which the temperature is ambient, m.
 void cau_heat_grid_box(const cau_heat_grid *grid, cau_vec3 *least, cau_vec3 *most);
 
-// Whether every node is at ambient (within 0.01 degC, see cau_heat_grid_advance).
+// True if every node is at ambient (within 0.01 degC, see cau_heat_grid_advance).
 bool cau_heat_grid_is_ambient(const cau_heat_grid *grid);
 
 // Returns the temperature of the warmest node, degC. If all nodes are at ambient, returns ambient.

@@ -17,20 +17,20 @@ static const double still_error_m = 2e-8; // error, m, that is allowed however s
 // Error of a tool's force, N, that is always allowed: a hundredth of the least force that viewers
 // show.
 static const double least_force_n = 1e-4;
-// Factor by which the relative error of a tool's force may exceed that of the vertices.
+// Factor by which the relative error of a tool's force may exceed the vertices' relative error.
 static const double force_share = 2;
 // Relative change of a tool's force, from step to step, up to which the force counts as steady.
 static const double steady = 0.25;
 // Relative change of a tool's force, from step to step, above which the step teaches something.
 static const double still_force = 0.002;
-// Factor on the learned force error, because contact constraints of this step may have a larger one
-// than those of earlier steps.
+// Factor on the learned force error, because contact constraints of this step may have a larger
+// error than those of earlier steps.
 static const double force_slack = 3;
 static const double untaught = 3; // amplification before any step has shown one
 // Relative force error before any step has shown one: all of the force may be wrong.
 static const double untaught_force = 1;
 static const double most_amplified = 300;
-// Least error that is reported, as a share of the wanted accuracy. Few increments do not resolve
+// Least error that is reported, as a share of the wanted accuracy. A few increments cannot resolve
 // smaller errors.
 static const double resolved = 0.2;
 // Safety factor on the error that follows from a measured contraction, which is a little too

@@ -13,7 +13,7 @@
 #include "solve/solver.h"
 
 enum {
-	CAU_LEAST_UPDATES = 2, // updates of rank 8 in a tick, while any element waits
+	CAU_LEAST_UPDATES = 2, // least updates of rank 8 in a tick while an element waits
 	CAU_MOST_UPDATES = 6,
 	// ticks of waiting after which an element is downdated as soon as possible
 	CAU_WAITING_TICKS = 2,

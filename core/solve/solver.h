@@ -23,7 +23,7 @@ enum {
 	// in one iteration costs 30 ns on one core of an AMD EPYC, so the limit is five milliseconds, a
 	// third of a tick of 60 Hz. Small tissue can therefore have many iterations.
 	CAU_SOLVER_EFFORT = 160000,
-	CAU_NEWTON_COST = 14,   // cost of an element in Newton's assembly, in elements of an iteration
+	CAU_NEWTON_COST = 14,   // cost of an element in Newton's assembly, over that in an iteration
 	CAU_VERTEX_CHUNK = 256, // vertices in one chunk of a vertex loop
 };
 

@@ -34,7 +34,7 @@ enum {
 	// most tasks; with more, more supernodes would be above all tasks and run on one thread
 	CAU_SWEEP_TASKS = 8,
 	CAU_NODE_COLUMNS = 128,     // most columns of a supernode
-	CAU_PACK_PARTS = 2,         // threads that pack supernodes together
+	CAU_PACK_PARTS = 2,         // most threads that pack supernodes at the same time
 	CAU_WHOLE_PANELS = 1 << 20, // bytes: a core's own cache; larger panels have narrow entries
 };
 

@@ -39,7 +39,7 @@ double cau_distance_capsule(cau_vec3 point, cau_vec3 a, cau_vec3 b, double radiu
 	return tube_distance(cau_add_scaled(from_a, -s, along), radius, along, gradient);
 }
 
-// The gradient inside the core box: towards the nearest face.
+// Returns the gradient inside the core box: towards the nearest face.
 static cau_vec3 nearest_face(cau_vec3 beyond, cau_vec3 sign)
 {
 	if (beyond.x >= beyond.y && beyond.x >= beyond.z)

@@ -23,7 +23,8 @@ static double weight_of(const rig *r, int kind, int32_t slot)
 static void test_targets_are_set_and_read(void **state)
 {
 	(void)state;
-	const double root[6] = {0.5, 0.75, 0.25, 0.125, -0.0625, 0.03125}; // exact in float
+	// all six values are exact in float
+	const double root[6] = {0.5, 0.75, 0.25, 0.125, -0.0625, 0.03125};
 	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig r;
 		make(&r, precision);

@@ -74,7 +74,7 @@ static void test_stress_by_hand(void **state)
 	}
 }
 
-// P = 2 mu (F - R) + lambda tr(R^T F - I) R, with R by plain averaging.
+// Checks P = 2 mu (F - R) + lambda tr(R^T F - I) R, with R by plain averaging.
 static void test_corotated_by_hand(void **state)
 {
 	(void)state;
@@ -131,8 +131,8 @@ static void test_energy_is_the_work_done(void **state)
 	}
 }
 
-// dF = -Psi P / |P|^2 with the printed St. Venant-Kirchhoff energy. The weight is (2 mu + 3 lambda)
-// times the volume.
+// Checks the printed energy constraint: dF = -Psi P / |P|^2 with the St. Venant-Kirchhoff energy.
+// The weight is (2 mu + 3 lambda) times the volume.
 static void test_energy_constraint_by_hand(void **state)
 {
 	(void)state;

@@ -100,8 +100,8 @@ static void test_target_is_the_polar_factor(void **state)
 	rig_finish(&r);
 }
 
-// The unordered pairs of eq. 12, each once: R = sum of C (dC/dF) / |dC/dF|^2, with C = f_a.f_b -
-// t_ab.
+// Checks the residual of the unordered pairs of eq. 12, each once: R = sum of C (dC/dF) /
+// |dC/dF|^2, with C = f_a.f_b - t_ab.
 static void test_linearised_is_equation_13(void **state)
 {
 	(void)state;

@@ -54,7 +54,7 @@ static void viscous_answer(rig *r, int triangle, double f[3][3], double stress[3
 		stress[k / 3][k % 3] -= law[k / 3][k % 3];
 }
 
-// F C : (E - R) t / h, times volume. For a triangle E and R have two axes.
+// Computes F C : (E - R) t / h, times volume. For a triangle E and R have two axes.
 static void expected_stress(const rig *r, int triangle, double f[3][3], double from[3][3],
                             double out[3][3])
 {

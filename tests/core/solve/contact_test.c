@@ -21,7 +21,7 @@ typedef struct pressed {
 	cau_contact_set *set;
 } pressed;
 
-// A block that is pinned at its bottom.
+// Makes a block that is pinned at its bottom.
 static void make_of(pressed *p, double friction, int32_t along, int32_t across, int32_t deep)
 {
 	rig_begin(&p->r);

@@ -11,7 +11,7 @@ static const double BALANCE_TOLERANCE = 1e-6;
 // Largest relative change of momentum in a converged step, which is rounding in double.
 static const double MOMENTUM_TOLERANCE = 1e-9;
 
-// A block that is pinned at its bottom and gripped at its top.
+// Makes a block that is pinned at its bottom and gripped at its top.
 static void make_gripped(rig *r, int model, int precision, int32_t threads)
 {
 	rig_begin(r);

@@ -276,7 +276,7 @@ static void test_dot_and_add_scaled(void **state)
 	assert_true(y[MOST - 1] == expected && fy[MOST - 1] == (float)expected);
 }
 
-// they make strips of 4 to 16 vertices, and a remainder
+// counts that make strips of 4 to 16 vertices, and a remainder
 enum { SPREAD_VERTICES = 45, SPREAD_COLUMNS = 37 };
 
 typedef struct spread_case {

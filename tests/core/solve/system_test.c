@@ -126,7 +126,7 @@ static void test_columns_are_the_root_of_an_element(void **state)
 	rig_finish(&r);
 }
 
-// The diagonal of eq. 7: M/dt^2 + sum of omega_m over the elements of a vertex.
+// Checks the diagonal of eq. 7: M/dt^2 + sum of omega_m over the elements of a vertex.
 static void test_diagonal_is_equation_7(void **state)
 {
 	(void)state;

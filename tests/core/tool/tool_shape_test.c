@@ -17,8 +17,8 @@
 
 enum { POINTS = 2000 };
 
-static const double BOX_M = 0.015;      // half the box of random points
-static const double ROUNDING_M = 1e-14; // rounding of distances near 0.1 m
+static const double BOX_M = 0.015;      // half the side of the box of random points
+static const double ROUNDING_M = 1e-14; // largest error: rounding of distances near 0.1 m
 static const double JAWS[] = {0, 0.3, 1};
 
 typedef void (*check)(const cau_tool_def *tool, double jaw, cau_tool_part part);
