@@ -113,7 +113,8 @@ INLINE m3 corotated_stress(law_terms t, rotation_lanes *polar, vreal *density)
 INLINE m3 energy_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
 	m3 p = stvk_stress(t, polar, density);
-	real least = (real)1e-10 * (2 * t.mu + 3 * t.lambda); // stress at a strain of 1e-10
+	// the added stress: that at a strain of 1e-10
+	real least = (real)1e-10 * (2 * t.mu + 3 * t.lambda);
 	vreal step = t.stiffness * *density / (m3_dot(p, p) + least * least);
 	return m3_scale(step, p);
 }

@@ -183,8 +183,8 @@ static double first_root(double a, double b, double c)
 	return root > 0 && root < 1 ? root : 1;
 }
 
-// Returns the share of its change that a constraint can take before it would pull, exceed its
-// largest push or, if it sticks, slip.
+// Returns the share of a constraint's change that the constraint can take. With a larger share the
+// constraint would pull, exceed its largest push or, if it sticks, slip.
 static double part_of_row(const active *a, int32_t i)
 {
 	const cau_contact_row *row = row_of(a, i);
@@ -213,9 +213,9 @@ static double largest_alone(const active *a)
 	return most;
 }
 
-// Returns the share of the change that all constraints can take. No change is longer than most_n:
-// constraints of tissue that is caught between the sides of a tool push against each other. They
-// have no solution, and their reactions would grow without bound.
+// Returns the share of the change that all constraints can take. No reaction may change by more
+// than most_n. The reason is that constraints of tissue that is caught between the sides of a tool
+// push against each other. They have no solution, and their reactions would grow without bound.
 static double part_of_all(const active *a, double most_n, bool *stopped)
 {
 	double largest = 0, part = 1;

@@ -438,7 +438,7 @@ bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, do
 {
 	bool any = false;
 	for (int32_t i = 0; i < set->row_count; i++) {
-		// a copy: set->row keeps the gap from which its reaction was computed
+		// measures in a copy: set->row keeps the gap from which its reaction was computed
 		cau_contact_row row = set->row[i];
 		if (row.corner_count == 1 || row.attached)
 			continue;

@@ -131,8 +131,9 @@ struct cau_contact_set {
 	// version of the factor from which each column was made
 	uint64_t column_version[CAU_MAX_COLUMNS];
 	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count): whole columns of A^-1, m/N
-	// Columns that constraints use, ascending. If more than half of all columns are used, the list
-	// has all. Only these columns of answer[] and step[] are up to date.
+	// Indices of the columns that constraints use, ascending. If more than half of all columns are
+	// used, the list has all columns. Only the listed columns of answer[] and step[] are up to
+	// date.
 	int32_t used_count;
 	int32_t used[CAU_MAX_COLUMNS];
 	uint64_t epoch;       // epoch of the factor; the columns are discarded when it changes

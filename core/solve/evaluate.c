@@ -101,7 +101,9 @@ double cau_solver_noise(const cau_step_solver *solver, double promise)
 	// Rounding of a single residual, which is less than that of a sum of thousands of terms.
 	double one_term = 0.06 * solver->kernels->vectors->rounding;
 	double of_residuals = one_term * sqrt(2 * solver->stiffness_j * elastic);
-	if (solver->collide) // with the larger limit, steps might drive a fold into itself
+	// if tissue touches, of_sum is the limit: with a larger one, steps might drive a fold into
+	// itself
+	if (solver->collide)
 		return of_sum;
 	return of_residuals > 2 * of_sum && promise < of_residuals ? of_residuals : of_sum;
 }

@@ -43,7 +43,8 @@ void cau_hold_prepare(cau_contact_set *set)
 		set->hold_count = 0;
 }
 
-// Solves for x (hold_count), one coordinate, in place.
+// Solves with the factor for one coordinate of the attachments. `x` (hold_count) is the right-hand
+// side on entry and the solution on return.
 static void substitute(const cau_contact_set *set, double *x)
 {
 	int32_t n = set->hold_count;

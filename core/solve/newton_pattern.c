@@ -159,7 +159,8 @@ static int compare_rows(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-// Columns of L while they are found: the rows of each, and its children in the elimination tree.
+// The columns of L while they are computed: the rows of each column, and the column's children in
+// the elimination tree.
 typedef struct growth {
 	cau_newton *newton;
 	// A's entries below the diagonal, by column, in the factor's order

@@ -207,7 +207,8 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 			sweep->top_column[sweep->top_count++] = node->first + j;
 		}
 	}
-	sweep->padded_n = pad(sweep->n) + PAD; // vectors of lanes may begin at any column
+	// padding at the end, because vectors of lanes may begin at any column
+	sweep->padded_n = pad(sweep->n) + PAD;
 	sweep->padded_top = pad(sweep->top_count);
 }
 

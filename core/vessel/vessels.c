@@ -252,7 +252,7 @@ static void look_at_station(cau_vessels *vessels, int32_t index,
 	for (int i = 1; i < CAU_STATION_POINTS; i++)
 		vessels->holes[index] += is_gone(around, &station->point[i]);
 	if (vessels->holes[index] == CAU_STATION_POINTS - 1)
-		vessels->parted[index] = 1; // the whole wall is gone
+		vessels->parted[index] = 1; // no part of the wall is left, so the vessel is parted
 }
 
 // ---- seals

@@ -73,7 +73,7 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(cau_image_show(image, &a, 1, false), (size_t)PAGES * page);
 	assert_ptr_equal(cau_image_of(KEY, &b, 1, NULL), image);
 	assert_int_equal(cau_image_show(image, &b, 1, false), (size_t)(PAGES - 1) * page);
-	// one mapping of a, two around the changed page of b
+	// the image has one mapping in a, and two in b, around the changed page
 	assert_int_equal(mappings("rw-p", NULL), 3);
 	assert_true(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&b, 20));

@@ -16,7 +16,7 @@
 static const double PI = 3.14159265358979323846, SIDE_M = 1e-4;
 static const double WATER_HEAT = 4186, BOILING = 2.257e6, DRY_W_MK = 0.2;
 
-// Returns the remaining share of a cosine over the bar, 10 K high, after a time.
+// Returns the share that is left of a cosine of temperature over the bar, 10 K high, after a time.
 static double cosine_left(double pull, double seconds)
 {
 	enum { LENGTH = 40 };

@@ -123,7 +123,7 @@ static void test_stable_at_the_limit(void **state)
 	for (int64_t i = 0; i < node_count(&grid); i++) {
 		int64_t n = grid.nodes, x = i % n, y = i / n % n, z = i / (n * n);
 		if (x * y * z == 0 || x == n - 1 || y == n - 1 || z == n - 1)
-			continue; // the boundary is at ambient
+			continue; // boundary nodes stay at ambient
 		int odd = (x + y + z) & 1;
 		grid.field[0].temperature[i] =
 			(float)(AMBIENT_C + (odd ? 60 : -60) + random_between(&random, -1, 1));
@@ -165,7 +165,8 @@ static void test_refusals(void **state)
 	// with this step the hot part would fit between the nodes
 	tool.grid_step_m = tool.hot_radius_m * 1.001;
 	expect_refusal(&tool, TICK_S, "grid_step_m");
-	tool = tool_with_defaults(CAU_TOOL_SPATULA); // a spatula is thinner than its hot radius
+	// the spatula's blade is thinner than the tool's hot radius, so the step is too large
+	tool = tool_with_defaults(CAU_TOOL_SPATULA);
 	tool.grid_step_m = tool.hot_radius_m / 2;
 	expect_refusal(&tool, TICK_S, "grid_step_m");
 	tool.grid_step_m = NAN;
