@@ -12,9 +12,9 @@
 
 #include "cautery/assert.h"
 
-// A process may have 65,530 mappings by default. Runs of equal pages that are shorter than
-// LEAST_RUN_BYTES are not mapped. A session gets at most twice as many mappings as it has mapped
-// runs.
+// LEAST_RUN_BYTES: shortest run of equal pages that is mapped. MOST_RUNS: most runs that are
+// mapped. Runs are limited in length and number because a process may have 65,530 mappings by
+// default. A session gets at most twice as many mappings as it has mapped runs.
 enum { LEAST_RUN_BYTES = 16 << 10, MOST_RUNS = 64 };
 
 typedef struct image_part {
@@ -45,8 +45,8 @@ static size_t pages_of(const cau_image *image, const cau_pages *pages)
 	return pages->byte_count / image->page;
 }
 
-// Between arrays there are bytes that the address sanitizer forbids to read. same_page and
-// copy_pages read them as part of a page.
+// True if two pages are equal. Between arrays there are bytes that the address sanitizer forbids to
+// read. same_page and copy_pages read these bytes as part of a page.
 __attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b,
                                                               size_t bytes)
 {
@@ -67,8 +67,8 @@ __attribute__((no_sanitize("address"))) static void copy_pages(char *to, const c
 }
 
 // Maps pages of the image over a session's pages. The system checks the number of mappings and the
-// address space before it removes the old pages. It charges the new pages as it did the old ones.
-// So a failed call leaves the old pages in place.
+// address space before it removes the old pages. The new pages need no more reserved memory than
+// the old ones. So a failed call leaves the old pages in place.
 static bool map_over(const cau_image *image, size_t first, size_t count, char *start)
 {
 	return mmap(start, count * image->page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED,
@@ -91,8 +91,8 @@ static void destroy(cau_image *image)
 	free(image);
 }
 
-// Assigns a page of the file to each page that was touched, in order. Returns false if there is
-// none, or if they are too many.
+// Assigns a page of the file to each page that was touched, in order. Returns false if no page was
+// touched, or if too many were.
 static bool lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 {
 	image->part_count = count < CAU_IMAGE_PARTS ? count : CAU_IMAGE_PARTS;
@@ -209,7 +209,7 @@ cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, boo
 		return image;
 	cau_image *own = make(key, pages, count); // without the lock, because the copy takes long
 	pthread_mutex_lock(&lock);
-	image = hold(key); // another thread may have made one meanwhile
+	image = hold(key); // another thread may have made the image meanwhile
 	if (!image && own) {
 		own->holders = 1;
 		own->next = images;
@@ -251,7 +251,7 @@ int32_t cau_image_count(void)
 }
 
 // ---- mapping
-// Work on one session: its equal pages are replaced by the image's.
+// The work of mapping an image over one session's pages that are equal to the image's.
 typedef struct showing {
 	const cau_image *image;
 	const image_part *part;
@@ -269,9 +269,9 @@ static bool is_equal(const showing *s, size_t k)
 	       (s->equal || same_page(view, s->start + k * s->image->page, s->image->page));
 }
 
-// Finds the next run of equal pages at or after *first. Sets *first to its start and returns its
-// length; 0 at the end. Pages that are adjacent in a part and in the image are adjacent in its file
-// too.
+// Finds the next run of equal pages at or after *first. Sets *first to the run's start and returns
+// its length; 0 at the end. Pages that are adjacent in a part and in the image are adjacent in the
+// image's file too.
 static size_t find_run(const showing *s, size_t *first)
 {
 	size_t k = *first, length = 0, least = LEAST_RUN_BYTES / s->image->page;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Memory that sessions of equal tissue share. An image is a copy of one session's pages, in a file
-// in memory that is no longer writable. Private mappings of the file replace another session's
-// pages that have equal bytes. The first write to a page copies the page for its session. So no
-// session sees the writes of another. Which pages are equal need not be known beforehand.
+// in memory that is no longer writable. Private mappings of this file replace another session's
+// pages that have equal bytes. The first write to a page copies the page for the session that
+// writes. So no session sees the writes of another. Which pages are equal need not be known
+// beforehand.
 //
 // Pages that were never touched are in no image and are not read, because the system keeps no
 // memory for them. They are most of a small session's pages.
@@ -25,17 +26,18 @@ enum {
 
 typedef struct cau_image cau_image;
 
-// Returns the image of this key and holds it once more. If there is none, makes one from these
-// pages. Returns NULL if no page was touched, if the system does not allow images, or if there is
-// no memory. Pages with the same position in the list are compared, so the list should have the
-// same order each time. *made (may be NULL) is set to whether the image was made from these pages.
+// Returns the image of this key and holds it once more. If there is no such image, makes an image
+// from these pages. Returns NULL if no page was touched, if the system does not allow images, or if
+// there is no memory. Pages with the same position in the list are compared, so the list should
+// have the same order each time. *made (may be NULL) is set to whether the image was made from
+// these pages.
 cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count, bool *made);
-// Maps the image over the pages that are equal to the image's, and returns their bytes. `equal`:
-// all are known to be equal, because the image was made from them and nothing has written to them
-// since. Then no page is compared, which saves most of the time.
+// Maps the image over the pages that are equal to the image's pages, and returns the bytes that
+// were mapped. `equal`: all pages are known to be equal, because the image was made from them and
+// nothing has written to them since. Then no page is compared, which saves most of the time.
 size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count, bool equal);
 // Releases one hold. The last release deletes the image. Its mappings stay until their pages are
 // released.
 void cau_image_release(cau_image *image); // accepts NULL
 
-int32_t cau_image_count(void); // images of the whole program
+int32_t cau_image_count(void); // returns the number of images in the whole program

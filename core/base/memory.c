@@ -14,7 +14,8 @@
 #include <sanitizer/asan_interface.h>
 #define HIDE(start, bytes) ASAN_POISON_MEMORY_REGION(start, bytes)
 #define SHOW(start, bytes) ASAN_UNPOISON_MEMORY_REGION(start, bytes)
-enum { GAP = 64 }; // between two arrays, so that the sanitizer detects accesses beyond an array
+// bytes between two arrays, by which the sanitizer detects accesses beyond an array
+enum { GAP = 64 };
 #else
 #define HIDE(start, bytes) ((void)(start), (void)(bytes))
 #define SHOW(start, bytes) ((void)(start), (void)(bytes))
@@ -25,7 +26,7 @@ enum {
 	ALIGNMENT = 64,
 	PAGE = 4096,
 	LEAST_BLOCK = 64 << 10,
-	MOST_BLOCK = 1 << 20, // larger arrays get a block of their own
+	MOST_BLOCK = 1 << 20, // larger arrays have a block of their own
 };
 
 // A block's header, at the start of its pages.
@@ -62,7 +63,8 @@ static bool has_room(const struct cau_arena_block *block, size_t total)
 	return total <= block->pages.byte_count - block->used;
 }
 
-// Returns a block with `total` free bytes, or a new block. NULL if there is no memory.
+// Returns a block with `total` free bytes; it allocates a block if none has them. NULL if there is
+// no memory.
 static struct cau_arena_block *block_for(cau_arena *arena, size_t total)
 {
 	for (struct cau_arena_block *b = arena->blocks; b; b = b->next)

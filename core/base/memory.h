@@ -18,7 +18,8 @@ typedef struct cau_arena {
 // cau_arena_finish frees the array.
 void *cau_arena_array(cau_arena *arena, size_t count, size_t size);
 
-// Copies `count` elements of `size` bytes to an array like that of cau_arena_array.
+// Copies `count` elements of `size` bytes to an array as cau_arena_array makes it. NULL if there is
+// no memory.
 void *cau_arena_copy(cau_arena *arena, const void *source, size_t count, size_t size);
 
 void cau_arena_finish(cau_arena *arena);

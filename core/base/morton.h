@@ -17,7 +17,7 @@ static inline uint32_t cau_morton_spread(uint32_t x) // moves 10 bits to every t
 	return (x | x << 2) & 0x09249249u;
 }
 
-// The key of a point in the unit cube.
+// Returns the key of a point in the unit cube.
 static inline uint32_t cau_morton(const double place[3])
 {
 	const double most = (1 << CAU_MORTON_BITS) - 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory allocated directly from the system, for large allocations with a short life. It returns to
-// the system at once. The heap would keep it resident, in pieces that may not fit the next
-// allocation.
+// Memory allocated directly from the system, for large allocations with a short life. When it is
+// released, it returns to the system at once. The heap would keep it resident, in pieces that may
+// not fit the next allocation.
 #pragma once
 
 #include <stdbool.h>

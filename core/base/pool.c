@@ -10,15 +10,17 @@
 
 #include "cautery/assert.h"
 
-// Loops follow each other within microseconds during a step. So helpers spin for a while before
-// they sleep. Between steps they sleep.
+// Rounds of waiting before a helper sleeps. Loops follow each other within microseconds during a
+// step. So helpers spin for a while before they sleep. Between steps they sleep.
 enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
 
-// If other programs use the machine, a helper may lose its core in the middle of a part. The caller
-// then waits for as long as the scheduler decides, hundreds of times a step. So after such a wait
-// the caller works alone for a while, and twice as long each time this happens again soon. The time
-// is counted in parts, at least for some milliseconds. A part takes a few microseconds, while a
-// loop takes a hundred times longer in a large session than in a small one.
+// LEAST_ALONE, MOST_ALONE: least and most parts that the caller runs alone after a long wait. CALM:
+// parts without a long wait after which the count starts at LEAST_ALONE again. If other programs
+// use the machine, a helper may lose its core in the middle of a part. The caller then waits for as
+// long as the scheduler decides, hundreds of times a step. So after a long wait the caller runs
+// some thousand parts alone, and twice as many each time a long wait follows soon. Parts are
+// counted, not loops. A part takes a few microseconds, while a loop takes a hundred times longer in
+// a large session than in a small one.
 enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // all in parts
 
 struct cau_pool {
@@ -34,8 +36,8 @@ struct cau_pool {
 	_Atomic uint64_t ticket;
 	_Atomic int32_t parts_left;
 	_Atomic int32_t sleepers;
-	// used by the caller only. alone: parts still to run alone. next_alone: the next such count.
-	// calm: parts since the last long wait.
+	// Only the caller uses these members. alone: parts that the caller will still run alone.
+	// next_alone: value of `alone` after the next long wait. calm: parts since the last long wait.
 	int32_t alone, next_alone, calm;
 	atomic_bool stop;
 	pthread_mutex_t lock;

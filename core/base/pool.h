@@ -9,8 +9,8 @@ typedef struct cau_pool cau_pool;
 
 enum { CAU_POOL_PARTS = 65535 }; // most parts of one loop
 
-// Creates a pool in which `thread_count` threads run each loop. The caller's thread is one of them,
-// so 1 starts no thread. Returns NULL if there is no memory.
+// Creates a pool in which `thread_count` threads run each loop. The caller's thread is one of these
+// threads, so a count of 1 starts no thread. Returns NULL if there is no memory.
 cau_pool *cau_pool_create(int32_t thread_count);
 void cau_pool_destroy(cau_pool *pool); // accepts NULL
 int32_t cau_pool_thread_count(const cau_pool *pool);

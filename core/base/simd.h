@@ -42,7 +42,7 @@ typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alia
 
 #define INLINE static inline __attribute__((always_inline))
 
-// The intrinsic of this tier and precision, if there is one.
+// V_PREFIX(name) is this tier's intrinsic, if the tier has intrinsics.
 #if defined(__AVX512F__)
 #define V_PREFIX(name) _mm512_##name
 #define V_INTEGER(a) ((__m512i)(a))
@@ -80,8 +80,8 @@ INLINE void v_prefetch(const void *array, int32_t slot)
 {
 	__builtin_prefetch((const real *)array + slot);
 }
-// Narrow numbers: multiples of a scale that is stored separately. For data that are read far more
-// often than written, and need not be exact.
+// Narrow numbers are 16-bit multiples of a scale that is stored separately. They are for data that
+// are read far more often than written, and need not be exact.
 enum { NARROW_MOST = INT16_MAX };
 typedef int16_t narrow_lanes
 	__attribute__((vector_size(LANES * sizeof(int16_t)), may_alias, aligned(2)));
@@ -97,7 +97,7 @@ INLINE vreal v_load_narrow(const int16_t *from)
 #endif
 }
 // Makes the compiler read values again that were loaded before. Otherwise it would keep every value
-// of an element's twenty arrays on the stack, and a read costs less than that write.
+// of an element's twenty arrays on the stack. A second read costs less than a write to the stack.
 INLINE void v_forget(void)
 {
 	__asm__ volatile("" ::: "memory");
@@ -161,7 +161,8 @@ INLINE vreal v_sqrt(vreal a)
 #endif
 }
 
-// Sums in double. Lanes are widened (two halves of floats are added), and finally summed by halves.
+// A vector of sums in double. Lanes are widened (two halves of floats are added), and finally
+// summed by halves.
 enum { SUM_LANES = VECTOR_BYTES / sizeof(double) };
 typedef double vsum __attribute__((vector_size(VECTOR_BYTES)));
 INLINE vsum v_widen(vreal a)
@@ -299,9 +300,10 @@ INLINE sym3 m3_transpose_times(m3 a, m3 b)
 
 // ---- vertices: four reals each (x, y, z, unused)
 // v3_gather reads one vertex for each lane. v3_add_to adds to one vertex for each lane, lane by
-// lane, so that lanes may have the same vertex. `at` (LANES) is the index in `field` of each lane's
-// vertex, in reals, in sixteen bits or `wide`. In float, four vertices are transposed at a time
-// inside each 128-bit part of a vector. Part j of row k is vertex 4 j + k.
+// lane, because several lanes may have the same vertex. `at` (LANES) has the index in `field` of
+// each lane's vertex, in reals. The indices have sixteen bits, or 32 if `wide`. In float, four
+// vertices are transposed at a time inside each 128-bit part of a vector. Part j of row k is vertex
+// 4 j + k.
 INLINE int32_t place_of(const void *at, int wide, int lane)
 {
 	return wide ? ((const int32_t *)at)[lane] : ((const uint16_t *)at)[lane];
@@ -334,8 +336,8 @@ INLINE void vertex_row_add(real *field, const void *at, int wide, int k, vreal r
 		_mm_store_ps(vertex, _mm_add_ps(_mm_load_ps(vertex), u.part[j]));
 	}
 }
-// The low or high halves of each part of a and b, interleaved by single reals (row_) or by pairs
-// (pair_).
+// Interleave the low or high halves of each part of a and b: by single reals (row_) or by pairs of
+// reals (pair_).
 INLINE vreal row_low(vreal a, vreal b)
 {
 	return V_CALL(unpacklo, a, b);

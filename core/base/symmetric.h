@@ -7,6 +7,6 @@
 // v[row][column]).
 void cau_symmetric_eigen3(const double a[6], double value[3], double v[3][3]);
 
-// Computes A^power by the eigenvalues. Each eigenvalue counts as at least `floor`.
+// Computes A^power by the eigenvalues. Eigenvalues below `floor` are replaced by `floor`.
 void cau_symmetric_power3(const double a[6], double power, double floor, double out[6]);
 void cau_symmetric_power2(const double a[3], double power, double floor, double out[3]);

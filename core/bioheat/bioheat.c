@@ -8,14 +8,17 @@
 static const double water_heat_j_kgk = 4186; // specific heat of water
 static const double boiling_j_kg = 2.257e6;  // enthalpy of evaporation at 100 degC
 static const double dry_w_mk = 0.2;          // conductivity of dried tissue
-// Rise of the electric conductivity per kelvin, bovine liver.
+// Rise of the electric conductivity per kelvin, as a share of the conductivity at 37 degC; of
+// bovine liver.
 static const double electric_per_k = 0.0182;
 static const double gas_j_molk = 8.314462618;
 static const double zero_k = 273.15;
-// Below it, the constants that are known for burns do not hold.
+// Temperature, degC, above which damage is computed. Below it, the constants that are known for
+// burns do not hold.
 static const double damage_from_c = 43;
 static const double stable_share = 0.9; // share of the longest stable step that is used
-// At most this far from ambient, tissue is not damaged and no picture shows it.
+// Largest distance from ambient, K, of tissue that is set to ambient. Such tissue is not damaged,
+// and the difference is visible in no picture.
 static const double cold_k = 0.5;
 
 cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capacity,
@@ -78,8 +81,8 @@ double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell)
 	return dry_w_mk + (wet - dry_w_mk) * bioheat->water[cell];
 }
 
-// The electric conductivity rises until the cell boils. It falls with the square of the water that
-// is left (Archie's law).
+// Returns the electric conductivity, S/m. It rises until the cell boils. It also falls with the
+// square of the water that is left (Archie's law).
 double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 {
 	double warm = fmin(bioheat->temperature[cell], CAU_BOILING_C) - CAU_BODY_C;
@@ -87,7 +90,8 @@ double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 	return material_of(bioheat, cell)->electric_s_m * (1 + electric_per_k * warm) * wet * wet;
 }
 
-// The dry mass keeps its heat capacity. The water that boils off takes its heat capacity along.
+// Returns the heat capacity of a cell, J/K. The dry mass keeps its heat capacity. The water that
+// boils off takes its heat capacity along.
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell)
 {
 	const cau_bioheat_material *material = material_of(bioheat, cell);
@@ -119,7 +123,8 @@ void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 	cau_cells_sever(&bioheat->cells, cell);
 }
 
-// Water that boils off takes its own heat along, besides the enthalpy of evaporation.
+// Returns the rate of vapour, kg/s. Water that boils off takes its own heat along, besides the
+// enthalpy of evaporation.
 double cau_bioheat_vapour(const cau_bioheat *bioheat)
 {
 	double warmth = water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);
@@ -204,7 +209,7 @@ static double longest_part_s(cau_bioheat *bioheat, const cau_blade *blade, int32
 	return stable_share * longest;
 }
 
-// Boils water of a cell at 100 degC, which has taken up `over_j` more energy. If the cell gets dry,
+// Boils water of a cell at 100 degC that has taken up `over_j` more energy. If the cell gets dry,
 // the rest of the energy warms the cell.
 static void boil(cau_bioheat *bioheat, int32_t cell, double over_j)
 {

@@ -35,7 +35,8 @@ typedef struct cau_blade {
 
 typedef struct cau_contact_cell { // contact of a blade with a cell
 	int32_t blade, cell;
-	double over_length_m; // area of contact over the length from the contact to the cell's middle
+	// area of contact over the length from the contact to the middle of the cell
+	double over_length_m;
 } cau_contact_cell;
 
 typedef struct cau_bioheat {
@@ -65,7 +66,7 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
                               const cau_bioheat_material *material, int32_t material_count,
                               double ambient_c, cau_arena *arena, cau_error *error);
 
-// Adds a cell at ambient temperature, with all its water. Results and errors are those of
+// Adds a cell at ambient temperature, with all its water. Returns the same results as
 // cau_cells_add.
 int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t material, float fill);
 
@@ -81,8 +82,8 @@ enum { CAU_BIOHEAT_PARTS = 512 };
 bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count,
                       double duration_s);
 
-// Return the present conductivity (W/(m K)), electric conductivity (S/m) and heat capacity (J/K) of
-// a cell.
+// These functions return the present properties of a cell: conductivity (W/(m K)), electric
+// conductivity (S/m) and heat capacity (J/K).
 double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell);
 double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell);
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell);

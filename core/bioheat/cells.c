@@ -6,7 +6,7 @@
 
 #include "cautery/assert.h"
 
-// Least number of buckets per cell, so that a search ends after a few buckets.
+// Least number of buckets for each cell, so that a search ends after a few buckets.
 enum { BUCKETS_PER_CELL = 2 };
 
 static int32_t bucket_count_for(int32_t capacity)
@@ -38,8 +38,8 @@ cau_status cau_cells_create(cau_cells *cells, double side_m, int32_t capacity, c
 	return CAU_OK;
 }
 
-// Returns the bucket of a position: that of its cell, or the empty bucket for a new cell. Large odd
-// factors spread neighbours.
+// Returns the bucket of a position. This is the bucket of the cell there, or an empty bucket for a
+// new cell. Large odd factors spread neighbours over the buckets.
 static int32_t bucket_of(const cau_cells *cells, const int32_t place[3])
 {
 	uint32_t hash = (uint32_t)place[0] * 73856093u ^ (uint32_t)place[1] * 19349663u ^

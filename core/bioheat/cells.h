@@ -13,9 +13,9 @@ enum {
 	CAU_CELL_MATERIALS = 256,
 };
 
-// A pull-back is limited to between 1/32 and 32. Jaws compress tissue to a fifth, which makes a
-// pull-back of 25. An element that is compressed further counts as no flatter. The limit is a power
-// of two, so the limit and its inverse are exact as floats, and snapshots can check for them.
+// Largest pull-back; the least is 1/32. Jaws compress tissue to a fifth, which makes a pull-back of
+// 25. An element that is compressed further conducts as one at the limit. The limit is a power of
+// two, so the limit and its inverse are exact as floats, and snapshots can check for them.
 #define CAU_PULL_MOST 32.0
 
 typedef struct cau_cells {

@@ -7,10 +7,11 @@
 #include "base/vector.h"
 #include "cautery/assert.h"
 
-// Approximate distance to the return electrode. The current of a sheet spreads in its plane, where
-// the potential falls with the logarithm of the distance. So the result depends on this distance.
+// Approximate distance to the return electrode, m. The current of a sheet spreads in the sheet's
+// plane, where the potential falls with the logarithm of the distance. So the result depends on
+// this distance.
 static const double return_m = 0.03;
-// Dry tissue conducts this share of its initial conductivity. If it were 0, the matrix would be
+// Share of its initial conductivity that dry tissue still has. With 0, the matrix would be
 // singular.
 static const double dry_share = 1e-4;
 
@@ -212,8 +213,8 @@ static void iterate(cau_current *current, const cau_cells *cells, double *x, dou
 
 // ---- results
 
-// Returns the heat of a cell at 1 V. The heat of a face is divided between its two cells. The heat
-// of a contact goes to the contact's cell.
+// Returns the heat of a cell at 1 V, W. The heat of a face is divided equally between the face's
+// two cells. The heat of a contact is added to the contact's cell.
 static double heat_at_1v(const cau_current *current, const cau_cells *cells, int32_t i)
 {
 	const double *x = current->vector[0];
@@ -261,7 +262,8 @@ void cau_current_solve(cau_current *current, const cau_bioheat *bioheat, double 
 		x[i] = current->potential[current->cell[i]];
 	}
 	iterate(current, &bioheat->cells, x, tolerance, most);
-	for (int32_t i = 0; i < current->count; i++) // the extreme potentials are at electrodes
+	// the least and the greatest potential are at electrodes
+	for (int32_t i = 0; i < current->count; i++)
 		current->potential[current->cell[i]] = x[i] = fmax(fmin(x[i], 1), 0);
 	read_currents(current, &bioheat->cells);
 }

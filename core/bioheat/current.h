@@ -9,13 +9,14 @@
 typedef struct cau_electrode_cell { // a cell that touches an electrode
 	int32_t cell;
 	double over_length_m; // area over the length from the electrode to the cell's middle
-	double potential;     // potential of that electrode: 1, or 0 for the other jaw
+	double potential;     // potential of the electrode: 1, or 0 for the other jaw
 } cau_electrode_cell;
 
 typedef struct cau_current {
 	int32_t electrode_count;
 	cau_electrode_cell *electrode; // (capacity), set by callers before a solve
-	// (capacity): V at 1 V; the next solve starts from it, so it is part of the state.
+	// (capacity): V at 1 V between the electrodes. The next solve starts from these potentials, so
+	// they are part of the state.
 	double *potential;
 	// Results of the last solve.
 	double conductance_s; // conductance between the electrodes, or to the return electrode: heat at

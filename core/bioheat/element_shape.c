@@ -3,11 +3,11 @@
 
 #include <math.h>
 
-// Points along each axis of a cell; the share of tissue is counted in 27ths.
+// Points along each axis of a cell. With three, the share of tissue is counted in 27ths.
 enum { SUBPOINTS = 3 };
 
-// Subpoints are shifted by this share of a cell. So no subpoint is on a face of a regular mesh,
-// where two elements would count it.
+// Shift of a cell's points, as a share of the cell along each axis. So no point is on a face of a
+// regular mesh, where two elements would count it.
 static const double shift[] = {0.0137, -0.0071, 0.0043};
 
 // ---- edges
@@ -18,9 +18,9 @@ static cau_vec3 normal_of(const cau_vec3 corner[3])
 	return cau_unit_or(normal, (cau_vec3){0, 0, 1});
 }
 
-// Returns a unit vector at a right angle to `axis`. If the axis turns, the vector follows, but
-// jumps if another entry of the axis becomes the least. The cells of a link then turn around the
-// link.
+// Returns a unit vector at a right angle to `axis`. If the axis turns, the vector turns with it,
+// but jumps when another entry of the axis becomes the least. The cells of a link then turn around
+// the link.
 static cau_vec3 square_to(cau_vec3 axis)
 {
 	double x = fabs(axis.x), y = fabs(axis.y), z = fabs(axis.z);
@@ -82,7 +82,7 @@ cau_vec3 cau_element_corner(const cau_element_shape *shape, int corner)
 	return corner ? cau_add(shape->first, shape->edge[corner - 1]) : shape->first;
 }
 
-// Whether the element contains a point at these coordinates. The element is enlarged by `margin` in
+// True if the element contains a point at these coordinates. The element is enlarged by `margin` in
 // coordinates, and by margin_m in thickness or radius. A margin below 0 makes the element smaller.
 static bool holds(const cau_element_shape *shape, cau_vec3 at, cau_vec3 margin, double margin_m)
 {

@@ -44,7 +44,7 @@ cau_vec3 cau_element_coordinates(const cau_element_shape *shape, cau_vec3 point)
 // Returns a corner at rest, m.
 cau_vec3 cau_element_corner(const cau_element_shape *shape, int corner);
 
-// Whether a point is in the element. A sheet is enlarged by margin_m on each side, a link by
+// True if a point is in the element. A sheet is enlarged by margin_m on each side, a link by
 // margin_m in its radius.
 bool cau_element_holds(const cau_element_shape *shape, cau_vec3 point, double margin_m);
 
@@ -63,7 +63,7 @@ bool cau_cell_box_next(const cau_cell_box *box, int32_t place[3]);
 // Returns the middle of the cell at `place`.
 cau_vec3 cau_element_cell_middle(const cau_element_shape *shape, const int32_t place[3]);
 
-// Whether the cell at `place` may be partly in the element. Also true for some cells close to the
+// True if the cell at `place` may be partly in the element. Also true for some cells close to the
 // element.
 bool cau_element_may_meet(const cau_element_shape *shape, const int32_t place[3]);
 

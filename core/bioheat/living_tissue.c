@@ -3,8 +3,8 @@
 
 #include "cautery/assert.h"
 
-// The damage constants of liver are used for all tissues: ln of 7.39e39 1/s, and E_a. README.md
-// says what that means for fat.
+// The damage constants of liver, which are used for all tissues: ln of 7.39e39 1/s, and E_a.
+// README.md says what that means for fat.
 #define DAMAGE .damage_log_rate = 91.8, .damage_energy_j_mol = 2.577e5
 
 #define MUSCLE                                                                                     \

@@ -9,11 +9,12 @@
 #include "bioheat/living_tissue.h"
 #include "cautery/assert.h"
 
-// A cell outside its element is at most this many times farther from it than at rest. Tools miss
-// cells that stretching moves farther away.
+// Largest stretch between an element and its cells that lie outside: such a cell is at most this
+// many times farther from the element than at rest. Tools miss cells that stretching moves farther
+// away.
 static const double stretch_most = 2;
 
-static const double surface_w_m2k = 20; // to still gas, with radiation
+static const double surface_w_m2k = 20; // conductance from the surface to still gas, with radiation
 
 // ---- elements
 
@@ -275,7 +276,7 @@ void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const doubl
 	double before = cau_dot(rest[0], cau_cross(rest[1], rest[2]));
 	double ratio = cau_edges_invert(edge, across) / before;
 	if (!(ratio > 0) || !isfinite(ratio))
-		return; // inverted or flat: the last value stays
+		return; // inverted or flat: the last value remains
 	for (int axis = 0; axis < 3; axis++) {
 		cau_vec3 row = {0};
 		for (int i = 0; i < 3; i++) {
@@ -417,7 +418,7 @@ static bool stamp_orphans(cau_tissue_cells *cells, uint8_t *const alive[CAU_PRIM
 }
 
 // Gives a cell to the element of its first neighbour whose element still exists. Returns whether
-// there is one.
+// there is such a neighbour.
 static bool follow_neighbour(cau_tissue_cells *cells, int32_t cell, int32_t orphan)
 {
 	for (int side = 0; side < CAU_CELL_SIDES; side++) {
@@ -430,8 +431,8 @@ static bool follow_neighbour(cau_tissue_cells *cells, int32_t cell, int32_t orph
 	return false;
 }
 
-// Gives cells to the elements of their neighbours: first the cells next to existing tissue, then
-// their neighbours, and so on.
+// Gives cells to the elements of their neighbours. The cells next to existing tissue are first,
+// then their neighbours, and so on.
 static void spread(cau_tissue_cells *cells, int32_t orphan, int32_t given, int32_t found)
 {
 	for (int32_t done = 0; done < found; done++)

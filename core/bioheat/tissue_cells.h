@@ -65,10 +65,10 @@ void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, cons
 // Sets the cell's pull-back (cells.h) from the deformation of its owner.
 void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position);
 
-// Whether the element's cells no longer connect its vertices.
+// True if the element's cells no longer connect its vertices.
 bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element);
 
-// Whether the element may have cells at positions from `least` to `most`.
+// True if the element may have cells at positions from `least` to `most`.
 bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, const int32_t least[3],
                             const int32_t most[3]);
 
@@ -90,6 +90,6 @@ void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from);
 // Continues `hash` with the state of all cells.
 uint64_t cau_tissue_cells_hash(const cau_tissue_cells *cells, uint64_t hash);
 
-// Returns the temperature at a vertex, degC: the mean of the cells around its rest position.
-// Without such cells it is ambient.
+// Returns the temperature at a vertex, degC: the mean of the cells around the vertex's rest
+// position, or ambient if there are no such cells.
 double cau_tissue_cells_temperature(const cau_tissue_cells *cells, int32_t vertex);

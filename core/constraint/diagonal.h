@@ -4,9 +4,9 @@
 // (vertices of m).
 //
 // A residual R in F moves positions along R G^T. The position step that makes C = |R| zero to first
-// order is |R|^2 / |R G^T|^2 (R G^T). Weighted with omega_m, this step is the gradient w R G^T of
-// the F-space system times the scale below. So one kernel serves both systems. For a single
-// constraint the step is exactly that of eq. 13 and 17.
+// order is |R|^2 / |R G^T|^2 (R G^T). This step weighted with omega_m is the gradient w R G^T of
+// the F-space system, times the scale that diagonal_scale returns. So one kernel serves both
+// systems. For a single constraint the step is exactly that of eq. 13 and 17.
 #pragma once
 
 #include "base/simd.h"
@@ -27,7 +27,8 @@ INLINE vreal diagonal_scale_sheet(const v3 r[2], const vreal m[4], vreal g2_per_
 	                      v3_dot(a, a) + v3_dot(b, b) + v3_dot(c, c), g2_per_vertex);
 }
 
-// `m` is D_m^-1, row-major. Vertex i + 1 gets R (row i of D_m^-1)^T.
+// Returns the scale of a tetrahedron. `m` is D_m^-1, row-major. Vertex i + 1 gets R (row i of
+// D_m^-1)^T.
 INLINE vreal diagonal_scale_fat(m3 r, const vreal m[9], vreal g2_per_vertex)
 {
 	v3 sum = v3_zero();

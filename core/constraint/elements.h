@@ -5,9 +5,10 @@
 // has weight 0 and vertex 0. Arrays marked `real` are float or double, as the session's precision
 // says. A removed element keeps its slot with weight 0.
 //
-// Triangles and tetrahedra are handled in pairs that share an edge or a face (pairs.h). One is in a
-// batch with an even number, its partner in the same lane of the next batch. Both list their shared
-// vertices in the same order, and the apex last. D_m follows this order.
+// Triangles and tetrahedra are handled in pairs that share an edge or a face (pairs.h). The first
+// element of a pair is in a batch with an even number, the second in the same lane of the next
+// batch. Both elements list their shared vertices in the same order, and the apex last. D_m follows
+// this order.
 //
 // The local step is divided into shares of consecutive slots. A share has a record for each vertex
 // of its elements: four reals (x, y, z, 0). The share first copies its vertices' displacements, in
@@ -23,16 +24,16 @@
 #include "cautery/scene.h"
 
 enum {
-	CAU_BATCH = 16, // slots in a batch of every set: a multiple of the lanes of each precision
+	CAU_BATCH = 16, // slots in a batch; a multiple of the number of lanes in each precision
 	CAU_SHARE = 16 * CAU_BATCH,            // slots in a share of the local step, at most
 	CAU_SHARE_RECORDS = 1 + 4 * CAU_SHARE, // most records of a share; the first is for padding
 	CAU_MAX_GROUPS = CAU_MAX_LAYERS * CAU_MAX_MATERIALS,
 };
 
-// A triangle is slack if its stiffness along some direction is less than this share of A's
-// stiffness. Sheets that are cut or hang free have such triangles, taut sheets have none. Measured
-// on fascia: with 0.1, tabs along a cut are missed; with 0.4, sheets are included for which A is
-// good enough.
+// Largest stiffness of a slack triangle in its softest direction, as a share of A's stiffness.
+// Sheets that are cut or hang free have slack triangles, taut sheets have none. The value was
+// measured on fascia: with 0.1, tabs along a cut are missed; with 0.4, sheets are included for
+// which A is good enough.
 static const double CAU_SLACK = 0.25;
 
 // A range of slots with one law.
@@ -41,7 +42,7 @@ typedef struct cau_sheet_group {
 	int limit, projection;                 // values CAU_LIMIT_* and CAU_PROJECTION_*
 	double stretch_min[2], stretch_max[2]; // for RANGE: limits of sqrt(k_aa)
 	double shear_max;
-	double viscosity_s; // retardation time; 0: none
+	double viscosity_s; // retardation time, s; 0: the layer is not viscous
 } cau_sheet_group;
 
 typedef struct cau_fat_group {
@@ -130,10 +131,11 @@ typedef struct cau_elements {
 	void *gradient; // real: the records, (record_count x 4)
 	int32_t record_count;
 	int32_t *record_vertex; // (record_count): 4 x the record's vertex; 0 for padding
-	double *energy;         // (shares): energy of each share, J
+	double *energy;         // (number of shares): energy of each share, J
 	double rate_per_s;      // 1/h of viscosity; 0: no viscosity
-	double *viscous_j;      // (shares): viscosity's part of `energy`, J; NULL: no layer is viscous
-	bool *slack;            // (shares): whether a triangle of the share is slack
+	// (number of shares): viscosity's part of `energy`, J; NULL: no layer is viscous
+	double *viscous_j;
+	bool *slack; // (number of shares): whether a triangle of the share is slack
 } cau_elements;
 
 static inline double cau_real_get(const void *array, bool single, int64_t index)

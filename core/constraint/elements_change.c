@@ -101,7 +101,7 @@ static void set_sheet_slot(cau_sheet_set *set, bool single, int32_t slot, const 
 	cau_element_map map;
 	cau_tissue_element_map(tissue, CAU_ELEMENT_TRIANGLE, element, &map);
 	double viscosity_s = tissue->layer[tissue->triangle_layer[element]].def.viscosity_s;
-	// map.weight is that of A, which includes viscosity's part
+	// map.weight is the element's weight in A, which includes viscosity's part
 	double weight = map.weight / (1 + viscosity_s / tissue->inertia_s);
 	cau_real_set(set->weight, single, slot, alive ? weight : 0);
 	if (keep_target)

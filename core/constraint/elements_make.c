@@ -87,8 +87,8 @@ static cau_status make_hinges(const cau_tissue *tissue, bool single, cau_arena *
 			              tissue->rest[3 * (size_t)map.vertex[0] + (size_t)c];
 			size += span * span;
 		}
-		// The curvature of a flat hinge at rest is only rounding. It is set to 0, so that the hinge
-		// has no force at rest.
+		// The curvature of a flat hinge at rest is only rounding. Such a curvature is replaced by
+		// 0, so that the hinge has no force at rest.
 		bool flat = length < 1e-6 * sqrt(size);
 		for (int c = 0; c < 3; c++)
 			cau_real_set(set->rest[c], single, k, flat ? 0 : rest[c]);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Energies of fat (section 5.2). Psi is the energy density (Pa), and P = dPsi/dF is the first
-// Piola-Kirchhoff stress (Pa) at F = I + H. Both are written in H so that they are exactly zero at
-// rest. Strain here is (F^T F - I)/2, with the half.
+// Piola-Kirchhoff stress (Pa) at F = I + H. Psi and P are written in H, so that they are exactly
+// zero at rest. Strain in this file is (F^T F - I)/2, with the factor of one half.
 //
-// Each law is an entry of CAU_MODEL_TABLE and one function of this form. The function returns P and
-// sets *density to Psi. `polar` is the slot's rotation. A law that keeps a rotation reads and
-// writes it.
+// Each law is an entry of CAU_MODEL_TABLE and a function of the form below. The function returns P
+// and sets *density to Psi. `polar` is the slot's rotation. A law that keeps a rotation reads and
+// writes `polar`.
 //
 //     INLINE m3 word_stress(law_terms t, rotation_lanes *polar, vreal *density)
 #pragma once
@@ -113,7 +113,8 @@ INLINE m3 corotated_stress(law_terms t, rotation_lanes *polar, vreal *density)
 INLINE m3 energy_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
 	m3 p = stvk_stress(t, polar, density);
-	real least = (real)1e-10 * (2 * t.mu + 3 * t.lambda); // stress at a strain of 1e-10
+	// the added stress: that at a strain of 1e-10
+	real least = (real)1e-10 * (2 * t.mu + 3 * t.lambda);
 	vreal step = t.stiffness * *density / (m3_dot(p, p) + least * least);
 	return m3_scale(step, p);
 }

@@ -37,7 +37,7 @@ INLINE m3 fat_energy_stress(const cau_fat_group *group, m3 f, m3 h, rotation_lan
 		CAU_MODEL_TABLE(X)
 #undef X
 	default:
-		__builtin_unreachable(); // cau_law_of accepts no other model
+		__builtin_unreachable(); // cau_law_of refuses every other model
 	}
 }
 
@@ -64,7 +64,7 @@ INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 	return diagonal_scale_fat(r, m, v_load(set->position_scale, slot));
 }
 
-// The residual of eq. 13 in F. In the diagonal system each constraint has its own step.
+// Returns the residual of eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 root, m3 f,
                                   bool diagonal)
 {
@@ -80,8 +80,8 @@ INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 roo
 	return r;
 }
 
-// The residual of slots that have shrunk, in a group whose law has no target: they have their own
-// target. Other slots (00 = 0) have R = 0.
+// Returns the residual of slots that have shrunk, in a group whose law has no target. These slots
+// have their own target `root`. For other slots (00 = 0), R = 0.
 INLINE m3 fat_shrunk_residual(sym3 root, m3 f, rotation_lanes *polar)
 {
 	vmask targeted = root.a00 > v_set(0);
@@ -93,7 +93,7 @@ INLINE m3 fat_shrunk_residual(sym3 root, m3 f, rotation_lanes *polar)
 	return m3_select(~targeted, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
 }
 
-// The residual of RANGE. *extra is the sum of the squared distances less |R|^2.
+// Returns the residual of RANGE. Sets *extra to the sum of the squared distances less |R|^2.
 INLINE m3 fat_ranged_residual(const cau_fat_group *group, sym3 root, m3 f, rotation_lanes *polar,
                               vreal *extra)
 {
@@ -113,7 +113,7 @@ INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group,
 	sym3 root = set->targeted[slot / CAU_BATCH] ? sym3_load(set->target, slot) : common;
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED)
 		return fat_linearised_residual(set, slot, root, f, diagonal);
-	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, also padding
+	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, even padding
 		m3 r = fat_target_residual(f, root, polar);
 		return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 	}
@@ -150,8 +150,8 @@ INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const 
 	return h;
 }
 
-// The weight of the limit, N m. A law's limit acts on every slot. Without a law's limit, only slots
-// that have shrunk have one.
+// Returns the weight of the limit, N m. If the law has a limit, the limit acts on every slot.
+// Otherwise it acts only on slots that have shrunk.
 INLINE vreal fat_limit_weight(const cau_fat_set *set, const cau_fat_group *group, int32_t slot)
 {
 	if (group->limit == CAU_LIMIT_NONE)
@@ -170,7 +170,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	if (limited || group->keeps_rotation)
 		polar = rotation_load(set->polar, slot);
 	vreal density, volume = v_load(set->volume, slot);
-	if (limited) { // first, because its rotation needs the most registers
+	if (limited) { // the limit comes first, because its rotation needs the most registers
 		vreal w = fat_limit_weight(set, group, slot);
 		vreal extra = v_set(0);
 		r = fat_limit_residual(set, group, slot, common, f, &polar, diagonal, &extra);
@@ -194,7 +194,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	return limited ? m3_add_scaled(stress, fat_limit_weight(set, group, slot), r) : stress;
 }
 
-// The gradient at vertex i + 1 of four: stress (N m) times row i of D_m^-1.
+// Returns the gradient at vertex i + 1 of four: stress (N m) times row i of D_m^-1.
 INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, int i)
 {
 	v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trusses and bending hinges. Their map G x is one vector e (rank 1), which is driven to a length.
+// Trusses and bending hinges. For both, G x is a single vector e (rank 1), and the energy drives
+// the length of e to a rest length.
 #pragma once
 
 #include "base/simd.h"
 #include "constraint/elements.h"
 
-// R = e - |rest| e/|e| with e = rest + d. It is computed so that it is exactly zero at d = 0: |e| -
-// L = (2 rest.d + d.d) / (|e| + L). A flat hinge has L = 0 and R = e.
+// Returns R = e - |rest| e/|e| with e = rest + d. R is computed so that it is exactly zero at d =
+// 0: |e| - L = (2 rest.d + d.d) / (|e| + L). A flat hinge has L = 0 and R = e.
 INLINE v3 length_residual(v3 rest, v3 d, vreal rest_length)
 {
 	v3 e = v3_add(rest, d);
@@ -16,9 +17,9 @@ INLINE v3 length_residual(v3 rest, v3 d, vreal rest_length)
 	return v3_select(rest_length > v_set(0), v3_scale(step, e), d);
 }
 
-// Handles slots [first, last) and returns their energy, J. The position scale of the diagonal
-// system for a rank-1 element is |G|^2 / vertices x |R|^2 / |R G^T|^2, which is 1 / vertices for
-// every G.
+// Handles slots [first, last) and returns their energy, J. The diagonal system scales R by |G|^2 /
+// vertices x |R|^2 / |R G^T|^2. For these elements of rank 1, this scale is 1 / vertices for every
+// G.
 static double link_kernel(const cau_elements *elements, int32_t first, int32_t last,
                           const real *displacement, real *records, bool diagonal)
 {

@@ -3,9 +3,10 @@
 
 #include "cautery/assert.h"
 
-static const int32_t FREE = -2; // not paired yet
+static const int32_t FREE = -2; // partner of an element that is not paired yet
 
-enum { MOST_NEIGHBOURS = 12 }; // at an edge of many triangles, more neighbours are ignored
+// most neighbours that are listed; at an edge of many triangles, further neighbours are ignored
+enum { MOST_NEIGHBOURS = 12 };
 
 static bool in_group(const cau_tissue *tissue, int kind, int32_t e, int32_t layer, int32_t material)
 {
@@ -24,8 +25,8 @@ static int add_free(const int32_t *partner, int32_t element, int32_t *list, int 
 	return count + 1;
 }
 
-// Lists the elements that share a face (tetrahedra) or an edge (triangles) with e and are not
-// paired yet. Returns their number.
+// Lists the elements that share a face (tetrahedra) or an edge (triangles) with element e, and have
+// no partner yet. Returns their number.
 static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e,
                            int32_t list[MOST_NEIGHBOURS])
 {
@@ -48,7 +49,7 @@ static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *pa
 	return count;
 }
 
-// Chooses the free neighbour that has the fewest free neighbours itself, so that few elements
+// Chooses the free neighbour that itself has the fewest free neighbours, so that few elements
 // remain without a partner.
 static int32_t choose(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e)
 {
@@ -106,7 +107,8 @@ void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t o
 	const int32_t *a = all + (size_t)vertices * (size_t)first;
 	const int32_t *own = all + (size_t)vertices * (size_t)element;
 	const int32_t *b = other < 0 ? a : all + (size_t)vertices * (size_t)other;
-	// sum of all indices; less those of the shared vertices it is the apex
+	// the sum of all vertex indices, from which the shared vertices' indices are subtracted: what
+	// is left is the apex
 	int apex = vertices * shared / 2;
 	for (int i = 0; i < vertices && found < shared; i++)
 		if (place_of(b, vertices, a[i]) >= 0) {

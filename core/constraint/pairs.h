@@ -6,9 +6,10 @@
 
 #include "tissue/tissue.h"
 
-// Sets the partner of each triangle or tetrahedron of one layer and material: an element of the
-// same layer and material, or -1 if none is left. `partner` is by element; other elements' entries
-// are unchanged. Returns the number of pairs; an element without a partner counts as one.
+// Sets the partner of each triangle or tetrahedron of one layer and material. The partner is an
+// element of the same layer and material, or -1 if no neighbour is left. `partner` is by element;
+// entries of elements of other layers or materials are unchanged. Returns the number of pairs, in
+// which an element without a partner is a pair of its own.
 int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int32_t material,
                           int32_t *partner);
 

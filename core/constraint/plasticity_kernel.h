@@ -64,8 +64,8 @@ static void sym3_store(void *const array[6], int32_t slot, sym3 a)
 	v_store(array[5], slot, a.a12);
 }
 
-// Computes C_p^(-1/2) - I of the slots that have flowed, for two vectors of slots, which may be the
-// same.
+// Computes C_p^(-1/2) - I of the slots that have flowed, for two vectors of slots. Both may be the
+// same vector.
 INLINE void plastic_maps(const cau_fat_set *set, const int32_t slot[2])
 {
 	sym3 z[2];
@@ -84,7 +84,7 @@ static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *
                              int32_t first, int32_t last, const real *displacement)
 {
 	const cau_fat_set *set = &elements->fat;
-	// slots for which plastic_maps is still to be called
+	// `waiting` lists slots for which plastic_maps is still to be called
 	int32_t inverted = 0, waiting[2], wait = 0;
 	for (int32_t slot = first; slot < last; slot += LANES) {
 		fat_face face = fat_face_gather(set, slot, displacement);

@@ -27,7 +27,7 @@ static double normalise(double a[3])
 	return length;
 }
 
-// Unit quaternion of a rotation matrix by rows r[row][column] [Shepperd 1978].
+// Computes the unit quaternion of a rotation matrix r[row][column] [Shepperd 1978].
 static void quaternion_of(double r[3][3], double q[4])
 {
 	double trace = r[0][0] + r[1][1] + r[2][2];
@@ -52,7 +52,7 @@ static void quaternion_of(double r[3][3], double q[4])
 
 void cau_polar_robust(const double a[9], double q[4])
 {
-	// Eigenvectors of A^T A, largest first.
+	// Computes the eigenvectors of A^T A, ordered by eigenvalue, the largest first.
 	const double *c0 = a, *c1 = a + 3, *c2 = a + 6;
 	const double metric[6] = {dot(c0, c0), dot(c1, c1), dot(c2, c2),
 	                          dot(c0, c1), dot(c0, c2), dot(c1, c2)};
@@ -65,8 +65,8 @@ void cau_polar_robust(const double a[9], double q[4])
 				int swap = order[j];
 				order[j] = order[j + 1], order[j + 1] = swap;
 			}
-	// Left singular vectors u_1 and u_2 follow from A v. u_3 = u_1 x u_2 turns the smallest
-	// direction as needed, because v_3 = v_1 x v_2 is right-handed too.
+	// Computes the left singular vectors u_1 and u_2 from A v. u_3 = u_1 x u_2 reverses the
+	// smallest direction if det A < 0, because v_3 = v_1 x v_2 is right-handed too.
 	double right[3][3], left[3][3], length[2];
 	for (int i = 0; i < 2; i++) {
 		for (int k = 0; k < 3; k++)
@@ -75,10 +75,11 @@ void cau_polar_robust(const double a[9], double q[4])
 			left[i][k] = a[k] * right[i][0] + a[3 + k] * right[i][1] + a[6 + k] * right[i][2];
 		length[i] = normalise(left[i]);
 	}
-	// length[1] is the square root of an eigenvalue, so its error is about 1e-8 of length[0]. A
-	// hundred times that error still gives a direction. length[0] is a stretch, which is 1 at rest.
+	// The limits below which a singular direction is not known. length[1] is the square root of an
+	// eigenvalue, so its error is about 1e-8 of length[0]. A hundred times that error still gives a
+	// direction. length[0] is a stretch, which is 1 at rest.
 	if (!(length[1] > 1e-6 * length[0]) || !(length[0] > 1e-6))
-		return; // two singular values vanish, or all three: keep the last rotation
+		return; // two singular values vanish, or all three: the last rotation stays
 	double along = dot(left[0], left[1]);
 	for (int k = 0; k < 3; k++)
 		left[1][k] -= along * left[0][k];

@@ -9,16 +9,16 @@ typedef struct rotation_lanes { // unit quaternion
 	vreal w, x, y, z;
 } rotation_lanes;
 
-// The robust case, for one matrix (by columns) in double: eigenvectors of A^T A by cyclic Jacobi.
-// If det A < 0, the smallest singular direction is reversed. `q` is replaced by the rotation
-// nearest to A. If two singular values vanish, `q` is unchanged.
+// Computes the rotation for one matrix (by columns) in double, in all cases: by eigenvectors of A^T
+// A from cyclic Jacobi. `q` is replaced by the rotation nearest to A. If det A < 0, the smallest
+// singular direction is reversed. If two singular values vanish, `q` is unchanged.
 void cau_polar_robust(const double a[9], double q[4]);
 
 enum { POLAR_STEPS = 6 };
 
-// Squares of half turns. Below POLAR_SETTLED, the turn is smaller than the rounding of the
-// rotation. Below POLAR_NEAR, one step is enough: it leaves an error of about 0.4 times the third
-// power of the turn, which is less than rounding.
+// Limits of the square of a half turn. Below POLAR_SETTLED, the turn is smaller than the rounding
+// of the rotation. Below POLAR_NEAR, one step is enough: it leaves an error of about 0.4 times the
+// third power of the turn, which is less than rounding.
 #define POLAR_SETTLED (REAL_EPSILON * REAL_EPSILON / 16)
 #define POLAR_NEAR (CAU_SINGLE ? (real)2.5e-6 : (real)2.5e-12)
 // Least determinant of tr S - sym S, relative to the third power of its trace.
@@ -71,8 +71,8 @@ static __attribute__((noinline)) void polar_lanes(const m3 *a, vmask which, rota
 }
 
 // Returns half of the turn w that makes S = R^T A symmetric to first order: (tr S - sym S) w =
-// axial S. `hard` marks the lanes in which that matrix is not positive definite by a margin. Their
-// result is invalid.
+// axial S. `hard` marks the lanes in which tr S - sym S is not positive definite by a margin. The
+// result of these lanes is invalid.
 INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 {
 	vreal s00 = v3_dot(r.c[0], a.c[0]), s11 = v3_dot(r.c[1], a.c[1]), s22 = v3_dot(r.c[2], a.c[2]);
@@ -95,13 +95,13 @@ INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 	            inverse * (c02 * axial.x + c12 * axial.y + c22 * axial.z)};
 }
 
-// Newton's method for a far turn, in as many steps as needed. `first` is the half turn of the first
-// step, and `is_void` marks the lanes in which it is invalid. Lanes in which Newton's method fails
-// use cau_polar_robust.
+// Applies Newton's method for a far turn, in as many steps as needed. `first` is the half turn of
+// the first step, and `is_void` marks the lanes in which that half turn is invalid. Lanes in which
+// Newton's method fails use cau_polar_robust.
 static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, const vmask *is_void,
                                                 rotation_lanes *q)
 {
-	vmask robust = v_set(0) > v_set(1); // no lane yet
+	vmask robust = v_set(0) > v_set(1); // no lane is set yet
 	for (int step = 0; step < POLAR_STEPS; step++) {
 		vmask hard = *is_void;
 		v3 h = *first;
@@ -112,7 +112,7 @@ static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, co
 		rotation_lanes p = rotation_turn(*q, h);
 		*q = rotation_scale(p, 1 / v_sqrt(rotation_norm2(p)));
 		vmask turning = v3_dot(h, h) > v_set(POLAR_NEAR);
-		if (step == POLAR_STEPS - 1) // it started too far away to converge
+		if (step == POLAR_STEPS - 1) // the start was too far away to converge
 			robust |= turning;
 		else if (!v_any(turning))
 			break;

@@ -14,7 +14,7 @@ INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 	              v3_dot(f0[0], h[1]) + v3_dot(f0[1], h[0]) + v3_dot(h[0], h[1])};
 }
 
-// The residual of eq. 13 in F. In the diagonal system each constraint has its own step.
+// Returns the residual of eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 target_root,
                                                 const vreal dm_inverse[4], vreal g2, bool diagonal)
 {
@@ -30,9 +30,9 @@ INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 t
 	return r;
 }
 
-// Returns the residual R of the triangle's law, and in *squared twice its energy over w. Updates
-// `polar`. Slots without a target (00 = 0) have the range's residual, if there is a range. In the
-// diagonal system R is scaled here.
+// Returns the residual R of the triangle's law. Sets *squared to twice the energy over w. Updates
+// `polar`. Slots without a target (00 = 0) have the range's residual, if there is a range. For the
+// diagonal system R is also scaled.
 INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradient f, sym2 k,
                                      sym2 target_root, sheet_gradient *polar,
                                      const vreal dm_inverse[4], vreal g2, bool diagonal,
@@ -126,7 +126,7 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	return (sheet_gradient){{v3_scale(w, r.c[0]), v3_scale(w, r.c[1])}};
 }
 
-// The gradient at vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
+// Returns the gradient at vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
 INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gradient stress,
                                 int i)
 {
@@ -177,7 +177,7 @@ INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 }
 
 // Handles slots [first, last) of one group and returns their energy, J. `displacement` is u = x -
-// X, m, by the share's records. The gradients are added to `records`. *slack is set to whether a
+// X, m, by the share's records. The gradients are added to `records`. Sets *slack to whether a
 // triangle is slack (CAU_SLACK).
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
                            int32_t first, int32_t last, const real *displacement, real *records,

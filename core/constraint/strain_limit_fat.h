@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of tetrahedra: those of strain_limit_sheet.h for the 3x3 metric.
+// Strain limits of tetrahedra: the limits of strain_limit_sheet.h for the 3x3 metric.
 #pragma once
 
 #include "constraint/polar.h"
 #include "constraint/strain_range.h"
 
-// Most targets are diagonal. Then a third of the products is enough.
+// True if S is diagonal, as most targets are. Then a third of the products is enough.
 INLINE int sym3_is_diagonal(sym3 s)
 {
 	return !v_any((vmask)s.a01 | (vmask)s.a02 | (vmask)s.a12);
@@ -18,7 +18,8 @@ INLINE m3 m3_times_target(m3 a, sym3 root, int along_axes)
 		{v3_scale(root.a00, a.c[0]), v3_scale(root.a11, a.c[1]), v3_scale(root.a22, a.c[2])}};
 }
 
-// TARGET in closed form: R = F - Q T^(1/2), where Q is the rotation of F T^(1/2). `q` keeps Q.
+// Returns the residual of TARGET in closed form: R = F - Q T^(1/2), where Q is the rotation of F
+// T^(1/2). `q` keeps Q.
 INLINE m3 fat_target_residual(m3 f, sym3 target_root, rotation_lanes *q)
 {
 	int along_axes = sym3_is_diagonal(target_root);
@@ -41,7 +42,7 @@ INLINE sym3 sym3_mean(sym3 a, sym3 b)
 	              h * (a.a01 + b.a01), h * (a.a02 + b.a02), h * (a.a12 + b.a12)};
 }
 
-// The largest absolute entry of a - b.
+// Returns the largest absolute entry of a - b.
 INLINE vreal sym3_distance(sym3 a, sym3 b)
 {
 	vreal most = v_max(v_abs(a.a00 - b.a00), v_max(v_abs(a.a11 - b.a11), v_abs(a.a22 - b.a22)));
@@ -49,10 +50,10 @@ INLINE vreal sym3_distance(sym3 a, sym3 b)
 	             v_max(v_abs(a.a01 - b.a01), v_max(v_abs(a.a02 - b.a02), v_abs(a.a12 - b.a12))));
 }
 
-// Square roots of symmetric positive definite 3x3 matrices, and their inverses, by the
-// Denman-Beavers iteration. It converges quadratically. So it ends after a step as small as the
-// square root of rounding (1e-4 for 1e-8, 1e-9 for 1e-16). Ten steps are enough for stretches from
-// 1/30 to 30.
+// Most steps of the Denman-Beavers iteration, which computes square roots of symmetric positive
+// definite 3x3 matrices and the inverses of these roots. It converges quadratically. So it ends
+// after a step as small as the square root of rounding (1e-4 for 1e-8, 1e-9 for 1e-16). Ten steps
+// are enough for stretches from 1/30 to 30.
 enum { SQRT_STEPS = 10 };
 
 // One step of the iteration. Returns whether another step is needed.
@@ -84,7 +85,7 @@ INLINE void sym3_inverse_roots(sym3 a[2])
 	}
 }
 
-// The residual of RANGE, as in sheet_range_residual, for three stretches and three shears.
+// Returns the residual of RANGE, as in sheet_range_residual, for three stretches and three shears.
 INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double stretch_max[3],
                              double shear_max, vreal *squared)
 {
@@ -103,9 +104,10 @@ INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double str
 	return r;
 }
 
-// TARGET linearised: the six unordered pairs of eq. 12 for the 3x3 metric, each projected once in
-// F. part[i] is the residual of pair i. The step is limited for columns shorter than a thousandth
-// of their rest length (squared: 1e-6), where the gradient does not indicate the distance.
+// Computes the residuals of TARGET, linearised: the six unordered pairs of eq. 12 for the 3x3
+// metric, each projected once in F. part[i] is the residual of pair i. The step is limited for
+// columns shorter than a thousandth of their rest length (squared: 1e-6), where the gradient does
+// not indicate the distance.
 INLINE void fat_linearised_residuals(m3 f, sym3 target, m3 part[6])
 {
 	static const int first[6] = {0, 1, 2, 0, 0, 1}, second[6] = {0, 1, 2, 1, 2, 2};

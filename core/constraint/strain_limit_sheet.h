@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strain limits of triangles (section 5.1, Appendix A). P is the nearest admissible F, and R = F -
-// P is the residual. A triangle's energy is w/2 |R|^2 and its stress w R. f_1 and f_2 are the
-// columns of F.
+// Strain limits of triangles (section 5.1, Appendix A). P is the matrix nearest to F that the limit
+// allows, and R = F - P is the residual. A triangle's energy is w/2 |R|^2 and its stress w R. f_1
+// and f_2 are the columns of F.
 #pragma once
 
 #include "constraint/strain_range.h"
@@ -10,8 +10,8 @@ typedef struct sheet_gradient { // F or R of a triangle, 3 x 2, by columns
 	v3 c[2];
 } sheet_gradient;
 
-// The square root of a symmetric positive semidefinite 2x2 matrix: (M + sqrt(det) I) / sqrt(tr + 2
-// sqrt(det)).
+// Returns the square root of a symmetric positive semidefinite 2x2 matrix: (M + sqrt(det) I) /
+// sqrt(tr + 2 sqrt(det)).
 INLINE sym2 sym2_sqrt(sym2 m, vreal *root_determinant)
 {
 	vreal det = v_max(m.a00 * m.a11 - m.a01 * m.a01, v_set(0));
@@ -21,7 +21,7 @@ INLINE sym2 sym2_sqrt(sym2 m, vreal *root_determinant)
 	return (sym2){(m.a00 + s) / t, (m.a11 + s) / t, m.a01 / t};
 }
 
-// B A B, for symmetric 2x2 matrices.
+// Returns B A B, for symmetric 2x2 matrices.
 INLINE sym2 sym2_sandwich(sym2 b, sym2 a)
 {
 	vreal p00 = b.a00 * a.a00 + b.a01 * a.a01, p01 = b.a00 * a.a01 + b.a01 * a.a11;
@@ -29,25 +29,26 @@ INLINE sym2 sym2_sandwich(sym2 b, sym2 a)
 	return (sym2){p00 * b.a00 + p01 * b.a01, p10 * b.a01 + p11 * b.a11, p00 * b.a01 + p01 * b.a11};
 }
 
-// F B, for a symmetric B.
+// Returns F B, for a symmetric B.
 INLINE sheet_gradient sheet_times(sheet_gradient f, sym2 b)
 {
 	return (sheet_gradient){{v3_add_scaled(v3_scale(b.a00, f.c[0]), b.a01, f.c[1]),
 	                         v3_add_scaled(v3_scale(b.a01, f.c[0]), b.a11, f.c[1])}};
 }
 
-// TARGET in closed form: P = Q T^(1/2), where Q is the orthonormal polar factor of F T^(1/2). With
-// K = F^T F and S = (T^(1/2) K T^(1/2))^(1/2), Q = F T^(1/2) S^-1. So R = F (I - T^(1/2) S^-1
-// T^(1/2)). At rest with T = I this is exactly zero. Where F has lost rank, Q is not defined, and
-// the last one (`polar`) is used. `slack` marks the lanes with little stiffness along the normal,
-// which is w (I - T^(1/2) S^-1 T^(1/2)).
+// Returns the residual of TARGET in closed form. P = Q T^(1/2), where Q is the orthonormal polar
+// factor of F T^(1/2). With K = F^T F and S = (T^(1/2) K T^(1/2))^(1/2), Q = F T^(1/2) S^-1. So R =
+// F (I - T^(1/2) S^-1 T^(1/2)). At rest with T = I this is exactly zero. Where F has lost rank, Q
+// is not defined, and the Q of the last evaluation (`polar`) is used. `slack` marks the lanes with
+// little stiffness along the normal. This stiffness is w (I - T^(1/2) S^-1 T^(1/2)).
 INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 target_root,
                                             sheet_gradient *polar, vmask *slack)
 {
 	vreal s;
 	sym2 m = sym2_sandwich(target_root, k);
 	sym2 root = sym2_sqrt(m, &s);
-	// the ratio of singular values is below about 2000, and K is above its own rounding
+	// `full` is true if the ratio of singular values is below about 2000, and K is above its own
+	// rounding
 	vreal trace = m.a00 + m.a11;
 	vmask full = (s > (real)1e-3 * trace) & (trace > v_set(64 * REAL_EPSILON));
 	vreal inverse = 1 / v_select(full, s, v_set(1));
@@ -64,8 +65,8 @@ INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 targe
 	return exact;
 }
 
-// RANGE: the residuals of both stretches and of the shear. *squared is the sum of their squared
-// distances.
+// Returns the residual of RANGE: the sum over both stretches and the shear. *squared is the sum of
+// their squared distances.
 INLINE sheet_gradient sheet_range_residual(sheet_gradient f, sym2 k, const double stretch_min[2],
                                            const double stretch_max[2], double shear_max,
                                            vreal *squared)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strains limited to an interval. The strains define several sets of admissible F. One set has the
-// matrices whose column f_a has a length in its interval. Another has those with at most a certain
-// cosine between f_a and f_b. The energy of an element is w/2 times the sum of the squared
+// Strains limited to an interval. The limits define several sets of F. One set has the matrices F
+// whose column f_a has a length in its interval. Another set has the matrices with at most a
+// certain cosine between f_a and f_b. The energy of an element is w/2 times the sum of the squared
 // distances of F to these sets. The nearest member P of a set is known in closed form. So the
-// residual F - P is the gradient of half the squared distance. Both depend on F^T F alone, so there
-// is no torque.
+// residual F - P is the gradient of half the squared distance. The distance depends on F^T F alone,
+// so there is no torque.
 //
 // Departs: the sets are handled one by one. The nearest member of their intersection has no closed
 // form. A metric that is clamped as a whole (first to the nearest length, then to the nearest
@@ -19,7 +19,7 @@
 #define RANGE_ROUNDING (CAU_SINGLE ? (real)1e-5 : (real)1e-10)
 
 // Handles a column f of length sqrt(k): adds F - P to `residual` and returns the squared distance.
-// If k is less than the rounding of I + ..., the length is taken to be that of the rounding.
+// If k is less than its own rounding, the length is taken to be that of the rounding.
 INLINE vreal range_stretch(v3 f, vreal k, double least, double most, v3 *residual)
 {
 	vreal length = v_sqrt(v_max(k, v_set(64 * REAL_EPSILON)));

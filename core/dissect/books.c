@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bookkeeping of dissection by edges: the heat of a primitive, the heating of an edge, live
-// primitives, drawn faces; removal of an edge or an element; and the recount of all of this from
-// what has parted.
+// The books of dissection: the heat material of a primitive, the heated share of an edge, live
+// primitives, and drawn faces. Also removes an edge or an element, and computes all of these again
+// from what has parted.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -39,7 +39,8 @@ static const cau_heat_material *heat_at(const cau_dissection *dissection, int pr
 	return cau_dissection_heat_of(dissection->tissue, primitive, edges->sharer[primitive][k]);
 }
 
-// The material that needs most exposure determines the new value.
+// Raises the edge's exposure to the largest exposure that one of its materials needs for this
+// share.
 void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double share)
 {
 	double exposure = dissection->exposure[edge];

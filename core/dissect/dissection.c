@@ -7,7 +7,7 @@
 
 _Static_assert(CAU_MAX_LAYERS <= 16, "a bit of `parted` for each layer");
 
-static const double heat_capacity = 3500; // J/(kg K), of soft tissue
+static const double heat_capacity = 3500; // heat capacity of soft tissue, J/(kg K)
 
 static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *arena,
                                        cau_error *error)
@@ -97,8 +97,8 @@ static bool edge_lives(const cau_dissection *dissection, int32_t edge)
 	return false;
 }
 
-// Returns the heat, J, that an edge takes up. Its mass is a share of the mass at its ends: about a
-// dozen edges meet at a vertex.
+// Returns the heat, J, that an edge takes up. The edge's mass is a twelfth of the mass at its ends:
+// about a dozen edges meet at a vertex.
 static double heat_taken(const cau_dissection *dissection, int32_t edge, double gain)
 {
 	CAU_ASSERT(gain > 0, "edge %d takes %g degC s", edge, gain);
@@ -113,12 +113,13 @@ static double heat_taken(const cau_dissection *dissection, int32_t edge, double 
 	return gain * absorption * heat_capacity * mass / 12;
 }
 
-// True if a sphere can reach the segment. Most edges of a near block are out of reach, and then the
-// temperature at their ends is not needed.
+// True if a sphere can reach the segment. Most edges of a near block are out of reach, so the
+// temperature at their ends need not be read.
 static bool in_reach(cau_vec3 a, cau_vec3 b, cau_vec3 center, double radius)
 {
 	cau_vec3 along = cau_sub(b, a), off = cau_sub(cau_add(a, b), cau_add(center, center));
-	double twice = 2 * (radius + 1e-6) + cau_length(along); // a micrometre for rounding
+	// the radius is enlarged by a micrometre for rounding
+	double twice = 2 * (radius + 1e-6) + cau_length(along);
 	return cau_dot(off, off) <= twice * twice;
 }
 
@@ -184,7 +185,8 @@ static bool ignites(const cau_dissection *dissection, int primitive, int32_t ind
 	return heat->absorption_per_s * dissection->exposure[edge] > ignition;
 }
 
-// Links are single fibres, and part by their edge under both rules.
+// Returns the first kind of primitive that parts by its edges. Links are single fibres, and part by
+// their edge under both rules.
 static int first_kind_of_edges(const cau_dissection *dissection)
 {
 	return dissection->doses.dose ? CAU_PRIMITIVE_LINK : CAU_PRIMITIVE_TRIANGLE;

@@ -26,19 +26,22 @@ typedef struct cau_doses {
 
 // An element that is stretched beyond what it can bear (tears.c).
 typedef struct cau_over {
-	int32_t place, counted; // `place` is an index over triangles, then tetrahedra, then links.
-	                        // `counted` is in ticks; a converged tick counts as three.
+	// `place` is the element's index over triangles, then tetrahedra, then links. `counted` is the
+	// sum of its counts: a converged tick adds three, any other tick adds one.
+	int32_t place, counted;
 } cau_over;
 
 typedef struct cau_tears {
-	int32_t over_count;    // overloaded elements in the last tick: part of the session's state
-	cau_over *over;        // overloaded elements, ascending by `place`
-	int32_t elements_torn; // elements torn since creation, with those removed along with them
+	int32_t over_count; // overloaded elements in the last tick: part of the session's state
+	cau_over *over;     // overloaded elements, ascending by `place`
+	// elements torn since creation, and elements removed along with torn ones
+	int32_t elements_torn;
 	double widest_m[CAU_PRIMITIVE_KINDS]; // greatest size of an element, by kind of primitive
 	// Scratch.
 	cau_over *before;
-	int32_t *now, *found; // elements overloaded in this tick; number found in each part
-	double *load;         // loads of the elements in `now`
+	// elements overloaded in this tick; number of elements that each part of the loop found
+	int32_t *now, *found;
+	double *load;  // loads of the elements in `now`
 	int32_t *most; // (vertex_count): 1 + index in `now` of the most loaded element there; 0: none
 } cau_tears;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interfaces between the files of core/dissect. books.c is the lowest. The two rules of parting use
-// it: by elements and their doses (doses.c), and by edges (dissection.c). dissection.c calls the
-// others.
+// Interfaces between the files of core/dissect. Two files have the rules of parting: by elements
+// and their doses (doses.c), and by edges (dissection.c). Both use books.c, which uses no other
+// file. dissection.c also calls the other files.
 #pragma once
 
 #include <stdbool.h>
@@ -14,11 +14,12 @@ const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int pr
 bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index);
 // Removes a live primitive and appends it to `removed`, with the hinges of a triangle.
 void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index);
-// Lists an edge among those that changed in the present tick.
+// Adds an edge to the list of edges that changed in the present tick.
 void cau_dissection_touch(cau_dissection *dissection, int32_t edge);
 // Returns the index of a triangle or a tetrahedron in the arrays of doses.
 int32_t cau_doses_place(const cau_tissue *tissue, int primitive, int32_t index);
-// Parts an edge in these layers (bits). It must not have parted in any of them before.
+// Parts an edge in these layers (bits). The edge must not have parted in any of these layers
+// before.
 void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t layers);
 
 // ---- doses.c

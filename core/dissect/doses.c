@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The second rule of parting: each triangle and tetrahedron parts by the dose at its middle.
 //
-// An edge that parts removes all elements at it. So the cut is wider than the burnt tissue by half
-// a cell on all sides of the instrument. And as each edge has its own random ignition temperature,
-// fraying depends on the mesh. Here an element is one point of quadrature, as for its strain. It
-// parts by the dose (eq. 20) at its middle. The ignition temperature is drawn from a field over
-// rest space. So the removed volume tends to the volume that the hot part has swept and burnt,
-// whatever the mesh. Of the elements that the cut's surface crosses, half are removed.
+// An edge that parts removes all elements at the edge. So the cut is wider than the burnt tissue by
+// half a cell on all sides of the instrument. And as each edge has its own random ignition
+// temperature, fraying depends on the mesh. With this rule an element is one point of quadrature,
+// as for its strain. It parts by the dose (eq. 20) at its middle. The ignition temperature is drawn
+// from a field over rest space. So the removed volume tends to the volume that the hot part has
+// swept and burnt, whatever the mesh. Of the elements that the cut's surface crosses, half are
+// removed.
 //
-// A hot part thinner than the elements would pass between their middles. So its thickness counts as
-// at least what the mesh can resolve (half_width_of).
+// A hot part thinner than the elements would pass between their middles. So the hot part is widened
+// to at least what the mesh can resolve (half_width_of).
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 
-// Length over which the ignition temperature changes if the layer has no bundles, m.
+// Length, m, over which the ignition temperature changes if the layer has no bundles.
 static const double field_m = 1e-3;
 
 enum { KINDS = CAU_PRIMITIVE_LINK }; // the kinds that have doses: triangles and tetrahedra
@@ -39,10 +40,11 @@ static cau_vec3 middle_of(const cau_tissue *tissue, int primitive, int32_t index
 	return cau_scale(1.0 / count, sum);
 }
 
-// Returns half the width of the thinnest cut that such an element can resolve, m. For a triangle it
-// is the distance of a vertex from its middle. Suppose that two triangles on either side of a cut
-// still share a vertex. Then the cut passes within this distance of one of their middles, and that
-// triangle parts. A tetrahedron counts as regular, because no path of a tip divides a body.
+// Returns half the width of the thinnest cut that the element can resolve, m. For a triangle this
+// is the longest distance of a vertex from the triangle's middle. Suppose that two triangles on
+// either side of a cut still share a vertex. Then the cut passes within this distance of the middle
+// of one of the triangles, and that triangle parts. A tetrahedron is taken to be regular, because
+// no path of a tip divides a body.
 static double half_width_of(const cau_tissue *tissue, int primitive, int32_t index)
 {
 	if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
@@ -96,7 +98,7 @@ typedef struct exposing {
 	double radius, thinnest_m;
 } exposing;
 
-// Returns the widening of the hot part, m, for elements of this half width.
+// Returns the length, m, by which the hot part is enlarged for elements of this half width.
 static double widening(const exposing *work, double half_width_m)
 {
 	return fmax(half_width_m - work->thinnest_m, 0);
@@ -116,7 +118,7 @@ static void expose_element(const exposing *work, int primitive, int32_t index)
 		cau_tool_distance_at(work->tool, work->pose, work->jaw, CAU_PART_HOT, middle, &outward);
 	if (distance > widening(work, half_width_of(tissue, primitive, index)))
 		return;
-	// Within its widening, the hot part is as warm as at its surface.
+	// In the space by which it is enlarged, the hot part is as warm as at its surface.
 	double u = cau_heat_grid_at(work->grid, cau_add_scaled(middle, -fmax(distance, 0), outward));
 	if (u <= CAU_LIVING_C)
 		return;

@@ -36,8 +36,8 @@ static void morton_order(const cau_tissue *tissue, keyed *order)
 	qsort(order, (size_t)tissue->vertex_count, sizeof *order, compare);
 }
 
-// Each edge belongs to the block of its first vertex. The second vertices of a block's edges are
-// its halo.
+// Assigns each edge to the block of its first vertex. The second vertices of a block's edges are
+// the block's halo.
 static void own_edges(cau_near *near, const cau_tissue *tissue, const int32_t *block_of)
 {
 	const cau_edge_table *edges = &tissue->edges;
@@ -62,16 +62,16 @@ static int32_t least_vertex(const cau_face_table *faces, int32_t face)
 	return least < v[2] ? least : v[2];
 }
 
-// Each face belongs to the block of its vertex with the least index. That block owns two edges of
-// the face, so the other two vertices are in its halo.
+// Assigns each face to the block of its vertex with the least index. That block owns two edges of
+// the face, so the other two vertices are in the block's halo.
 static void own_faces(cau_near *near, const cau_face_table *faces, const int32_t *block_of)
 {
 	for (int32_t f = 0; f < faces->face_count; f++)
 		near->face_first[block_of[least_vertex(faces, f)] + 1]++;
 	for (int32_t b = 0; b < near->block_count; b++)
 		near->face_first[b + 1] += near->face_first[b];
-	for (int32_t f = faces->face_count;
-	     f-- > 0;) { // from the end of each block's range back to its start
+	// Each block's range is filled from its end back to its start.
+	for (int32_t f = faces->face_count; f-- > 0;) {
 		int32_t at = --near->face_first[block_of[least_vertex(faces, f)] + 1];
 		CAU_ASSERT_INDEX(at, faces->face_count);
 		near->face[at] = f;
@@ -142,8 +142,8 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 	return status;
 }
 
-// In double until the box is complete: rounding to float keeps the order, and costs more than the
-// comparisons.
+// A box in double, until it is complete. Rounding to float does not change the order of
+// coordinates, but costs more than their comparison.
 typedef struct bounds {
 	double least[3], most[3];
 } bounds;
@@ -224,6 +224,6 @@ bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 		double outside = below > above ? below : above; // fmax would be a library call
 		squared += outside > 0 ? outside * outside : 0;
 	}
-	double reach = radius_m + 1e-6; // for rounding: boxes are in float
+	double reach = radius_m + 1e-6; // enlarged for rounding: boxes are in float
 	return squared <= reach * reach;
 }

@@ -7,9 +7,11 @@
 #include "cautery/assert.h"
 
 static const double ramp_s = 0.2;
-static const double denatured_share = 0.5; // coagulated share from which the whole element shrinks
+// least coagulated share of an element that shrinks as denatured
+static const double denatured_share = 0.5;
 
-// Returns the capacity: all elements, or an eighth of them if that is at least CAU_SHRINKING_LEAST.
+// Returns the capacity: an eighth of all elements, but at least the smaller of CAU_SHRINKING_LEAST
+// and all elements.
 static int32_t most_active(const cau_tissue *tissue)
 {
 	int32_t all = tissue->triangle_count + tissue->tetrahedron_count;
@@ -39,8 +41,8 @@ static cau_vec3 at(const double *position, int32_t vertex)
 	return cau_vec3_of(position + 3 * (size_t)vertex);
 }
 
-// N_c at the element's contact point. `away` is the direction from the contact point to the
-// centroid, used where N_c is perpendicular to the sheet.
+// The gradient N_c of the tool's distance at the element's contact point. `away` is the direction
+// from the contact point to the centroid, used where N_c is perpendicular to the sheet.
 typedef struct contact_frame {
 	cau_vec3 normal, away;
 } contact_frame;
@@ -71,7 +73,7 @@ static void triangle_gradient(const cau_tissue *tissue, const double *position, 
 	f[1] = cau_add_scaled(cau_scale(m[1], d1), m[3], d2);
 }
 
-// Returns root A root for 2x2 matrices, where A has diag(S) in the axes (c, s), (-s, c).
+// Computes root A root for 2x2 matrices, where A is diag(S) in the axes (c, s), (-s, c).
 static void sandwich2(const double root[3], double c, double s, const double shrink[2],
                       double out[3])
 {
@@ -131,7 +133,7 @@ static cau_vec3 tetrahedron_transpose_times(const cau_tissue *tissue, const doub
 	return cau_vec3_of(out);
 }
 
-// Returns root A root for symmetric 3x3 matrices as six numbers.
+// Computes root A root for symmetric 3x3 matrices as six numbers.
 static void sandwich3(const double root[6], const double a[6], double out[6])
 {
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -160,7 +162,7 @@ static void tetrahedron_axes(const cau_tissue *tissue, const double *position, i
 	                                      cau_cross(face_normal, frame.normal));
 }
 
-// Computes a tetrahedron's target. The axes are made orthogonal first.
+// Computes the target of a tetrahedron. First makes the two axes orthogonal.
 static void tetrahedron_target(const cau_tissue *tissue, int32_t tetrahedron,
                                const cau_vec3 axis[2], const double from[6], double to[6])
 {
@@ -203,7 +205,7 @@ static bool may_shrink(const cau_shrink *shrink, const cau_dissection *dissectio
 }
 
 // Starts to shrink an element. `axis` has the axes of S in the element at rest; for a triangle only
-// the first is used.
+// the first axis is used.
 static void start_shrinking(cau_shrink *shrink, const cau_tissue *tissue, int kind, int32_t element,
                             const cau_vec3 axis[2], cau_elements *elements,
                             const cau_element_slots *slots)

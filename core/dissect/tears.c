@@ -10,18 +10,19 @@
 // (Away from any tip or held edge, the stretch is even and there is no crack yet. There a finer
 // mesh bears more, in proportion to 1 / sqrt(h).)
 //
-// The stretch beyond the rest shape counts, not the energy of the law. A fascia whose target is 0.1
-// stores much energy at rest and is always taut; this does not tear it. So with the principal
-// stretches s of F
+// The load of an element comes from its stretch beyond the rest shape, not from the energy of its
+// law. A fascia whose target is 0.1 stores much energy at rest and is always taut, but does not
+// tear. So with the principal stretches s of F
 //     psi = E/2 sum (s - 1)+^2 + k/2 sum (s - s_free)+^2,
 // where E is Young's modulus of fat and links, and k is the stiffness of the strain limit of sheets
 // and fat. s_free is 1, or for a range, the largest stretch in the range along that axis.
-// Compression does not count. Along one axis psi is the energy of the laws at small strain. It
-// leaves out what Poisson's ratio adds when two axes are stretched. It counts plastic strain as
+// Compression adds nothing. Along one axis psi is the energy of the laws at small strain. psi
+// leaves out what Poisson's ratio adds when two axes are stretched. It includes plastic strain as
 // stored energy, although a band has spent that energy.
 //
 // If a layer's `coagulated_tear` is below 1, heat weakens the layer. G_c falls in proportion to the
-// exposure of the element's edges. From an exposure of 0.5 on, it is that share of its fresh value.
+// exposure of the element's edges. From an exposure of 0.5 on, G_c is `coagulated_tear` times its
+// fresh value.
 //
 // An element tears after two consecutive converged ticks in which it was overloaded, or after six
 // consecutive ticks of any kind. An iterate may be far from the solution, but not for a tenth of a
@@ -36,7 +37,8 @@
 
 enum { PART = 2048 }; // elements that one part of the loop examines
 
-// Count of a tick in which an element is overloaded, and the count at which it tears.
+// Counts that an overloaded element gets in a tick: COUNTS_CONVERGED if the step has converged,
+// else COUNTS_AT_ALL. The element tears when the sum of its counts reaches TAKES.
 enum { COUNTS_CONVERGED = 3, COUNTS_AT_ALL = 1, TAKES = 2 * COUNTS_CONVERGED };
 
 int32_t cau_tears_capacity(const cau_tissue *tissue)
@@ -57,9 +59,9 @@ static int primitive_at(const cau_tissue *tissue, int32_t place, int32_t *index)
 	return CAU_PRIMITIVE_LINK;
 }
 
-// Width of an element's crack band, m. Triangle: leg of a right triangle of its area. Tetrahedron:
-// edge of the cube that six of them fill. Link: its whole length, because a torn fibre recoils
-// whole.
+// Returns the width of an element's crack band, m. For a triangle this is the leg of a right
+// triangle of the same area. For a tetrahedron it is the edge of the cube that six such tetrahedra
+// fill. For a link it is the whole length, because a torn fibre recoils whole.
 static double size_of(const cau_tissue *tissue, int primitive, int32_t index)
 {
 	if (primitive == CAU_PRIMITIVE_TRIANGLE)
@@ -103,9 +105,10 @@ typedef struct bearing {
 	double coagulated_share; // share of tear_j_m2 that remains if the element is coagulated
 } bearing;
 
-// The share of the released energy that one element at the tip of a cut stores over its size.
-// Measured on strips of known energy, of triangles and of tetrahedra, within 4 % on three meshes
-// (tests/core/session/tear_test.c). A fibre has no tip: it stores all the energy that it releases.
+// Share of the released energy that one element at the tip of a cut stores over its size: by kind
+// of primitive. The shares were measured on strips of known energy, of triangles and of tetrahedra,
+// within 4 % on three meshes (tests/core/session/tear_test.c). A fibre has no tip: it stores all
+// the energy that it releases.
 static const double share_of[CAU_PRIMITIVE_KINDS] = {0.4, 0.4, 1};
 
 static void free_stretches(double out[3], int limit, const double *strain_max, int count)
@@ -184,14 +187,16 @@ static double stored_energy(const bearing *b, const double metric[6])
 	return twice / 2;
 }
 
-// Returns the stored energy density, J/m^3, at which an element of size_m has the load 1.
+// Returns the stored energy density, J/m^3, at which an element of size_m has the load 1 and is
+// overloaded.
 static double borne_j_m3(const bearing *b, double size_m)
 {
 	return b->tear_j_m2 / size_m;
 }
 
-// Returns the sum of squared stretches below which no element of a size up to widest_m can have a
-// load of 1. For a given sum, psi is largest if all of it is along one axis.
+// Returns a limit for the sum of squared stretches. Below the limit, no element of a size up to
+// widest_m can have a load of 1. For a given sum, psi is largest if all of the stretch is along one
+// axis.
 static double least_squared(const bearing *b, double widest_m)
 {
 	double borne = b->coagulated_share * borne_j_m3(b, widest_m);
@@ -214,7 +219,7 @@ double cau_dissection_coagulated(const cau_dissection *dissection, int primitive
 	return sum / edges;
 }
 
-// Returns the share of its fresh G_c that the element still has.
+// Returns the present G_c of the element as a share of the G_c of a fresh element.
 static double strength_of(const cau_dissection *dissection, const bearing *b, int primitive,
                           int32_t index)
 {
@@ -361,8 +366,8 @@ static int32_t look(cau_dissection *dissection, const double *position, cau_pool
 
 // ---- choose the elements that tear
 
-// Stores the `count` overloaded elements as `over`, with their counts so far. Keeps in `now` only
-// those whose count is high enough. Returns their number.
+// Stores the `count` overloaded elements in `over`, with their counts so far. Keeps in `now` only
+// the elements whose count is high enough to tear. Returns the number of elements in `now`.
 static int32_t count_over(cau_tears *tears, int32_t count, bool converged)
 {
 	int32_t ready = 0, before = tears->over_count, at = 0;
@@ -385,8 +390,8 @@ static int32_t count_over(cau_tears *tears, int32_t count, bool converged)
 	return ready;
 }
 
-// Stores for each vertex the most loaded element there, as 1 + its index in `now`; of equal loads
-// the first.
+// Stores for each vertex the most loaded element there, as 1 + its index in `now`. Of equally
+// loaded elements, the first is stored.
 static void mark_most(cau_dissection *dissection, int32_t count)
 {
 	cau_tears *tears = &dissection->tears;

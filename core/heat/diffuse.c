@@ -3,8 +3,8 @@
 
 #include "cautery/assert.h"
 
-// Sum of the six nodes around node i. The distance in memory to the next node is `row` along y and
-// `plane` along z.
+// Sum of the six nodes around node i. `row` and `plane` are the distances in memory to the next
+// node along y and z.
 #define SIX(u, i, row, plane)                                                                      \
 	(u[i - 1] + u[i + 1] + u[i - row] + u[i + row] + u[i - plane] + u[i + plane])
 

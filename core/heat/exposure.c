@@ -3,9 +3,9 @@
 
 #include "cautery/assert.h"
 
-// PARTS_MAX: most parts of a swept motion. CELL_PARTS_MAX: most parts of the motion by half cells.
-// With four, the error of a ball at 50 mm/s in cells of a sixth of its radius is within 2 %, and
-// more parts improve it little (README.md).
+// PARTS_MAX: most parts of a swept motion. CELL_PARTS_MAX: most parts of a motion that is divided
+// so that each part is at most half a cell. With four parts, the error of a ball at 50 mm/s in
+// cells of a sixth of its radius is within 2 %, and more parts improve it little (README.md).
 enum { PARTS_MAX = 32, CELL_PARTS_MAX = 4 };
 
 double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
@@ -35,7 +35,8 @@ static double turn_between(const cau_pose *from, const cau_pose *to)
 	return 4 * tan(acos(fmin(fabs(dot), 1)) / 2);
 }
 
-// Returns a bound of the path of any point of the hot part from one pose to the other, m.
+// Returns a bound of the length of the path of any point of the hot part from one pose to the
+// other, m.
 static double longest_way_m(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
 {
 	cau_vec3 center;

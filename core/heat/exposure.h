@@ -4,7 +4,7 @@
 
 #include "heat/heat_grid.h"
 
-enum { CAU_LIVING_C = 45 }; // below this mean temperature tissue does not char
+enum { CAU_LIVING_C = 45 }; // mean temperature of an edge, degC, up to which tissue does not char
 
 // Returns the exposure (degC) that an edge a-b gains in duration_s: xi (u_a + u_b)/2 dt. It is 0
 // unless the edge meets the hot part's shape at `pose`, or is inside, and the mean temperature
@@ -18,9 +18,10 @@ double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, co
 // parts.
 int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
-// Returns at least cau_exposure_parts, and as many as the grid needs, up to four. With as many
-// parts as needed, no point of the hot part moves by more than half a cell of the tool's grid in
-// one part. The field is then that of a tool that moves, not of one that jumps.
+// Returns the number of equal parts of a tick's motion for heating. It is at least
+// cau_exposure_parts, and otherwise as many as the grid needs, up to four. The grid needs so many
+// parts that no point of the hot part moves by more than half a cell of the tool's grid in one
+// part. The field is then that of a tool that moves, not of a tool that jumps.
 int cau_heating_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
 // Returns the ignition temperature of edge `edge` in layer `layer`: mean + spread * g. g is

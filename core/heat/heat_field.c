@@ -22,7 +22,7 @@ void cau_heat_field_swap(cau_heat_field *field)
 
 // ---- between two nested fields
 
-// In cells of the finer field, twice its middle is 2 finer + N - 1.
+// Computes in cells of the finer field: twice the middle of this field is 2 finer + N - 1.
 void cau_heat_field_origin_around(const int64_t finer[3], int32_t nodes, int64_t origin[3])
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -31,9 +31,9 @@ void cau_heat_field_origin_around(const int64_t finer[3], int32_t nodes, int64_t
 	}
 }
 
-// Returns the value of the coarser field at a node of the finer field. This node is a node of the
-// coarser field, or half way between some of its nodes. Values are added in pairs, so that eight
-// equal values give exactly that value.
+// Returns the value of the coarser field at a node of the finer field. This node is also a node of
+// the coarser field, or is half way between some of the coarser nodes. Values are added in pairs,
+// so that the mean of eight equal values is exactly that value.
 static float sample(const cau_heat_field *coarser, int64_t n, int64_t x, int64_t y, int64_t z)
 {
 	const int64_t node[3] = {x, y, z}, stride[3] = {1, n, n * n};
@@ -75,7 +75,7 @@ static void move_row(cau_heat_field *field, int64_t n, const int64_t origin[3], 
 	int64_t shift = origin[0] - field->origin[0];
 	int64_t from_y = y + origin[1] - field->origin[1], from_z = z + origin[2] - field->origin[2];
 	bool had = from_y >= 0 && from_y < n && from_z >= 0 && from_z < n;
-	// First x of nodes that were in the field before.
+	// First and last x of nodes that were in the field before the move.
 	int64_t first = had ? clamp(-shift, 0, n) : n;
 	int64_t last = had ? clamp(n - shift, first, n) : n;
 	float *to = field->next + (z * n + y) * n;
@@ -107,8 +107,8 @@ static bool is_outer(int64_t n, int64_t y, int64_t z)
 	return y == 0 || z == 0 || y == n - 1 || z == n - 1;
 }
 
-// Interpolates a whole row along x into `to`. Results equal those of `sample`, but each sum over y
-// and z is computed once for two nodes.
+// Interpolates a whole row along x into `to`. Results equal those of `sample`, but a sum over y and
+// z that two nodes need is computed once.
 static void sample_row(const cau_heat_field *coarser, int64_t n, const int64_t first[3], float *to)
 {
 	int64_t odd_y = first[1] & 1, odd_z = first[2] & 1, odd_x = first[0] & 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One of the nested temperature fields: N x N x N nodes, x fastest. Each field is twice as wide as
-// the next inner one, and its cells are twice as long. Every second node of a field is a node of
-// the next wider field. Private to core/heat.
+// One of the nested temperature fields of a tool: N x N x N nodes, x fastest. Each field is twice
+// as wide as the next inner field, and its cells are twice as long. Every second node of a field is
+// a node of the next wider field. Private to core/heat.
 #pragma once
 
 #include <stdbool.h>

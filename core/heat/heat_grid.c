@@ -6,11 +6,12 @@
 #include "cautery/assert.h"
 #include "heat/diffuse.h"
 
-static const double REST_C = 0.01; // a field is at rest if no node is farther from ambient
+static const double REST_C = 0.01; // largest distance from ambient, K, of a node of a field at rest
 
-// Within this difference from ambient, heat parts no tissue (tissue lives at 41 degC). If no
-// surface is held, the field only falls, so this heat parts no tissue later either. The outer
-// fields would take minutes to reach ambient. The innermost field alone takes seconds.
+// Largest distance from ambient, K, of the heat that is dropped from the outer fields. Such heat
+// parts no tissue (tissue lives at 41 degC). If no surface is held, the field only falls, so this
+// heat parts no tissue later either. The outer fields would take minutes to reach ambient. The
+// innermost field alone takes seconds.
 static const double FAINT_C = 4;
 
 static int64_t node_count(const cau_heat_grid *grid)
@@ -42,7 +43,7 @@ int64_t cau_heat_grid_substeps(double step_m, double diffusivity_m2_s, double du
 	CAU_ASSERT(step_m > 0 && diffusivity_m2_s >= 0, "a grid of %g m with %g m^2/s", step_m,
 	           diffusivity_m2_s);
 	double parts = 6 * diffusivity_m2_s * duration_s / (step_m * step_m);
-	// a value exactly at the limit is within the limit, despite rounding
+	// the factor keeps a value that is exactly at the limit within the limit, despite rounding
 	parts = ceil(parts * (1 - 1e-12));
 	return (int64_t)fmin(fmax(parts, 1), 1e9);
 }
@@ -90,7 +91,7 @@ cau_status cau_heat_grid_check(const cau_tool_def *tool, double tick_s, cau_erro
 	return CAU_OK;
 }
 
-// Each field with its scratch, and three arrays of the surface.
+// Arrays of a grid: each field and its scratch, and three arrays of the surface.
 enum { ARRAYS = 2 * CAU_HEAT_FIELDS + 3 };
 
 static void lay_out(cau_heat_grid *grid, double step_m, size_t nodes)
@@ -197,8 +198,8 @@ static double rate_of(const cau_heat_grid *grid, int k, double duration_s, int64
 	return rate;
 }
 
-// Advances the outer fields, the outermost first. Each field has its boundary from the next wider
-// field. Where there is a finer field, the values of that field are held.
+// Advances the outer fields, the outermost first. Each field takes its boundary from the next wider
+// field. Before each substep, nodes inside the next finer field get that field's values.
 static void advance_outer(cau_heat_grid *grid, double duration_s)
 {
 	int32_t n = grid->nodes;

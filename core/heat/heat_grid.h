@@ -71,11 +71,11 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point);
 // Computes the box outside which the temperature is ambient, m.
 void cau_heat_grid_box(const cau_heat_grid *grid, cau_vec3 *least, cau_vec3 *most);
 
-// Whether every node is at ambient (within 0.01 degC, see cau_heat_grid_advance).
+// True if every node is at ambient (within 0.01 degC, see cau_heat_grid_advance).
 bool cau_heat_grid_is_ambient(const cau_heat_grid *grid);
 
 // Returns the temperature of the warmest node, degC. If all nodes are at ambient, returns ambient.
 double cau_heat_grid_warmest(const cau_heat_grid *grid);
 
-// Returns the number of equal parts of `duration_s` for which none exceeds dl^2 / (6 alpha).
+// Returns the least number of equal parts of `duration_s` that are no longer than dl^2 / (6 alpha).
 int64_t cau_heat_grid_substeps(double step_m, double diffusivity_m2_s, double duration_s);

@@ -8,8 +8,8 @@
 // its part of the Laplacian, u_neighbour - u, becomes (T - u) / theta.
 //
 // An explicit step of these terms would need dt <= theta dl^2 / alpha, and theta may be any number
-// above 0. So the terms towards the surface are taken at the end of the step. They contain no other
-// new value than that of the node itself, so no system has to be solved:
+// above 0. So the terms towards the surface use the node's value at the end of the step. They
+// contain no other new value, so no system has to be solved:
 //
 //     u' = u + r / (1 + r S) (sum - 6 u + (S - count) (T - u)),   S = sum over `count` of 1 / theta
 //
@@ -20,11 +20,13 @@
 
 #include "cautery/assert.h"
 
-static const double NEAR = 1;  // cells: how far beyond the surface a node's neighbours can be
-static const double ON = 1e-4; // cells: a node nearer than this is on the surface
+// cells: largest distance from the surface of a node outside that has a neighbour inside
+static const double NEAR = 1;
+// cells: a node nearer than this to the surface is taken to be on the surface
+static const double ON = 1e-4;
 
-// Cells: distance that is stored for nodes known to be farther than NEAR. In cells that the surface
-// crosses, nodes are no farther than the diagonal of a cell, 1.73.
+// Cells: distance that is stored for nodes that are known to be farther than NEAR. In cells that
+// the surface crosses, nodes are no farther than the diagonal of a cell, 1.73.
 static const float BEYOND = 1.4F;
 
 // Gives the position of a node in the tool's frame: node (x, y, z) is at first + x axis[0] + y
@@ -73,9 +75,9 @@ static void fill_block(const search *s, const int32_t least[3], int32_t size, fl
 			}
 }
 
-// Finds the distances of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz,
-// so its value in the middle decides the whole block, unless the surface may be near one of the
-// nodes. In that case the block is divided into eight parts.
+// Finds the distances of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz.
+// So the distance in the block's middle decides for all its nodes, unless the surface may be near
+// one of the nodes. In that case the block is divided into eight parts.
 static void find_block(const search *s, const int32_t least[3], int32_t size)
 {
 	CAU_ASSERT(size >= 2 && (size & (size - 1)) == 0, "a block of %d nodes", size);

@@ -10,8 +10,8 @@ typedef struct cau_heat_surface {
 	bool held;                // there is a surface: the tool was energized in the last advance
 	float held_c;             // degC: temperature at and inside the surface
 	int32_t least[3], end[3]; // range of the nodes that are less than a cell from the surface
-	// Cells, (N x N x N): signed distance of each node, negative inside, while held; exact within a
-	// cell of the surface, elsewhere only the sign is valid.
+	// Cells, (N x N x N): signed distance of each node, negative inside. It is valid while `held`
+	// is true. It is exact within a cell of the surface; elsewhere only the sign is valid.
 	float *distance;
 	float *rate; // scratch, (N x N x N): rate of each node for cau_diffuse_around
 	float *pull; // scratch, (N x N x N): pull of each node for cau_diffuse_around
@@ -26,8 +26,8 @@ void cau_heat_surface_find(cau_heat_surface *surface, const cau_heat_field *fiel
 void cau_heat_surface_hold(cau_heat_surface *surface, cau_heat_field *field, int32_t nodes,
                            double rate);
 
-// Returns the field at the point of a cell, degC. Inside the surface it is the tool's temperature.
-// Near the surface, the outer nodes are extrapolated by distance. Elsewhere it is trilinear
-// interpolation.
+// Returns the field at the point of a cell, degC. Inside the surface this is the tool's
+// temperature. Near the surface, the outer nodes are extrapolated by distance. Elsewhere the nodes
+// are interpolated trilinearly.
 double cau_heat_surface_at(const cau_heat_surface *surface, const cau_heat_field *field,
                            int32_t nodes, const cau_heat_cell *cell);

@@ -2,7 +2,8 @@
 #include "cautery/assert.h"
 #include "heat/exposure.h"
 
-// The output function of splitmix64 (Steele, Lea and Flood 2014): a bijection that mixes all bits.
+// The output function of the generator splitmix64 (Steele, Lea and Flood 2014): a bijection that
+// mixes all bits.
 static uint64_t mix(uint64_t value)
 {
 	value += UINT64_C(0x9E3779B97F4A7C15);
@@ -47,8 +48,8 @@ static double smooth(double t)
 	return t * t * (3 - 2 * t);
 }
 
-// Returns the draw of one node of the lattice. Each coordinate has 21 bits, so far nodes may have
-// equal draws.
+// Returns the draw of one node of the lattice. Each coordinate has 21 bits, so nodes that are far
+// apart may have equal draws.
 static double node_draw(uint64_t seed, int32_t layer, const int64_t node[3])
 {
 	uint64_t where = 0;
@@ -62,7 +63,7 @@ double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, in
 {
 	CAU_ASSERT(bundle_m > 0, "bundles of %g m", bundle_m);
 	CAU_ASSERT(fabs(cau_dot(fibre, fibre) - 1) < 1e-9, "a fibre of length %g", cau_length(fibre));
-	// Rest space is compressed along the fibres. Units are those of the lattice.
+	// Rest space is compressed along the fibres. Lengths are in cells of the lattice.
 	double squeeze = (1 / bundle_length - 1) * cau_dot(place, fibre);
 	cau_vec3 squeezed = cau_scale(1 / bundle_m, cau_add(place, cau_scale(squeeze, fibre)));
 	double at[3], share[3];

@@ -8,41 +8,54 @@
 #include "solve/contact.h"
 #include "solve/solver.h"
 
-// absolute error that is allowed in a chunk that hardly moves
+// Largest error, m, that is allowed in a chunk that hardly moves. The chunk's motion also limits
+// this error (least_share).
 static const double least_error_m = 0.5e-6;
-// least_error_m counts only up to this share of the chunk's motion
+// Largest share of a chunk's motion that the error least_error_m may be.
 static const double least_share = 0.25;
-static const double still_error_m = 2e-8; // an error below this is always allowed
-// N: allowed error of a small force, a hundredth of the least that viewers show
+static const double still_error_m = 2e-8; // error, m, that is allowed however small the motion is
+// Error of a tool's force, N, that is always allowed: a hundredth of the least force that viewers
+// show.
 static const double least_force_n = 1e-4;
-// the error of forces may exceed the vertices' error by this factor
+// Factor by which the relative error of a tool's force may exceed the vertices' relative error.
 static const double force_share = 2;
-static const double steady = 0.25; // relative change below which a tool's force counts as steady
-// relative change of forces below which nothing counts as moving
+// Relative change of a tool's force, from step to step, up to which the force counts as steady.
+static const double steady = 0.25;
+// Relative change of a tool's force, from step to step, above which the step teaches something.
 static const double still_force = 0.002;
-// contact constraints may have a larger force error than those that were learned from
+// Factor on the learned force error, because contact constraints of this step may have a larger
+// error than those of earlier steps.
 static const double force_slack = 3;
-static const double untaught = 3; // amplification before any step has taught one
-// relative force error before any step has taught one: all of the force may be wrong
+static const double untaught = 3; // amplification before any step has shown one
+// Relative force error before any step has shown one: all of the force may be wrong.
 static const double untaught_force = 1;
 static const double most_amplified = 300;
-// share of the wanted accuracy; smaller estimates are not resolved
+// Least error that is reported, as a share of the wanted accuracy. A few increments cannot resolve
+// smaller errors.
 static const double resolved = 0.2;
-// safety factor, because a measured contraction is a little too optimistic
+// Safety factor on the error that follows from a measured contraction, which is a little too
+// optimistic.
 static const double slack = 1.2;
-// largest contraction factor that can be told from no contraction
+// Largest contraction factor. A measured factor nearer to 1 cannot be distinguished from no
+// contraction.
 static const double slowest = 0.999;
-// only a single mode reaches the bound; the remaining error seldom is one
+// Factor on the bound by the energy. An error of a single mode would reach the bound, but an error
+// mostly consists of several modes.
 static const double bound_share = 0.5;
-// weight, in the logarithm, of a step that shows a smaller amplification
+// Share of the way, in the logarithm, by which an amplification moves towards a smaller one that a
+// step shows.
 static const double forgetting = 0.1;
-static const double worth_learning = 0.05; // lengths below this are rounding
-static const double all_rounding = 0.02;   // if the first length is below this, nothing moves
+// Least length, relative to the allowed error, of a step's longest increment from which the step
+// learns. Shorter increments are rounding.
+static const double worth_learning = 0.05;
+// Length of the first increment, relative to the allowed error, up to which nothing moves.
+static const double all_rounding = 0.02;
 enum {
-	// of a chunk: mass, and mass times the squares of trial increment, increment and motion
+	// sums of a chunk: mass, and mass times the squares of trial increment, increment and motion
 	SUMS = 4,
-	DEEP = 4,     // increments of a step that amplifications are learned from
-	SHALLOW = 12, // consecutive steps that may have fewer increments
+	DEEP = 4, // least number of increments of a step from which all amplifications are learned
+	// steps with fewer than DEEP increments in a row, after which a step takes DEEP increments
+	SHALLOW = 12,
 };
 
 cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_arena *arena,
@@ -89,7 +102,9 @@ static void measure_part(void *context, int32_t chunk)
 // Root mean squares, m, over the vertices of a chunk or over all vertices.
 typedef struct lengths {
 	double trial, increment;
-	double told;    // length of a reported error of 1
+	// divisor that makes a length a reported error: the motion, but at least least_error_m /
+	// `wanted`
+	double told;
 	double allowed; // largest error with which the step may end
 } lengths;
 
@@ -106,8 +121,9 @@ static lengths lengths_of(const double sums[SUMS], double wanted)
 	                 .allowed = fmax(wanted * motion, slow)};
 }
 
-// The trial increment of a step: the largest value over all chunks and over all vertices. `length`
-// is relative to the allowed error, `told` is the length as a reported error.
+// The trial increment of a step. `length` is relative to the allowed error; `told` is relative to
+// the motion, as errors are reported. Both are the largest values over all chunks and over all
+// vertices. `all` has the lengths over all vertices.
 typedef struct trial {
 	double length, told, mass;
 	lengths all;
@@ -124,7 +140,7 @@ static trial measure(cau_step_solver *solver)
 			chunk < solver->chunk_count ? accuracy->sums + SUMS * (size_t)chunk : total;
 		if (!(sums[0] > 0))
 			continue;
-		of.all = lengths_of(sums, accuracy->wanted); // after the loop: of all vertices
+		of.all = lengths_of(sums, accuracy->wanted); // after the loop, of.all is over all vertices
 		of.length = fmax(of.length, of.all.trial / of.all.allowed);
 		of.told = fmax(of.told, of.all.trial / of.all.told);
 		for (int k = 0; k < SUMS && chunk < solver->chunk_count; k++)
@@ -145,8 +161,8 @@ static void sum_forces(const cau_contact_set *set, double force[CAU_ACCURACY_TOO
 	}
 }
 
-// The largest difference of a tool's forces, relative to `of`, or relative to `least_n` if that is
-// larger.
+// Returns the largest difference of a tool's force between `of` and `from`, relative to the force
+// in `of`. If that force is less than least_n, the difference is relative to least_n.
 static double difference(double of[CAU_ACCURACY_TOOLS][3], double from[CAU_ACCURACY_TOOLS][3],
                          double least_n)
 {
@@ -164,14 +180,14 @@ static double difference(double of[CAU_ACCURACY_TOOLS][3], double from[CAU_ACCUR
 	return most;
 }
 
-// The force, N, whose allowed error is least_force_n.
+// Returns the force, N, whose allowed error is least_force_n.
 static double least_told(const cau_accuracy *accuracy)
 {
 	return least_force_n / (force_share * accuracy->wanted);
 }
 
-// Returns the change of the tools' forces since the last increment, or since zero force, relative
-// to their allowed error.
+// Returns the change of the tools' forces since the last increment, relative to the allowed error
+// of forces. After the first increment, this is the change from zero force.
 static double force_change(cau_step_solver *solver)
 {
 	cau_accuracy *accuracy = &solver->accuracy;
@@ -192,7 +208,8 @@ static double force_drift(cau_accuracy *accuracy)
 
 // ---- estimates
 
-// The factor by which the norms of the last increments shrink in one iteration; 0: not known.
+// Returns the factor by which the norms of the last increments shrink in one iteration; 0 if it is
+// not known.
 static double contraction(const cau_accuracy *accuracy)
 {
 	int32_t last = accuracy->count - 1;
@@ -219,7 +236,8 @@ static double estimate(cau_accuracy *accuracy, double bound)
 	int32_t last = accuracy->count - 1;
 	double a = contraction(accuracy), alone = a / (1 - a), length = accuracy->length[last];
 	double carried = amplification(accuracy, accuracy->count);
-	if (last >= 2) // long and short increments alternate
+	// long and short increments alternate, so the increment before the last counts too
+	if (last >= 2)
 		length = fmax(length, a * accuracy->length[last - 1]);
 	bound = fmax(bound, length);
 	double error = fmin(fmax(slack * alone, carried) * length, bound);
@@ -227,8 +245,9 @@ static double estimate(cau_accuracy *accuracy, double bound)
 	return error;
 }
 
-// Estimates the error of the tools' forces. `changed` is their last change relative to the allowed
-// error. `amplification` is the vertices' error over the length of the increment.
+// Estimates the error of the tools' forces, relative to the allowed error. `changed` is the last
+// change of the forces, also relative to the allowed error. `drift` is the change since the last
+// step. `amplification` is the vertices' error over the length of the increment.
 static double estimate_forces(const cau_accuracy *accuracy, double changed, double drift,
                               double amplification)
 {
@@ -261,8 +280,8 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 	double error = estimate(accuracy, bound);
 	if (length > 0) {
 		double told = at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told;
-		// One or two increments cannot resolve a smaller error. Some ticks that reported less had a
-		// true error of three times that and more.
+		// One or two increments cannot resolve a smaller error. Some ticks with a smaller reported
+		// error had a true error of three times the reported one and more.
 		accuracy->error = fmax(error * told / length, resolved * accuracy->wanted);
 		error = fmax(error, estimate_forces(accuracy, changed, drift, error / length));
 	}
@@ -296,8 +315,8 @@ void cau_accuracy_learn(cau_accuracy *accuracy)
 		most = fmax(most, accuracy->length[i]);
 	if (!(most > worth_learning))
 		return;
-	// The sum of all later increments is the error that an increment left, if at least two came
-	// later.
+	// The error that an increment left is the sum of all later increments. It is learned if at
+	// least two increments came later.
 	for (int32_t count = accuracy->count - 1; count >= 1; count--) {
 		int32_t depth = count < CAU_ACCURACY_DEPTHS ? count : CAU_ACCURACY_DEPTHS;
 		left += accuracy->length[count];

@@ -7,11 +7,15 @@
 #include "solve/coupling.h"
 
 enum { MOST_STEPS = 24, MOST_ROUNDS = 2 };
-static const double enough = 1e-12; // relative to the square of the first residual
-// share of the largest friction force above which a contact constraint slips
+// least squared residual, relative to the first one, for a further step of conjugate gradients
+static const double enough = 1e-12;
+// Share of the largest friction force up to which a contact constraint sticks. Above it, the
+// constraint slips.
 static const double on_the_cone = 0.9999;
-static const double lost = 1e-9; // share of a reaction; a smaller remaining push counts as none
-// bound on all changes, relative to the largest change of one constraint alone
+// share of the old reaction; if the new push is not larger than this, the new reaction is set to 0
+static const double lost = 1e-9;
+// Bound on all changes of reactions, relative to the largest change that a constraint would have if
+// it were solved alone.
 static const double most_times = 20;
 
 typedef struct over_rows { // a vector by coordinate, for each active constraint
@@ -90,7 +94,8 @@ static void find_between(const active *a)
 
 // ---- the change of their reactions
 
-// Finds the residual: how far each point is from where it has to be, m.
+// Finds the residual of each active constraint: the way, m, from its point to the target of the
+// point.
 static void find_left(active *a, const cau_step_solver *solver)
 {
 	for (int32_t i = 0; i < a->count; i++) {
@@ -104,7 +109,7 @@ static void find_left(active *a, const cau_step_solver *solver)
 	}
 }
 
-// Keeps only the normal part for a constraint that slips.
+// Keeps only the normal part of `v` for constraints that slip.
 static void keep_free(const active *a, over_rows *v)
 {
 	for (int32_t i = 0; i < a->count; i++) {
@@ -153,7 +158,7 @@ static void find_change(active *a)
 	for (int step = 0; step < MOST_STEPS && size > enough * first; step++) {
 		apply(a);
 		double stiff = dot(a, &a->along, &a->image);
-		if (!(stiff > 0)) // lagging columns can make this negative
+		if (!(stiff > 0)) // columns that lag behind the factor can make `stiff` negative
 			return;
 		add_scaled(a, &a->change, size / stiff, &a->along);
 		add_scaled(a, &a->left, -size / stiff, &a->image);
@@ -167,7 +172,8 @@ static void find_change(active *a)
 
 // ---- the allowed share of the change
 
-// The smallest t in (0, 1) at which a + 2 b t + c t^2, with a > 0, reaches 0; 1 if there is none.
+// Returns the smallest t in (0, 1) at which a + 2 b t + c t^2 is 0, with a > 0. Returns 1 if there
+// is no such t.
 static double first_root(double a, double b, double c)
 {
 	double inner = b * b - a * c;
@@ -177,7 +183,8 @@ static double first_root(double a, double b, double c)
 	return root > 0 && root < 1 ? root : 1;
 }
 
-// The share of its change that a constraint can take before it would pull or, if it sticks, slip.
+// Returns the share of a constraint's change that the constraint can take. With a larger share the
+// constraint would pull, exceed its largest push or, if it sticks, slip.
 static double part_of_row(const active *a, int32_t i)
 {
 	const cau_contact_row *row = row_of(a, i);
@@ -195,7 +202,7 @@ static double part_of_row(const active *a, int32_t i)
 	                             bears * more * more - cau_dot(by, by)));
 }
 
-// The largest change of a reaction, N, if each constraint were solved alone.
+// Returns the largest change of a reaction, N, if each constraint were solved alone.
 static double largest_alone(const active *a)
 {
 	double most = 0;
@@ -206,9 +213,9 @@ static double largest_alone(const active *a)
 	return most;
 }
 
-// The share of the change that all constraints can take. Constraints of tissue that is caught
-// between the sides of a tool push against each other. They have no solution, and their reactions
-// would grow without bound.
+// Returns the share of the change that all constraints can take. No reaction may change by more
+// than most_n. The reason is that constraints of tissue that is caught between the sides of a tool
+// push against each other. They have no solution, and their reactions would grow without bound.
 static double part_of_all(const active *a, double most_n, bool *stopped)
 {
 	double largest = 0, part = 1;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Anderson acceleration of the iteration x <- x + f(x), f = -A^-1 grad E [Walker and Ni 2011], with
-// least squares in the norm of A. Since A f = -grad E, every inner product is one of increments
-// with gradients. The weights of past iterates sum to one, so momentum is kept as by the plain
-// iteration.
+// least squares in the norm of A. Since A f = -grad E, inner products in this norm are dot products
+// of increments and gradients. The weights of past iterates sum to one. So the accelerated
+// iteration keeps the momentum as the plain iteration does.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// One mix of the history. With contact, A f = -grad E + reactions. The solver's gradient vector
-// then has the negative of that sum.
+// The state of one mix of the history. With contact, A f = -grad E + reactions. The solver's
+// gradient vector then has the negative of that sum.
 typedef struct mix {
 	cau_step_solver *solver;
 	double weight[CAU_ANDERSON_WINDOW];
@@ -78,7 +78,7 @@ static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
 }
 
 // Adds the newest column and its products with all columns, summed in chunk order. Then finds the
-// weights.
+// weights of the columns.
 static void weigh(mix *work)
 {
 	cau_step_solver *solver = work->solver;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds how a load on a contact constraint moves the vertices of the kept columns (S W^T), and how
-// its own point moves.
+// Computes S W^T of a contact constraint: how a load on the constraint moves the vertices of the
+// kept columns, and the constraint's own point.
 #include "cautery/assert.h"
 #include "solve/contact.h"
 
-// True if all columns are to be read. That is faster, because a loop over all columns handles two
-// at a time (find_used).
+// True if the list of used columns has all columns. Reading all columns is faster, because a loop
+// over all columns handles two at a time (find_used).
 static bool all_are_used(const cau_contact_set *set)
 {
 	CAU_ASSERT(set->used_count <= set->column_count, "%d of %d columns are used", set->used_count,

@@ -12,7 +12,8 @@ static void read_step(cau_step_solver *solver, int32_t vertex)
 	                               solver->collide->step + 3 * (size_t)vertex);
 }
 
-// True if the step can be taken unchanged. Only the unclear pairs' vertices are checked.
+// True if no pair of tissue crosses in the unchanged step. Only vertices of pairs that may cross
+// are checked.
 static bool passes(cau_step_solver *solver, const double *from)
 {
 	cau_collide *collide = solver->collide;
@@ -41,9 +42,9 @@ static double longest_drawn(const cau_step_solver *solver, const cau_reals *step
 	return sqrt(longest2);
 }
 
-// The filter shortens steps vertex by vertex. A step that is much longer than the filter allows is
-// first shortened as a whole. Otherwise the filtered step might no longer lower the energy, and
-// might invert tissue.
+// Least length of a step that is first shortened as a whole, relative to the longest step that the
+// filter allows. The filter shortens steps vertex by vertex. Without the first shortening, a much
+// longer step might no longer lower the energy after the filter, and might invert tissue.
 static const double much_longer = 2;
 
 static bool shorten(cau_step_solver *solver)

@@ -174,7 +174,8 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 
 // ---- reactions
 // Measures the signed distance and normal of a constraint's point at the present iterate. If the
-// tool has passed the point, the distance is the way back to the point's side.
+// tool has passed the point, the distance is minus the way that the point must go to return to its
+// own side of the tool.
 static void measure_gap(const cau_contact_set *set, const cau_step_solver *solver,
                         cau_contact_row *row)
 {
@@ -207,7 +208,8 @@ static cau_vec3 clamp_length(cau_vec3 a, double most, bool *clamped)
 	return *clamped ? cau_scale(most / length, a) : a;
 }
 
-// Solves r = -k (x + d - anchor), with d = away + S_ii (r - r_old), for r.
+// Solves r = -k (x + d - anchor), with d = away + S_ii (r - r_old), for r. S_ii is `s`, r_old is
+// `old`.
 static cau_vec3 attachment_reaction(const cau_contact_set *set, cau_contact_row *row, cau_vec3 away,
                                     double s, cau_vec3 old)
 {
@@ -236,8 +238,8 @@ static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_r
 	return cau_add_scaled(tangent, normal, n);
 }
 
-// Gauss-Seidel ends when a sweep changes no reaction by more than this share of the largest
-// reaction. Columns in single precision do not resolve smaller changes.
+// Least change of a reaction in a sweep, relative to the largest reaction, for which Gauss-Seidel
+// makes another sweep. Columns in single precision do not resolve smaller changes.
 static const double SETTLED = 1e-6;
 
 static cau_vec3 relaxed(const cau_contact_set *set, const cau_step_solver *solver,
@@ -259,7 +261,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 	double change = 0, size = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
-		// if no corner can move, only the tool's compliance counts
+		// if no corner can move, the motion is that of the tool alone
 		cau_vec3 next = relaxed(set, solver, row, cau_contact_between(set, row, row));
 		cau_vec3 by = cau_sub(next, cau_vec3_of(row->reaction));
 		double length = cau_length(by);
@@ -307,8 +309,8 @@ static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
 		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &work);
 }
 
-// Computes increment += C W^T dr by one application of A^-1 to all loads. Columns beyond
-// CAU_WHOLE_COLUMNS exist only in S.
+// Computes increment += C W^T dr by one application of A^-1 to all loads. This is needed if there
+// are columns beyond CAU_WHOLE_COLUMNS: only their entries in S exist.
 static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
 {
 	const cau_vectors *vectors = solver->kernels->vectors;
@@ -372,10 +374,11 @@ static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 	}
 }
 
-enum { PASSES = 4 }; // sweeps that find the active constraints, before these are solved together
+// sweeps that find the active constraints, before the active constraints are solved together
+enum { PASSES = 4 };
 
-// True if constraints of faces are to be solved together. With columns that are not whole this
-// would cost more than it gains.
+// True if constraints of faces are to be solved together. If some columns are not whole, this would
+// cost more than it gains.
 static bool is_worth_solving_together(const cau_contact_set *set)
 {
 	return set->face_count && !cau_contact_is_wide(set);
@@ -387,11 +390,12 @@ void cau_contact_begin(cau_contact_set *set)
 	set->others = set->elsewhere = false;
 }
 
-// Finds whether the active constraints changed in this correction (others), and whether a point
-// moved along its face (elsewhere).
+// Sets `others` if the active constraints changed in this correction, and `elsewhere` if a point
+// moved along its face.
 static void note_changes(cau_contact_set *set)
 {
-	// sum of changes of a point's weights below which it has not moved
+	// Largest sum of changes of a point's weights (barycentric, in its face) with which the point
+	// counts as unmoved.
 	const double as_it_was = 0.006;
 	uint64_t before = set->pushing;
 	set->pushing = CAU_HASH_START;
@@ -434,7 +438,7 @@ bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, do
 {
 	bool any = false;
 	for (int32_t i = 0; i < set->row_count; i++) {
-		// a copy: set->row keeps the gap from which its reaction was computed
+		// measures in a copy: set->row keeps the gap from which its reaction was computed
 		cau_contact_row row = set->row[i];
 		if (row.corner_count == 1 || row.attached)
 			continue;

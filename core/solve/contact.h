@@ -33,19 +33,20 @@
 
 enum {
 	CAU_MAX_CONTACTS = 1024, // contact constraints of all tools
-	// of CAU_MAX_CONTACTS, for vertices that are held or near; the rest is for faces
+	// most constraints, of CAU_MAX_CONTACTS, at vertices that are held or near; the rest is for
+	// faces
 	CAU_MAX_VERTEX_ROWS = 768,
-	CAU_NEAR_ROWS = 192,      // of CAU_MAX_VERTEX_ROWS, for vertices that are only near
+	CAU_NEAR_ROWS = 192, // most constraints, of CAU_MAX_VERTEX_ROWS, at vertices that are only near
 	CAU_MAX_POINT_ROWS = 256, // constraints at points of faces
 	CAU_MAX_COLUMNS = 960,    // distinct free vertices of contact constraints
 	CAU_WHOLE_COLUMNS = 288,  // columns that are kept whole
 	CAU_MAX_MEMORY = 2048,    // faces whose side of the tool is remembered
-	// points of one face that are remembered: two arms of a tool may touch a face
+	// most remembered points of one face: two arms of a tool may touch a face
 	CAU_MAX_POINTS = 2,
 	CAU_MAX_HELD = 192,  // attachments that are solved together
 	CAU_MAX_ACTIVE = 96, // active constraints that are solved together
 	CAU_CONTACT_SWEEPS = 30,
-	// if columns are not whole; with eight sweeps the force was 2 % too small
+	// sweeps if some columns are not whole; with eight sweeps the force was 2 % too small
 	CAU_CONTACT_FEW_SWEEPS = 16,
 	CAU_COLUMNS_RENEWED = 3, // lagging columns that are renewed each tick
 };
@@ -57,7 +58,7 @@ typedef struct cau_contact_tool {
 	double jaw;
 	int part;           // the cau_tool_part that pushes
 	double offset[3];   // m, from the commanded to the actual position: coupling.h
-	double measured[3]; // m, offset[] at the time when the gaps were measured
+	double measured[3]; // m, value of offset[] when the gaps were measured
 	double compliance;  // m/N, of the virtual coupling
 	bool passing;       // the tool would pass tissue that no contact constraint holds
 	bool held_back;     // contact held the tool back in this tick
@@ -74,15 +75,18 @@ typedef struct cau_contact_row {
 	int32_t answer;       // index of S W^T in cau_contact_set.answer; -1: the row of S of column[0]
 	int32_t tool;
 	bool attached;
-	bool slipping;        // the attachment was at its slip force in the last solve
-	double side[3];       // unit vector in the tool's frame, towards the tissue's side; 0: any side
-	double way_m;         // largest distance that the point may have to move along side[]
-	double slack_m;       // penetration that is allowed in this tick
-	double normal[3];     // unit normal, outward from the tool
-	double gap;           // m, signed distance at the present iterate, plus slack_m
-	double no_slip[3][3]; // m, corners if they stuck to the tool at its anchor
-	double anchor[3];     // m, target of an attachment if the tool were at its anchor
-	double reaction[3];   // N, force of the tool on the point
+	bool slipping; // the attachment was at its slip force in the last solve
+	// unit vector in the tool's frame, towards the tissue's side; 0: the point may leave in any
+	// direction
+	double side[3];
+	double way_m;     // largest distance that the point may have to move along side[]
+	double slack_m;   // penetration that is allowed in this tick
+	double normal[3]; // unit normal, outward from the tool
+	double gap;       // m, signed distance at the present iterate, plus slack_m
+	// m, positions that the corners would have if they stuck to the tool at its anchor
+	double no_slip[3][3];
+	double anchor[3];   // m, target of an attachment if the tool were at its anchor
+	double reaction[3]; // N, force of the tool on the point
 } cau_contact_row;
 
 // A face that a tool pushed or penetrated at the end of a step.
@@ -127,8 +131,9 @@ struct cau_contact_set {
 	// version of the factor from which each column was made
 	uint64_t column_version[CAU_MAX_COLUMNS];
 	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count): whole columns of A^-1, m/N
-	// Columns that constraints use, ascending. If more than half of all columns are used, the list
-	// has all. Only these columns of answer[] and step[] are up to date.
+	// Indices of the columns that constraints use, ascending. If more than half of all columns are
+	// used, the list has all columns. Only the listed columns of answer[] and step[] are up to
+	// date.
 	int32_t used_count;
 	int32_t used[CAU_MAX_COLUMNS];
 	uint64_t epoch;       // epoch of the factor; the columns are discarded when it changes
@@ -165,14 +170,14 @@ void cau_contact_clear(cau_contact_set *set);
 void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above,
                        bool pushed);
 
-// Called at a step's end. Remembers the faces that were pushed or touched, so that the next step
-// knows their sides.
+// Called at the end of a step. Stores the faces that were pushed or touched, so that the next step
+// knows on which side of the tool they are.
 void cau_contact_remember(cau_contact_set *set);
 
 // Forgets the sides of all faces at a tool.
 void cau_contact_forget(cau_contact_set *set, int32_t tool);
 
-// Returns what is remembered of a face at a tool; NULL if nothing is.
+// Returns the memory of a face at a tool; NULL if there is none.
 const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t tool,
                                              int32_t face);
 
@@ -188,8 +193,9 @@ cau_vec3 cau_contact_weighted(const cau_contact_row *row, const double *corner);
 // Returns the constraint's point for vertex positions x (m, vertex_count x 3).
 cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x);
 
-// Adds a constraint. If the capacity is too small for it or its corners' columns, counts it in
-// left_out_count and returns false. The caller therefore adds the deepest first.
+// Adds a constraint. If the capacity is too small for the constraint or its corners' columns,
+// counts the constraint in left_out_count and returns false. The caller therefore adds the deepest
+// constraints first.
 bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 
 // Finds or computes the columns of the constraints. Called once a step, after the constraints are

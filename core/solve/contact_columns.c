@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes and keeps the columns of A^-1 that contact needs: one for each corner, kept from tick to
-// tick. The first CAU_WHOLE_COLUMNS are whole. Of the others only the entries of S are kept.
+// Computes the columns of A^-1 that contact needs, and keeps them from tick to tick: one column for
+// each corner. The first CAU_WHOLE_COLUMNS columns are whole. Further columns have only their
+// entries of S.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -162,7 +163,7 @@ static bool holds_anything(const cau_contact_set *set)
 }
 
 // Renews the columns that lag most, three at a time. If tissue is torn and something is grasped,
-// renews all that lag.
+// renews all columns that lag.
 static void renew(cau_contact_set *set, cau_step_solver *solver)
 {
 	int32_t place[CAU_COLUMNS_RENEWED];
@@ -189,7 +190,8 @@ static void find_used(cau_contact_set *set)
 			set->used[set->used_count++] = k;
 }
 
-// Finds the columns of a constraint's free corners, and its S W^T. For a fixed vertex this is 0.
+// Finds the columns of a constraint's free corners, and the constraint's S W^T. For a fixed vertex
+// S W^T is 0.
 static void find_columns(cau_contact_set *set, int32_t index)
 {
 	cau_contact_row *row = &set->row[index];

@@ -2,17 +2,17 @@
 // The virtual coupling between the commanded and the actual pose of a tool (J. E. Colgate 1995; the
 // actual pose is the god-object of C. B. Zilles and J. K. Salisbury 1995).
 //
-// A spring connects the tool with its commanded position. The tool's offset from it is the sum of
-// the forces of tissue on the tool over the spring's stiffness, and 0 without contact. The force of
-// the spring is at most force_max_n: if it is extended farther than at that force, the force stays
-// constant. So the tool pushes with at most force_max_n. Where tissue resists more, the tool stops
-// and the commanded position moves on.
+// A spring connects the tool with its commanded position. The tool's offset from this position is
+// the sum of the forces of tissue on the tool over the spring's stiffness, and 0 without contact.
+// The spring's force grows with its extension up to force_max_n, and is constant from there. So the
+// tool pushes with at most force_max_n. If tissue resists more, the tool stops and the commanded
+// position moves on.
 //
-// The energy of the spring is quadratic, then linear. Each iteration uses the parabola that touches
-// it at the tool's present offset and lies above it everywhere, so that the iteration lowers the
-// energy (P. Huber 1981). Within an iteration the tool is a further unknown of the contact system,
-// in balance with all its constraints. So nothing is explicit, whatever the stiffness. The tool's
-// rotation is always the commanded one.
+// The energy of the spring is quadratic in the extension up to force_max_n, then linear. Each
+// iteration uses a parabola that touches this energy at the tool's present offset and is nowhere
+// below it. So the iteration lowers the energy (P. Huber 1981). Within an iteration the tool is a
+// further unknown of the contact system, in balance with all its constraints. So the method is
+// implicit, whatever the stiffness. The tool's rotation is always the commanded rotation.
 #pragma once
 
 #include "solve/contact.h"

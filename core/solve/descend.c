@@ -91,11 +91,11 @@ static void move_apart(cau_step_solver *solver, double scale)
 }
 
 // Returns a shorter part of the step: the minimum of a parabola through the objective before the
-// step, its slope there, and the objective after a part `scale` of the step. Tissue that is
-// stretched far beyond its rest shape is thousands of times stiffer than A. Halving alone would
-// need more tries than there are. But a parabola describes such a law poorly. So the result is at
-// most half of `scale`, to make progress, and at least a hundredth, so that the step is not given
-// up.
+// step, the slope there, and the objective after a part `scale` of the step. Tissue that is
+// stretched far beyond its rest shape is thousands of times stiffer than A. If the part were only
+// halved, the number of tries would not be enough. But a parabola describes such tissue poorly. So
+// the result is at most half of `scale`, to make progress. It is at least a hundredth of `scale`,
+// so that the step is not abandoned.
 static double shorter(double scale, double before, double after, double slope)
 {
 	CAU_ASSERT(scale > 0 && scale <= 1, "a part of %g of the step", scale);
@@ -105,11 +105,12 @@ static double shorter(double scale, double before, double after, double slope)
 	return scale * fmin(fmax(bottom, 0.01), 0.5);
 }
 
-// True if the trial step, of which a part `scale` was taken, is accepted. Eq. 4 with every
-// element's energy may not rise. A law without an energy counts as w/2 |R|^2. Near the fixed point
-// of such a law, its forces can lead to a higher value. Then the work against all forces along the
-// step counts, by the trapezoidal rule between its ends. This work is negative for every step that
-// is short enough. So laws with an energy keep their safeguard.
+// True if the trial step, of which a part `scale` was taken, is accepted. The condition is that eq.
+// 4 with every element's energy does not rise. A law without an energy contributes w/2 |R|^2. Near
+// the fixed point of such a law, its forces can lead to a higher value. In that case the condition
+// is that the work against all forces along the step is negative, by the trapezoidal rule between
+// the step's ends. This work is negative for every step that is short enough. So laws with an
+// energy keep their safeguard.
 static bool may_stand(cau_step_solver *solver, double scale, double value, double objective,
                       double noise)
 {
@@ -123,7 +124,7 @@ static bool may_stand(cau_step_solver *solver, double scale, double value, doubl
 }
 
 // Takes the trial step if it is accepted. Otherwise tries the plain step, whose slope is `slope`,
-// and then shorter ones. Returns false if none is accepted: the position is unchanged.
+// and then shorter steps. Returns false if no step is accepted: the position is then unchanged.
 static bool take_step(cau_step_solver *solver, bool accelerated, double slope, double *objective)
 {
 	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
@@ -160,9 +161,9 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 	return false;
 }
 
-// Called when the first step had to be shortened: the objective at the guess x + dt v may be so
-// high that a few short steps cannot lower it enough. If the objective at the start of the tick is
-// lower, the iteration restarts there. Eq. 4 only falls from then on, so that a tick never ends
+// Restarts the iteration at the start of the tick if the objective is lower there. Called when the
+// first step had to be shortened: the objective at the guess x + dt v may be so high that a few
+// short steps cannot lower it enough. After a restart eq. 4 only falls, so that a tick never ends
 // with more energy than it began with. Returns true if the iteration restarted.
 static bool go_back(cau_step_solver *solver, double *objective)
 {
@@ -189,10 +190,11 @@ static double step_norm(cau_step_solver *solver)
 	return sqrt(fmax(-dot(solver, solver->increment, solver->gradient), 0));
 }
 
-// True if the last step can be taken without an evaluation. No step of this tick was taken back,
-// and the square of the step's length is less than the rounding of E's change. (The square of the
-// length is the expected decrease of E.) If a law has no energy by which a bad step would show, a
-// hundredth of E is the limit: even if the step added as much, the tick would not show it.
+// True if the last step can be taken without an evaluation. That requires that no step of this tick
+// was taken back, and that the square of the step's length is less than the rounding of E's change.
+// (The square of the length is the expected decrease of E.) If a law has no energy, a bad step
+// would not show in E. Then a hundredth of E is the limit: even if the step added as much, the tick
+// would not show it.
 static bool is_harmless(const cau_step_solver *solver, double norm, double objective)
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
@@ -203,8 +205,8 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
 }
 
-// True if the step was shortened so that tissue does not cross tissue. Such a step does not show
-// the remaining error.
+// True if the step was shortened so that tissue does not cross tissue. The length of such a step
+// says nothing about the remaining error.
 static bool is_held_back(const cau_step_solver *solver)
 {
 	return solver->collide && solver->collide->held_back;
@@ -217,13 +219,14 @@ static bool meets_others(const cau_step_solver *solver)
 	return solver->contact && solver->contact->others;
 }
 
-// True if the active constraints changed, or their points on the faces.
+// True if the active constraints changed, or if their points moved on their faces.
 static bool touches_elsewhere(const cau_step_solver *solver)
 {
 	return meets_others(solver) || (solver->contact && solver->contact->elsewhere);
 }
 
-// True if the pairs of tissue that touch have changed. Earlier steps then predict nothing.
+// Updates the hash of the pairs of tissue that touch. Returns whether the pairs have changed:
+// earlier steps then predict nothing.
 static bool forget_touching(const cau_step_solver *solver, uint64_t *touching)
 {
 	bool changed = solver->collide->touching_hash != *touching;
@@ -260,9 +263,9 @@ static void find_increment(cau_step_solver *solver)
 		cau_solver_global(solver);
 }
 
-// Finds the first increment, which is A's own: it moves a free piece exactly, as in free fall.
-// Vertices that it would move farther than contact can follow are excluded from tissue contact.
-// Then the increment is computed again.
+// Finds the first increment by A alone, without Newton's method: A moves a free piece exactly, as
+// in free fall. Vertices that the increment would move farther than contact can follow are excluded
+// from tissue contact. Then the increment is computed again.
 static void find_first_increment(cau_step_solver *solver, double *objective)
 {
 	cau_solver_global(solver);
@@ -298,17 +301,19 @@ static void forget_history(cau_step_solver *solver, descent *d)
 // Mixes the increment into the history. Returns whether the step is accelerated.
 static bool mix(cau_step_solver *solver, descent *d, int32_t k, double norm)
 {
-	if (k == 1 && solver->loose.region.n) // increments by M from here on
+	if (k == 1 && solver->loose.region.n) // from here on, increments are computed with M
 		forget_history(solver, d);
-	// Steps of a converging iteration get shorter. If a law has no energy by which a bad mix would
-	// show, a step of double length indicates a misleading history. The history is then discarded.
+	// Steps of a converging iteration get shorter. If a law has no energy, a bad mix would not show
+	// in the energy. So a step of double length is taken as a sign of a misleading history. The
+	// history is then discarded.
 	if (!solver->conservative && k && norm > 2 * d->last)
 		cau_anderson_start(solver);
 	d->last = norm;
 	return cau_anderson_mix(solver, d->steps++);
 }
 
-// Takes the last step of a round without an evaluation if that is harmless. Returns whether it did.
+// Takes the last step of a round without an evaluation if is_harmless allows it. Returns whether it
+// took the step.
 static bool spare(cau_step_solver *solver, descent *d, double norm)
 {
 	if (!is_harmless(solver, norm, d->objective) ||
@@ -402,7 +407,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	cau_status status = cau_loose_choose(solver, error);
 	if (status)
 		return status;
-	// If the guess leads tissue into tissue, the energy may exceed that at the tick's start.
+	// If the guess moves tissue into tissue, the energy may exceed the energy at the tick's start.
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
 		go_back(solver, &d.objective);
 	for (int32_t k = 0; !iterate(solver, &d, k, &status, error) && !is_last(solver, k);)

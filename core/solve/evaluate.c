@@ -88,19 +88,22 @@ double cau_solver_elastic_energy(const cau_step_solver *solver)
 	return energy_of_elements(solver) - cau_solver_viscous_energy(solver);
 }
 
-// Rounding of the sum E, or of the residuals R if that is larger. A step that promises less than
-// the rounding of each element's residual can change is judged by that rounding. With w/2 |R|^2 of
-// N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR in the root mean square. In stiff
-// tissue with almost no load this is far more than the rounding of E. If both are similar, the
-// rounding of E counts.
+// Returns the change of E, J, that rounding alone can make: the rounding of the sum E, or of the
+// residuals R if that is larger. A step may promise a decrease of E that is less than the rounding
+// of each element's residual can change. Such a step is judged by the rounding of the residuals.
+// With w/2 |R|^2 of N elements that add up to E, w |R| dR is sqrt(2 w E / N) dR in the root mean
+// square. In stiff tissue with almost no load this is far more than the rounding of E. If both are
+// similar, the rounding of E is used.
 double cau_solver_noise(const cau_step_solver *solver, double promise)
 {
 	double elastic = fabs(cau_solver_elastic_energy(solver));
 	double of_sum = solver->kernels->vectors->rounding * elastic;
-	// for one residual; not a sum of thousands of terms
+	// Rounding of a single residual, which is less than that of a sum of thousands of terms.
 	double one_term = 0.06 * solver->kernels->vectors->rounding;
 	double of_residuals = one_term * sqrt(2 * solver->stiffness_j * elastic);
-	if (solver->collide) // such steps might drive a fold into itself
+	// if tissue touches, of_sum is the limit: with a larger one, steps might drive a fold into
+	// itself
+	if (solver->collide)
 		return of_sum;
 	return of_residuals > 2 * of_sum && promise < of_residuals ? of_residuals : of_sum;
 }

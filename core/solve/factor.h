@@ -50,8 +50,9 @@ cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t 
                              const int32_t *row, const double *value, int add, cau_error *error);
 
 int32_t cau_factor_size(const cau_factor *factor);
-const int32_t *cau_factor_permutation(const cau_factor *factor); // (n): row k of L is row p[k] of A
-const int32_t *cau_factor_places(const cau_factor *factor);      // (n): index in L of each row of A
+// (n): row k of L is row permutation[k] of A
+const int32_t *cau_factor_permutation(const cau_factor *factor);
+const int32_t *cau_factor_places(const cau_factor *factor); // (n): index in L of each row of A
 // Returns the number of entries of column j of L below the diagonal, with their rows (ascending)
 // and values. *pivot is D_jj. The arrays are valid until the next operation.
 int32_t cau_factor_column(const cau_factor *factor, int32_t j, const int32_t **row,

@@ -7,7 +7,8 @@
 #include "solve/coupling.h"
 #include "tool/face_distance.h"
 
-// of the tip's radius: at this depth the point is not moved, only pushed out
+// Depth of a point inside the tool, as a share of the tip's radius, from which the point is not
+// moved along its face and only pushed out.
 static const double passed_share = 0.5;
 
 static void corners_of(const cau_contact_set *set, const cau_step_solver *solver,
@@ -20,7 +21,7 @@ static void corners_of(const cau_contact_set *set, const cau_step_solver *solver
 			cau_pose_to_local(&pose, cau_vec3_of(solver->position + 3 * (size_t)row->vertex[k]));
 }
 
-// tilt = r R L S for the constraint's corners (follow.h). Fixed corners contribute 0.
+// Computes tilt = r R L S for the constraint's corners (follow.h). Fixed corners contribute 0.
 static void find_tilt(const cau_contact_set *set, const cau_contact_row *row,
                       const cau_vec3 corner[3], double tilt[3][3])
 {
@@ -80,7 +81,7 @@ void cau_contact_follow(cau_contact_set *set, const cau_step_solver *solver, int
 	if (!shorten(tilt, way))
 		return;
 	for (int k = 0; k < 3; k++)
-		// the new weight, before the sum is set to 1
+		// weights before they are scaled to the sum 1
 		sum += way[k] = fmax(row->weight[k] + way[k], 0);
 	for (int k = 0; k < 3; k++) {
 		row->went += fabs(way[k] / sum - row->weight[k]);

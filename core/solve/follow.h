@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moves the contact point of a face to the point that is nearest to the tool, in every iteration.
-// As a face tilts, another of its points touches.
+// The nearest point changes as the face tilts.
 //
 // A move to the nearest point in one go would oscillate. A face that is pushed at its nearest point
-// tilts away there. Then another point is nearest, and a push there tilts the face back. The tilt
-// can be predicted. If the point of a push r moves by dw, in weights, the face tilts by r S dw,
-// with S of its corners. The nearest point of a tip of radius R then moves by r R L S dw, in
-// weights, with L_kl = grad w_k . grad w_l. So of the way dw_n to the nearest point, the contact
-// point moves by
+// tilts away there. Then another point is nearest, and a push there tilts the face back. But the
+// tilt can be predicted. If the point of a push r moves by dw, in weights, the face tilts by r S
+// dw, where S belongs to the face's corners. The nearest point of a tip of radius R then moves by r
+// R L S dw, in weights, with L_kl = grad w_k . grad w_l. So of the way dw_n to the nearest point,
+// the contact point moves by
 //
 //     (I + r R L S)^-1 dw_n.
 //

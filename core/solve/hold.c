@@ -39,10 +39,12 @@ void cau_hold_prepare(cau_contact_set *set)
 		if (set->row[i].attached && set->hold_count < CAU_MAX_HELD)
 			set->hold_row[set->hold_count++] = i;
 	if (!factor(set))
-		set->hold_count = 0; // lagging columns; cau_hold_solve then does nothing
+		// lagging columns can make the matrix indefinite; cau_hold_solve then does nothing
+		set->hold_count = 0;
 }
 
-// Solves for x (hold_count), one coordinate, in place.
+// Solves with the factor for one coordinate of the attachments. `x` (hold_count) is the right-hand
+// side on entry and the solution on return.
 static void substitute(const cau_contact_set *set, double *x)
 {
 	int32_t n = set->hold_count;
@@ -60,7 +62,7 @@ static void substitute(const cau_contact_set *set, double *x)
 }
 
 // Finds the change dr of each reaction: (S + 1/k) dr = anchor + offset - x - step - r / k. S
-// includes the tools' couplings.
+// includes the springs that couple the tools to their commanded poses.
 static void changes(const cau_contact_set *set, const cau_step_solver *solver,
                     double dr[3][CAU_MAX_HELD])
 {

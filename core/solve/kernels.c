@@ -152,7 +152,7 @@ static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *
 	return pack_node(sweep, &sweep->supernode[supernode], factor, panels, part);
 }
 
-enum { STRIP = 64 * LANES }; // reals in one sum: few enough that sums in float stay accurate
+enum { STRIP = 64 * LANES }; // reals in one sum; few enough that sums in float stay accurate
 
 static double dot(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n)
 {

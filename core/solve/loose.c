@@ -46,8 +46,8 @@ static bool has_range(const cau_step_solver *solver, int32_t share, int32_t slot
 	       cau_newton_stiffness(solver, &(cau_newton_element){share, slot}) == CAU_NEWTON_RANGE;
 }
 
-// Lists the shares with triangles that have no vertex of fat. Only these are examined. If sheets
-// with a range have too many vertices for a region, they stay with A.
+// Lists the shares with triangles that have no vertex of fat. Only these shares are examined. If
+// sheets with a range have too many vertices for a region, their vertices are left to A.
 static bool list_shares(cau_step_solver *solver)
 {
 	cau_loose *loose = &solver->loose;
@@ -131,8 +131,8 @@ static void leave_out_ring(const cau_step_solver *solver, uint8_t *chosen)
 			chosen[v] = LEFT_OUT;
 }
 
-// Rings of vertices around a tool's contact that stay with A. Settled vertices beside a tool might
-// pass through it.
+// Rings of vertices around a tool's contact that are left to A. If vertices beside a tool were
+// settled by Newton's method, they might pass through the tool.
 enum { RINGS = 2 };
 
 // Vertices of contact constraints stay with A, because contact is corrected by columns of A^-1.

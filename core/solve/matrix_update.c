@@ -6,7 +6,8 @@
 
 #include "cautery/assert.h"
 
-static const double swap_after_s = 1.0 / 60.0; // from the start of a new factor to its use
+// time, s, from the start of a new factor's computation to its use
+static const double swap_after_s = 1.0 / 60.0;
 
 enum { PER_UPDATE = CAU_UPDATE_RANK / 3 }; // elements that always fit in one update
 
@@ -189,8 +190,8 @@ static void note_operations(cau_matrix_update *update, const cau_waiting *list, 
 }
 
 // Returns the number of updates for this tick. Normally half of the waiting elements are downdated,
-// so that a tick that parts many elements shares the work with the next. If the oldest has waited
-// long enough, the tick does as many as it can.
+// so that a tick that parts many elements shares the work with the next tick. If the oldest element
+// has waited long enough, the tick does as many updates as it can.
 static int updates_due(const cau_matrix_update *update, uint64_t tick)
 {
 	CAU_ASSERT(update->waiting_count > 0, "updates are due for %d elements", update->waiting_count);

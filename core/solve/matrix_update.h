@@ -4,20 +4,21 @@
 // A removed element stays in the factor, without force, until its part is downdated. Each tick
 // downdates a few elements exactly. If more elements wait than downdates can handle, another thread
 // computes a whole new factor. The new factor comes into use a fixed number of ticks later, so that
-// every replay swaps at the same tick. It is computed in the memory of the old one: meanwhile the
-// steps use the packed panels, and only the factor's order is read. The new factor's own panels
-// exist from the start of its computation to just after the swap.
+// every replay swaps at the same tick. The new factor is computed in the memory of the old factor.
+// Meanwhile the steps use the packed panels, and read only the order of the factor. The panels of
+// the new factor exist from the start of its computation to just after the swap.
 #pragma once
 
 #include "base/background.h"
 #include "solve/solver.h"
 
 enum {
-	CAU_LEAST_UPDATES = 2, // updates of rank 8 in a tick, while any element waits
+	CAU_LEAST_UPDATES = 2, // least updates of rank 8 in a tick while an element waits
 	CAU_MOST_UPDATES = 6,
-	// an element that has waited this many ticks is downdated as soon as possible
+	// ticks of waiting after which an element is downdated as soon as possible
 	CAU_WAITING_TICKS = 2,
-	CAU_DOWNDATES_AT_MOST = 2000, // elements; after as many, a canonical factorisation follows
+	// downdated elements after which a canonical factorisation follows
+	CAU_DOWNDATES_AT_MOST = 2000,
 };
 
 typedef struct cau_waiting {

@@ -8,24 +8,29 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// R is settled once a step of Newton's method moves none of its vertices by more than a tenth of
-// the error that the session's step may have. That error is `accuracy` times the motion of the
-// tick, and at least half a micrometre (accuracy.c).
+// SETTLED: R is settled once a step of Newton's method moves none of R's vertices by more than this
+// share of the error that the session's step may have. SETTLED_M: least value of this limit, m. The
+// allowed error is `accuracy` times the motion of the tick, and at least half a micrometre
+// (accuracy.c).
 static const double SETTLED = 0.1, SETTLED_M = 5e-8;
-static const double SETTLED_EXACTLY_M = 1e-12; // if a step has no accuracy to reach: rounding
-// A motion that counts as none, m. Its error may be half a micrometre, which is 1 % of this.
+// SETTLED_M for a step without a wanted accuracy; this is rounding
+static const double SETTLED_EXACTLY_M = 1e-12;
+// Least motion of R, m, by which a length is divided to get a relative error. So with little
+// motion, an error of half a micrometre is 1 %.
 static const double NOTHING_M = 5e-5;
-// Bounds, m, of the way of a vertex while R settles once, with tissue contact. Within the bounds,
-// the way is that of the fastest vertex of R in the tick. All pairs within the way must be known.
+// Bounds, m, for the way that a vertex of R may move while R settles once, with tissue contact.
+// Between the bounds, the way is the longest motion of a vertex of R in the tick. All pairs within
+// the way must be known.
 static const double LEAST_WAY_M = 1e-4, MOST_WAY_M = 1e-3;
-// Most steps of Newton's method for R in one iteration, and for the part that still moves after
-// each of them. A tab that comes free and buckles takes up to 25.
+// MOST_STEPS: most steps of Newton's method for R in one iteration. MOST_PART_STEPS: after each of
+// these steps, most steps for the part of R that still moves. A tab that comes free and buckles
+// takes up to 25 steps.
 enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
-// Least share of the decrease predicted by the slope that a step must bring [Armijo 1966].
+// Least decrease of E in a step, as a share of the decrease that the slope predicts [Armijo 1966].
 static const double ARMIJO = 1e-4;
-// On a quadratic, a full step lowers the energy by half of what the slope predicts. A step that
-// lowers it by more than this share was too short. The next step then replaces negative eigenvalues
-// by 0.
+// Share of the decrease that the slope predicts. A step that lowers the energy by more than this
+// share was too short. (On a quadratic, a full step lowers the energy by half of what the slope
+// predicts.) The next step then replaces negative eigenvalues by 0.
 static const double TOO_SHORT = 0.8;
 
 // ---- vectors by row
@@ -101,16 +106,17 @@ static void keep_rows(const cau_newton *newton, const cau_step_solver *solver)
 		       3 * sizeof(double));
 }
 
-// Returns the part of the step to try next: the minimum of E + slope t + c t^4. A sheet that turns
-// along a straight step is stretched by the square of the part, so E rises by its fourth power.
+// Returns the part of the step to try next: the minimum of E + slope t + c t^4, with the part t. A
+// sheet that turns along a straight step is stretched by the square of the part, so E rises by the
+// part's fourth power.
 static double shorter(double scale, double rise, double slope)
 {
 	double least = rise > 0 && isfinite(rise) ? cbrt(-slope * scale / (4 * rise)) : 0;
 	return scale * fmin(fmax(least, 0.05), 0.5);
 }
 
-// Takes the step in `field`, or a part of it, so that the energy falls. Returns false if no part
-// lowers it.
+// Takes the step in `field`, or a shorter part of the step, so that the energy falls. Returns false
+// if no part of the step lowers the energy.
 static bool take_step(cau_newton *newton, cau_step_solver *solver)
 {
 	double energy = newton->energy, slope = 0, scale = 1;
@@ -352,8 +358,9 @@ cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_erro
 
 // ---- increment
 
-// M does not keep the momentum of a body that nothing holds, as A does. So the increment is shifted
-// until the mean position is that of s: forces between the body's parts do not move it.
+// Shifts the increment so that the mean position becomes the mean of s. This is for a body that
+// nothing holds: M does not keep the body's momentum, as A does. Forces between the body's parts do
+// not move its mean position.
 static void keep_momentum(cau_step_solver *solver)
 {
 	const cau_tissue *tissue = solver->tissue;

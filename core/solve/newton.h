@@ -3,8 +3,8 @@
 // its plane as within it. A tab along a cut, a flap or a sheet that hangs by an edge is soft there:
 // only mass and tension resist, and a step by A leaves 70 to 90 % of its motion undone.
 //
-// So the vertices of slack triangles (CAU_SLACK) and of sheets with a range make up a region R, if
-// it has at most CAU_NEWTON_ROWS vertices. N is all the rest. Each iteration has two parts:
+// So the vertices of slack triangles (CAU_SLACK) and of sheets with a range form a region R, if R
+// has at most CAU_NEWTON_ROWS vertices. N has all other vertices. Each iteration has two parts:
 //
 //   settle     moves R to where E is least with N held still, by Newton's method in double with a
 //              line search of R's own share of E;
@@ -14,20 +14,21 @@
 //                  e = -H_RR^-1 g_R,   d_N = -(A^-1 (0; g_N + H_NR e))_N,
 //                  d_R = -H_RR^-1 (g_R + H_RN d_N).
 //
-// M is symmetric and positive definite, so Anderson acceleration works in its norm. Vertices near
-// a tool and those of fat belong to N: contact keeps its columns of A^-1.
+// M is symmetric and positive definite, so Anderson acceleration works in its norm. Vertices near a
+// tool and vertices of fat belong to N, because contact uses the columns of A^-1.
 //
-// Where tissue touches tissue, E has the energy of the pairs and grips of R (newton_touch.c). A
-// vertex that touches moves by less than half of the gap in a step of Newton's method. The settled
-// positions are filtered as every step is (apart.c), so nothing crosses. In a tick in which tissue
-// is inverted, diverges or crosses other tissue, R is empty. Such tissue was seen to come back by
-// A's steps, and not by Newton's.
+// Where tissue touches tissue, E includes the energy of the pairs and grips of R (newton_touch.c).
+// A vertex that touches moves by less than half of the gap in a step of Newton's method. The
+// settled positions are filtered as every step is (apart.c), so no tissue crosses. In a tick in
+// which tissue is inverted, diverges or crosses other tissue, R is empty. In trials, such tissue
+// recovered by steps of A, and not by steps of Newton's method.
 //
 // H has a block of 3 x 3 for each pair of vertices. A negative eigenvalue of an element's part is
-// replaced by its size, or by 0 if the last step was too short [Chen, Xu and Jacobson 2024]. A tab
-// that is pressed together buckles. With 0 it flies too far. With sizes alone, steps are too short
-// where other elements outweigh the negative ones. No result depends on an earlier step, so
-// snapshots hold nothing of this.
+// replaced by its absolute value, or by 0 if the last step was too short [Chen, Xu and Jacobson
+// 2024]. Negative eigenvalues occur in a tab that is pressed together and buckles. With 0 the tab
+// moves too far. With absolute values alone, steps are too short where other elements outweigh the
+// negative eigenvalues. No result depends on an earlier step, so snapshots hold no state of
+// Newton's method.
 #pragma once
 
 #include <stdbool.h>
@@ -42,9 +43,9 @@ enum {
 	// Most rows of a region. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
 	// than a tick of 60 Hz. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_ROWS = 1024,
-	// Most elements that Newton's steps assemble in one step of a session: about ten milliseconds.
-	// Beyond that number the step continues with A, and its reported error includes the motion left
-	// undone. A scene that asks for Newton's method has no such limit.
+	// Most elements that Newton's method assembles in one step of a session: about ten milliseconds
+	// of work. Beyond that number the step continues with A, and the step's reported error includes
+	// the motion left undone. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_WORK = 24000,
 };
 
@@ -84,7 +85,7 @@ typedef struct cau_newton {
 	int32_t pair_count, pair_room, grip_count, grip_room;
 	double *room;    // (n): longest motion of each vertex in one step, m; INFINITY: not in contact
 	double energy;   // J: R's share of E: inertia, drag, and all elements with a vertex in R
-	double negative; // a negative eigenvalue is replaced by this times its absolute value: 1 or 0
+	double negative; // factor on the absolute value that replaces a negative eigenvalue: 1 or 0
 } cau_newton;
 
 // The solver's state of Newton's method.
@@ -95,7 +96,8 @@ typedef struct cau_loose {
 	uint8_t *in_fat;         // (vertex_count): vertices of fat
 	int32_t share_count;     // shares of the local step that have triangles without a vertex of fat
 	int32_t *share;
-	bool *ranged;   // (work_count): the share has such a triangle with a range
+	// (work_count): whether the share has a triangle without a vertex of fat and with a range
+	bool *ranged;
 	int64_t work;   // elements assembled so far in this step
 	bool settled;   // R's share of E is at its minimum
 	bool moved;     // R has moved in this settling
@@ -126,8 +128,8 @@ void cau_newton_finish(cau_newton *newton);
 // and returns false if there is no memory. cau_newton_measure computes gradient and energy only.
 bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver);
 void cau_newton_measure(cau_newton *newton, const cau_step_solver *solver);
-// newton_touch.c: lists the pairs and grips of tissue contact that have a row: those of `from`; if
-// `from` is NULL, all. Returns false if there is no memory.
+// newton_touch.c: lists the pairs and grips of tissue contact that have a row, out of those in
+// `from`. If `from` is NULL, out of all. Returns false if there is no memory.
 bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
                               const cau_newton *from);
 // Adds the energy, gradient and stiffness of tissue contact, and computes `room`.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A region's share of eq. 4 in double: its energy, gradient and Hessian. The parts are inertia,
-// drag, and w K of each element in its own F. Negative eigenvalues of K count by their absolute
-// value or not at all.
+// Computes a region's share of eq. 4 in double: energy, gradient and Hessian. The parts are
+// inertia, drag, and w K of each element in its own F. Negative eigenvalues of K are replaced by
+// their absolute value or by 0.
 //
 // The energy of a triangle with a target is E = w/2 |F - Q T^(1/2)|^2, where Q is the polar factor
 // of F T^(1/2) = Q S. When F changes by dF, Q turns in its plane by <C, dF> / tr S. Here C = Q J
@@ -21,7 +21,8 @@ typedef struct matrix3 {
 	double at[3][3];
 } matrix3;
 
-// K of a triangle by the columns of F: 00, 11, and 01 (rows are of column 0, columns of column 1).
+// K of a triangle by the columns of F. k[0] is for column 0 with itself, k[1] for column 1 with
+// itself. k[2] has the rows of column 0 and the columns of column 1.
 typedef struct sheet_hessian {
 	matrix3 k[3];
 } sheet_hessian;
@@ -44,7 +45,7 @@ static void add_identity(matrix3 *to, double s)
 		to->at[c][c] += s;
 }
 
-// Returns an eigenvalue as H uses it.
+// Returns the value by which H replaces an eigenvalue: a negative one is multiplied by -`negative`.
 static double counted(double value, double negative)
 {
 	return value < 0 ? -negative * value : value;
@@ -83,14 +84,14 @@ typedef struct sheet_answer {
 	double squared;
 	sheet_hessian *to;
 	double negative; // factor for negative eigenvalues, as in cau_newton
-	// Viscosity's stress in the plane, over the element's weight. Across the plane it adds
-	// stiffness to that of the limit. If `across` is true, K already contains that part.
+	// Viscosity's stress in the plane, over the element's weight. Across the plane this stress adds
+	// to the limit's stiffness. If `across` is true, K already contains this addition.
 	symmetric2 tension;
 	bool across;
 } sheet_answer;
 
 // The polar factor of F T^(1/2) = Q S. If `full` is false, F has not its full rank, and Q is the
-// one that the local step kept.
+// factor that the local step kept.
 typedef struct sheet_polar {
 	bool full;
 	double stretches;   // tr S
@@ -164,8 +165,9 @@ static void add_target(sheet_answer *answer, const cau_vec3 f[2], symmetric2 roo
 		add_target_hessian(answer, f, root, &polar);
 }
 
-// Strains kept in a range (strain_range.h). A column of F beyond the range adds stiffness along
-// itself. Across itself it adds the stiffness of its tension or pressure.
+// Adds K for strains that are limited to a range (strain_range.h). A column of F beyond the range
+// adds stiffness along the column. Across the column it adds the stiffness of its tension or
+// pressure.
 static void add_stretch(sheet_answer *answer, int a, cau_vec3 f, double least, double most)
 {
 	double length = cau_length(f), kept = fmin(fmax(length, least), most);
@@ -212,9 +214,9 @@ static void add_range(sheet_answer *answer, const cau_vec3 f[2], const cau_sheet
 	add_shear(answer, f, group->shear_max);
 }
 
-// Viscosity (viscous_kernel.h) has the energy `share` / 2 |E - R|^2, times the element's weight.
-// The tension is `share` (E - R). The Hessian has two parts: that of dE, and the tension, whose
-// negative eigenvalues are replaced like all others.
+// Returns viscosity's tension `share` (E - R), where R is `from`. Viscosity (viscous_kernel.h) has
+// the energy `share` / 2 |E - R|^2, times the element's weight. Its Hessian has two parts: that of
+// dE, and the tension, whose negative eigenvalues are replaced like all others.
 static symmetric2 tension_of(const cau_vec3 f[2], symmetric2 from, double share)
 {
 	return (symmetric2){share * ((cau_dot(f[0], f[0]) - 1) / 2 - from.a00),
@@ -293,7 +295,7 @@ static sheet_element sheet_at(const cau_step_solver *solver, const cau_local_wor
 	return element;
 }
 
-// The strain R of viscosity.
+// Returns viscosity's reference strain R.
 static symmetric2 strain_at(const cau_step_solver *solver, int32_t slot)
 {
 	void *const *strain = solver->elements.sheet.strain;
@@ -301,7 +303,7 @@ static symmetric2 strain_at(const cau_step_solver *solver, int32_t slot)
 	                    get(solver, strain[2], slot)};
 }
 
-// u = x - X, m
+// Returns u = x - X, m.
 static cau_vec3 displacement_of(const cau_step_solver *solver, int32_t vertex)
 {
 	const double *x = solver->position + 3 * (int64_t)vertex;
@@ -309,7 +311,7 @@ static cau_vec3 displacement_of(const cau_step_solver *solver, int32_t vertex)
 	return (cau_vec3){x[0] - rest[0], x[1] - rest[1], x[2] - rest[2]};
 }
 
-// F = F_0 + [du_1 du_2] D_m'^-1 by columns, as in the local step.
+// Computes F = F_0 + [du_1 du_2] D_m'^-1 by columns, as in the local step.
 static void find_gradient(const cau_step_solver *solver, const sheet_element *element,
                           cau_vec3 f[2])
 {
@@ -470,7 +472,7 @@ static length_element length_at(const cau_step_solver *solver, const cau_local_w
 	return of;
 }
 
-// The residual R as in link_kernel.h: exactly 0 at rest.
+// Returns the residual R as in link_kernel.h: exactly 0 at rest.
 static cau_vec3 length_residual(const length_element *of, cau_vec3 e)
 {
 	double length = cau_length(e);
@@ -538,7 +540,8 @@ static void evaluate(cau_newton *newton, const cau_step_solver *solver, bool hes
 	cau_newton_touch(newton, solver);
 }
 
-// Most blocks of an element between the region and the rest: a hinge's 2 x 2.
+// Most blocks of an element between the region and the rest: two vertices of a hinge in the region,
+// two outside.
 enum { MOST_COUPLED = 4 };
 
 bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver)

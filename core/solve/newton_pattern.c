@@ -159,7 +159,8 @@ static int compare_rows(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-// Columns of L while they are found: the rows of each, and its children in the elimination tree.
+// The columns of L while they are computed: the rows of each column, and the column's children in
+// the elimination tree.
 typedef struct growth {
 	cau_newton *newton;
 	// A's entries below the diagonal, by column, in the factor's order
@@ -178,8 +179,8 @@ static void add_row(growth *of, int32_t column, int32_t row)
 	of->newton->row[of->count++] = row;
 }
 
-// Finds the rows of a column of L: those of A's column, and those of the column's children, without
-// the column itself.
+// Finds the rows of a column of L: the rows of A's column and of the children's columns, without
+// the row of the column itself.
 static bool grow(growth *of, int32_t column)
 {
 	cau_newton *newton = of->newton;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue contact of a region: energy, force and stiffness of its pairs and grips. Also finds how
+// Adds tissue contact to a region: energy, force and stiffness of pairs and grips. Also finds how
 // far each vertex may move in one step of Newton's method, so that no pair crosses.
 #include <math.h>
 #include <stdlib.h>

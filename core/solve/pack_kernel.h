@@ -57,8 +57,8 @@ static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
 	return least;
 }
 
-// Computes columns last_of - count + 1 to last_of of sixteen rows. The columns after them, below
-// `last`, are already computed.
+// Computes columns last_of - count + 1 to last_of of sixteen rows. Later columns, up to `last`, are
+// already computed.
 INLINE void pack_columns(const real *block, int32_t columns, int32_t last, int32_t last_of,
                          int count, pack_rows *x)
 {
@@ -112,7 +112,7 @@ static void pack_multiply(const cau_supernode *node, const pack_dense *dense, re
 // NARROW_MOST.
 INLINE void pack_store(const real *in, real inverse_scale, void *out, bool narrow)
 {
-	// positive, and half a unit larger: truncation then rounds
+	// an offset that makes the value positive and half a unit larger: truncation then rounds
 	const real up = NARROW_MOST + (real)1.5;
 	for (int v = 0; v < PACK_VECTORS; v++) {
 		vreal w = v_load(in, v * LANES);

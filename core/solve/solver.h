@@ -19,11 +19,11 @@
 
 enum {
 	CAU_MAX_BACKTRACKS = 8,
-	// Largest number of elements times iterations in a step that has an accuracy to reach. One
-	// costs 30 ns on one core of an AMD EPYC, so the limit is five milliseconds, a third of a tick
-	// of 60 Hz. Small tissue can therefore have many iterations.
+	// Largest number of elements times iterations in a step that has a wanted accuracy. One element
+	// in one iteration costs 30 ns on one core of an AMD EPYC, so the limit is five milliseconds, a
+	// third of a tick of 60 Hz. Small tissue can therefore have many iterations.
 	CAU_SOLVER_EFFORT = 160000,
-	CAU_NEWTON_COST = 14,   // cost of an element in Newton's assembly, in elements of an iteration
+	CAU_NEWTON_COST = 14,   // cost of an element in Newton's assembly, over that in an iteration
 	CAU_VERTEX_CHUNK = 256, // vertices in one chunk of a vertex loop
 };
 
@@ -53,15 +53,15 @@ struct cau_step_solver {
 	cau_sweep sweep;
 	cau_loose loose;         // allocated in the first step
 	int64_t whole_panels;    // size in bytes above which panels of single precision are narrow
-	uint64_t factor_version; // counts every change of the factor
-	uint64_t factor_epoch;   // counts changes that keep nothing of the old factor
+	uint64_t factor_version; // number of changes of the factor so far
+	uint64_t factor_epoch;   // number of changes so far that keep nothing of the old factor
 
 	bool diagonal;      // diagonal system instead of A: CAU_SOLVER_DIAGONAL
 	bool conservative;  // every law is the gradient of an energy
-	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets count as loose
+	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are treated as loose
 	bool none_loose;    // in this tick no tissue counts as loose: some is inverted, diverges or
 	                    // crosses (exempt.c)
-	// most iterations of a step; with an accuracy to reach see CAU_SOLVER_EFFORT
+	// most iterations of a step; if the step has a wanted accuracy, see CAU_SOLVER_EFFORT
 	int32_t iterations;
 	double tolerance;
 	double stiffness_j; // J: mean weight of triangles and tetrahedra
@@ -93,14 +93,14 @@ struct cau_step_solver {
 
 	double (*now_s)(void); // clock for timings; NULL: no timings
 
-	// J, at the guess after the step has begun, at the solution after it has ended
+	// J: value of eq. 4, at the guess once the step has begun, at the solution once it has ended
 	double objective;
 	// Results of the last step.
 	bool spared; // the end of the step was not evaluated: the elements' energies are of the iterate
 	             // before it
 	double local_s, contact_s;
 	int32_t iterations_done, backtracks;
-	double residual; // |grad| in the norm of A^-1, relative to the first iteration's
+	double residual; // |grad| in the norm of A^-1, relative to that of the first iteration
 };
 
 // Allocates elements, pattern and vectors. The system is factored by cau_solver_factor once the

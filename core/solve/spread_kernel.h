@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes increment += C f: columns of A^-1 times the loads on them. A few registers of vertices
-// are processed at a time and stay in the registers for all columns. Otherwise the sums would be
-// read and written far more often than a column is read. Each vertex adds its columns in their
-// order.
+// Computes increment += C f: columns of A^-1 times the loads on them. The vertices of a few
+// registers are processed at a time, and their sums stay in the registers for all columns.
+// Otherwise the sums would be read and written far more often than a column is read. The columns
+// are added to each vertex in their order.
 #pragma once
 
 #include "base/simd.h"
 #include "cautery/assert.h"
 #include "solve/kernels.h"
 
-// As many vertices as fit in a register. In double they are processed one by one, because one
-// vertex fills at least half a register of the wider tiers.
+// SPREAD_VERTICES: vertices that fit in a register. In double they are processed one by one,
+// because one vertex fills at least half a register of the wider tiers.
 enum {
 	SPREAD_VERTICES = CAU_SINGLE ? VECTOR_BYTES / sizeof(vertex_reals) : 1,
 	SPREAD_REGISTERS = 4,
@@ -46,7 +46,7 @@ INLINE spread_reals spread_add(spread_reals out, const real *weight, spread_real
 #endif
 }
 
-enum { SPREAD_COLUMNS = 16 }; // columns whose loads are copied to registers' layout at once
+enum { SPREAD_COLUMNS = 16 }; // columns whose loads are copied to the layout of registers at once
 
 INLINE void spread_strip(real *increment, const cau_reals *const *column, const spread_reals *load,
                          int32_t count, int32_t first)

@@ -7,7 +7,8 @@
 #include "solve/kernels.h"
 
 enum {
-	LEAF_COLUMNS = 48, // subtrees up to this size become one dense block; 32 to 64 were fastest
+	// most columns of a subtree that becomes one dense block; 32 to 64 were fastest
+	LEAF_COLUMNS = 48,
 	PAD = 16,
 };
 
@@ -206,7 +207,8 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 			sweep->top_column[sweep->top_count++] = node->first + j;
 		}
 	}
-	sweep->padded_n = pad(sweep->n) + PAD; // vectors of lanes may begin at any column
+	// padding at the end, because vectors of lanes may begin at any column
+	sweep->padded_n = pad(sweep->n) + PAD;
 	sweep->padded_top = pad(sweep->top_count);
 }
 
@@ -236,7 +238,7 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 			backward[own + i] = 4 * row;
 			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
 		}
-		// for padded rows, where W' has zeros
+		// indices of padded rows, where W' has zeros
 		for (int32_t i = own + node->rows; i < node->padded_rows; i++) {
 			forward[i] = node->spare;
 			backward[i] = 4 * node->first;

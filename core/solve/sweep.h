@@ -16,8 +16,9 @@
 // applied matrix is symmetric and positive definite whatever the rounding, and is A^-1 within 1e-4.
 // The iteration uses it for increments only, and each increment corrects the error of the last.
 //
-// Disjoint subtrees are tasks. Each task has its own sums for the rows above it. These are added in
-// task order, so that the result does not depend on how many threads run the tasks.
+// Disjoint subtrees are tasks. Each task has its own sums for the rows above the task. The tasks'
+// sums are added in task order, so that the result does not depend on how many threads run the
+// tasks.
 #pragma once
 
 #include <stdbool.h>
@@ -30,11 +31,11 @@
 #include "solve/vectors.h"
 
 enum {
-	// with more tasks, more supernodes are above all tasks and run on one thread
+	// most tasks; with more, more supernodes would be above all tasks and run on one thread
 	CAU_SWEEP_TASKS = 8,
 	CAU_NODE_COLUMNS = 128,     // most columns of a supernode
-	CAU_PACK_PARTS = 2,         // threads that pack supernodes together
-	CAU_WHOLE_PANELS = 1 << 20, // bytes: a core's own cache; larger panels are narrow
+	CAU_PACK_PARTS = 2,         // most threads that pack supernodes at the same time
+	CAU_WHOLE_PANELS = 1 << 20, // bytes: a core's own cache; larger panels have narrow entries
 };
 
 struct cau_kernels;
@@ -97,8 +98,8 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
                             cau_error *error);
 void cau_sweep_finish(cau_sweep *sweep);
 
-// Returns the field index of the task's first sum. For task_count, returns that of the last spare
-// entry.
+// Returns the field index of the first sum of a task. For `task` = task_count, returns the index of
+// the last spare entry.
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task);
 
 // ---- sweep_pack.c: the factor's values in the panels

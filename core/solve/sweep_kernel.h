@@ -9,7 +9,7 @@
 enum {
 	SWEEP_BLOCK = 4,    // columns that are processed together
 	SWEEP_TILE = 512,   // rows that are processed together
-	SWEEP_AHEAD = 8192, // bytes from the read address to the prefetched one
+	SWEEP_AHEAD = 8192, // bytes from the address that is read to the address that is prefetched
 };
 
 // The sums for a tile of rows (forward), or their values (backward).

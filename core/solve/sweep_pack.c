@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Packs the factor's values into the panels of the sweeps, supernode by supernode. A downdate then
-// packs only the supernodes on the paths that it changed.
+// Packs the factor's values into the panels of the sweeps, supernode by supernode. So after a
+// downdate, only the supernodes on the changed paths are packed again.
 #include <math.h>
 #include <string.h>
 
@@ -75,7 +75,7 @@ typedef struct packing {
 	double least[CAU_PACK_PARTS];
 } packing;
 
-// Assigns each supernode to the part with less work so far. The largest supernodes are last in
+// Assigns each supernode to the part that has less work so far. The largest supernodes are last in
 // order, and are assigned first.
 static void share_out(const packing *work)
 {

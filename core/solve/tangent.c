@@ -6,8 +6,8 @@
 
 #include "cautery/assert.h"
 
-// The largest motion of a vertex with which the change of forces is measured. It is far above the
-// rounding of single precision, and so short that curvature does not matter to a tool.
+// Longest motion of a vertex, m, in the two positions between which forces are compared. It is far
+// above the rounding of single precision, and so short that curvature does not matter to a tool.
 static const double way_m = 2e-5;
 
 static bool make_vectors(cau_tangent *tangent, const cau_step_solver *solver)
@@ -67,7 +67,8 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 {
 	cau_step_solver own = tangent->probe, *probe = &tangent->probe;
 	*probe = *solver;
-	probe->position = probe->predicted = tangent->position; // at the predicted state inertia is 0
+	// with the predicted state at the position, inertia is 0
+	probe->position = probe->predicted = tangent->position;
 	probe->displacement = own.displacement;
 	probe->gradient = own.gradient;
 	probe->chunk_energy = own.chunk_energy;
@@ -75,7 +76,7 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 	probe->collide = NULL;
 	probe->contact = NULL;
 	probe->now_s = NULL;
-	probe->elements.rate_per_s = 0; // no viscosity: a hand is slow
+	probe->elements.rate_per_s = 0; // without viscosity, because a hand is slow
 	probe->elements.gradient = own.elements.gradient;
 	probe->elements.energy = own.elements.energy;
 	probe->elements.slack = own.elements.slack;
@@ -96,7 +97,8 @@ void cau_tangent_begin(cau_tangent *tangent, cau_step_solver *solver)
 		memcpy(to->fat.polar[i], from->fat.polar[i], (size_t)from->fat.slot_count * real);
 	memcpy(tangent->position, solver->position, 3 * n * sizeof(double));
 	cau_solver_evaluate(&tangent->probe);
-	cau_reals *made = tangent->probe.gradient; // later evaluations write to the other vector
+	// later evaluations write to the other gradient vector
+	cau_reals *made = tangent->probe.gradient;
 	tangent->probe.gradient = tangent->base;
 	tangent->base = made;
 }
@@ -139,7 +141,7 @@ static void place_of(const cau_tangent *tangent, const cau_reals *motion,
 	}
 }
 
-// change = H motion. The motion is first scaled so that its longest vertex motion is 1.
+// Computes change = H motion. First scales `motion` so that its longest vertex motion is 1.
 static bool find_change(cau_tangent *tangent, cau_reals *motion, cau_reals *change)
 {
 	cau_step_solver *probe = &tangent->probe;
@@ -184,7 +186,7 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 	place_of(tangent, tangent->motion[k], load, count, s->place[k]);
 	for (int i = 0; i <= k; i++) {
 		double energy = dot(tangent, tangent->motion[i], tangent->change[k]);
-		if (i < k) // H is symmetric except for rounding
+		if (i < k) // keep one of two equal entries: H is symmetric except for rounding
 			energy = (energy + dot(tangent, tangent->motion[k], tangent->change[i])) / 2;
 		s->energy[i][k] = s->energy[k][i] = energy;
 	}
@@ -192,7 +194,7 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 		double sum = s->energy[k][i];
 		for (int j = 0; j < i; j++)
 			sum -= s->factor[k][j] * s->factor[i][j];
-		// no new direction, or tissue without stiffness
+		// the motion has no new direction, or the tissue has no stiffness
 		if (i == k && !(sum > 1e-6 * s->energy[k][k]))
 			return false;
 		s->factor[k][i] = i == k ? sqrt(sum) : sum / s->factor[i][i];
@@ -201,7 +203,7 @@ static bool extend(cau_tangent *tangent, space *s, const cau_tangent_load *load,
 	return true;
 }
 
-// x = E^-1 x, in place
+// Computes x = E^-1 x in place, where E is the matrix `energy`.
 static void solve(const space *s, double x[CAU_TANGENT_MOTIONS])
 {
 	for (int i = 0; i < s->count; i++) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds how far tissue moves under a load on some vertices, at the present state. The answer uses
-// the stiffness of the elements as they are. A can be several times as stiff, wherever a law is
-// softer than its share of A.
+// the present stiffness of the elements. A can be several times as stiff, wherever a law is softer
+// than its part of A.
 //
 // Let p be the load's shares (sum 1) along an axis, and H the Hessian of the elements. The
 // compliance is p^T H^-1 p. It is found in a small space of motions: A^-1 p along each axis, and
-// then motions of conjugate gradients for the main direction, with A as preconditioner. H times a
-// motion is the difference of two gradients. The answer is the best one in that space, and is never
-// larger than the true compliance.
+// then motions of conjugate gradients for the main direction, with A as preconditioner. The product
+// of H and a motion is the difference of two gradients. The answer is the best approximation in
+// that space, and is never larger than the true compliance.
 #pragma once
 
 #include "base/memory.h"
@@ -39,7 +39,7 @@ typedef struct cau_tangent_load {
 typedef struct cau_tangent_answer {
 	// compliance at the load's point of application, m/N: xx, yy, zz, xy, xz, yz
 	double compliance[6];
-	double of_matrix; // compliance by A, equal along all axes, m/N
+	double of_matrix; // compliance by A instead of H, equal along all axes, m/N
 	double mass_kg;   // mass of the tissue that moves with the point of application
 } cau_tangent_answer;
 

@@ -32,7 +32,8 @@ static void add(cau_reals *vector, int32_t vertex, const double value[3])
 		to[c] = (real)((double)to[c] + value[c]);
 }
 
-// Four maxima in turn, so that no comparison waits for the one before it.
+// Returns the largest value by four maxima in turn, so that no comparison waits for the one before
+// it.
 static double longest(const cau_reals *vector, int32_t count)
 {
 	const real *d = (const real *)vector;
@@ -44,7 +45,7 @@ static double longest(const cau_reals *vector, int32_t count)
 		most[v & 3] = square > most[v & 3] ? square : most[v & 3];
 	}
 	real low = most[0] > most[1] ? most[0] : most[1], high = most[2] > most[3] ? most[2] : most[3];
-	// an upper bound in spite of rounding
+	// the factor makes the result an upper bound in spite of rounding
 	return sqrt((double)(low > high ? low : high)) * (1 + 1e-6);
 }
 
@@ -175,7 +176,7 @@ static void add_sums(const cau_sweep *sweep, int32_t task)
 extern const cau_vectors CAU_VECTORS;
 const cau_vectors CAU_VECTORS = {
 	.real_bytes = sizeof(real),
-	// for thousands of terms, each with an error of about 1e-7 or 1e-16
+	// rounding of a sum of thousands of terms, each with an error of about 1e-7 or 1e-16
 	.rounding = CAU_SINGLE ? 1e-6 : 1e-13,
 	.at = at,
 	.read = read,

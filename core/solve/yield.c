@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The global step with tissue contact. A does not contain the stiffness K between touching tissue.
-// A step by A alone would move tissue that lies on something light far away from it. So the step
-// uses A + K: conjugate gradients with A^-1 as preconditioner, which costs a few more sweeps. With
-// z = A^-1 r and directions p that are sums of z's, A p is a sum of r's. So no product with A is
-// needed.
+// If tissue lies on something light, a step by A alone would move the light tissue far away. So the
+// step uses A + K: conjugate gradients with A^-1 as preconditioner, which costs a few more sweeps.
+// Here z = A^-1 r, and directions p are sums of z's, so A p is a sum of r's. So no product with A
+// is needed.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// share of the first r.z at which the solution is good enough for a step
+// Least r.z, as a share of the first r.z, for another step of conjugate gradients.
 static const double enough = 0.01;
-static const double surely = 0.5; // share of `enough` for a predicted r.z
+// Share of `enough`. If r.z is predicted instead of computed, it must be below this share.
+static const double surely = 0.5;
 enum { MOST_SWEEPS = 12 };
 
 cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error)
@@ -92,17 +93,18 @@ static void take_off(cau_step_solver *solver, double scale)
 	}
 }
 
-// True if one step is enough. `stiffer` is p.K p over p.A p. The first step leaves of r.z at most
-// this share times the largest eigenvalue of A^-1 K. The steepest pair gives an estimate of that
-// eigenvalue: before it is pressed, a pair is about as stiff as A at its vertices.
+// True if one step of conjugate gradients is enough. `stiffer` is p.K p over p.A p. The part of r.z
+// that the first step leaves is at most `stiffer` times the largest eigenvalue of A^-1 K. The
+// steepest pair gives an estimate of that eigenvalue: before a pair is pressed, it is about as
+// stiff as A at its vertices.
 static bool first_serves(const cau_step_solver *solver, double stiffer)
 {
 	return stiffer * solver->collide->steepest <= surely * enough;
 }
 
 // True if the last step was enough. The decrease of E is assumed to shrink from step to step at
-// least as much as at the last one. off[0] is the decrease in J of the first step, off[1] of the
-// one before the last, off[2] of the last.
+// least as much as at the last step. off[0] is the decrease in J by the first step, off[1] by the
+// step before the last, off[2] by the last step.
 static bool last_served(const double off[3])
 {
 	return off[2] * off[2] <= surely * enough * off[0] * off[1];
@@ -112,7 +114,7 @@ static void begin(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
 	size_t bytes = 4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes;
-	// r = -gradient; z = p = A^-1 r is the present increment; A p = r
+	// sets r = -gradient, and z = p = A^-1 r, which is the present increment; then A p = r
 	memset(y->residual, 0, bytes);
 	add(solver, y->residual, -1, solver->gradient);
 	memcpy(y->image, y->residual, bytes);

@@ -16,8 +16,8 @@ static cau_vec3 perpendicular(cau_vec3 v)
 	return cau_unit_or(cau_cross(cau_cross(v, axis), v), (cau_vec3){1, 0, 0});
 }
 
-// The distance to the nearest point of a curve's core, less the tube's radius. If the point is on
-// the core, the gradient is perpendicular to it.
+// Returns the distance to the nearest point of a curve's core, less the tube's radius. If the point
+// is on the core, the gradient is perpendicular to the core.
 static double tube_distance(cau_vec3 from_core, double radius, cau_vec3 core_direction,
                             cau_vec3 *gradient)
 {
@@ -39,7 +39,7 @@ double cau_distance_capsule(cau_vec3 point, cau_vec3 a, cau_vec3 b, double radiu
 	return tube_distance(cau_add_scaled(from_a, -s, along), radius, along, gradient);
 }
 
-// The gradient inside the core box: towards the nearest face.
+// Returns the gradient inside the core box: towards the nearest face.
 static cau_vec3 nearest_face(cau_vec3 beyond, cau_vec3 sign)
 {
 	if (beyond.x >= beyond.y && beyond.x >= beyond.z)

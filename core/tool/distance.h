@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Signed distances (m) to the solids that tools consist of: negative inside, 1-Lipschitz.
-// `gradient` (unit, outward; may be NULL) points away from the nearest surface. If several surface
-// points are equally near, it is one of their directions.
+// `gradient` (unit, outward; may be NULL) points away from the nearest surface point. If several
+// surface points are equally near, it points away from one of them.
 #pragma once
 
 #include "base/vector.h"

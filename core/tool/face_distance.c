@@ -48,10 +48,13 @@ static cau_vec3 weighted(const cau_vec3 corner[3], const double weight[3])
 	return cau_add_scaled(cau_add_scaled(sum, weight[1], corner[1]), weight[2], corner[2]);
 }
 
-// The search looks for the nearest point to the middle of the tool's rounding. From a point at
-// distance d, this middle is d plus the tip's radius against the gradient. Then the nearest point
-// on the triangle is the answer at once.
+// Most steps of the search for the least distance. Each step looks for the triangle's point nearest
+// to the middle of the tool's rounding. From a point at distance d, this middle is d plus the tip's
+// radius away, against the gradient. If the middle is exact, the nearest point on the triangle is
+// the answer at once.
 enum { STEPS_DOWN = 24 };
+// near_enough_m: decrease of the distance, m, below which a step is the last. stays_m: way, m,
+// below which a step does not move.
 static const double near_enough_m = 1e-7, stays_m = 1e-10;
 
 double cau_tool_face_distance(const cau_tool_def *tool, double jaw, cau_tool_part part,
@@ -67,8 +70,8 @@ double cau_tool_face_distance(const cau_tool_def *tool, double jaw, cau_tool_par
 		double far = fmax(least + inside, near_enough_m);
 		cau_nearest_on_triangle(cau_add_scaled(at, -far, *gradient), corner, next_weight);
 		cau_vec3 next = weighted(corner, next_weight);
-		// A triangle point nearest to a point inside is also nearest to all points between. The
-		// search is at the minimum if it does not move.
+		// A triangle point that is nearest to a point inside the tool is also nearest to all points
+		// between the two. So the search is at the minimum if it does not move.
 		if (cau_length(cau_sub(next, at)) < stays_m)
 			break;
 		double distance = cau_tool_distance(tool, jaw, part, next, &next_gradient);
@@ -93,7 +96,7 @@ double cau_tool_way_out(const cau_tool_def *tool, double jaw, cau_tool_part part
 	CAU_ASSERT(most_m >= 0, "%g m at most", most_m);
 	enum { STEPS_BACK = 48 };
 	double height = most_m;
-	// from outside towards the surface
+	// Moves from outside towards the surface.
 	for (int step = 0; step < STEPS_BACK && height > 0; step++) {
 		double distance =
 			cau_tool_distance(tool, jaw, part, cau_add_scaled(point, height, out), gradient);

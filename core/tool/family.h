@@ -27,8 +27,8 @@ typedef struct cau_tool_family {
 	cau_tool_jaws (*jaws)(const cau_tool_def *tool); // NULL if `between` is NULL
 } cau_tool_family;
 
-// cau_shape_sphere and the other families: one for each row of the table, defined in the shape's
-// own file.
+// Functions of every family, named cau_shape_<word>: one family for each row of the table. They are
+// defined in the shape's own file.
 #define X(code, word, ...) extern const cau_tool_family cau_shape_##word;
 CAU_TOOL_SHAPE_TABLE(X)
 #undef X

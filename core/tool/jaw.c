@@ -57,16 +57,17 @@ double cau_jaw_plate_distance(const cau_jaw *jaw, const cau_plate *plate, cau_ve
 	return distance;
 }
 
-// A corner (x, z) turns on a circle about the hinge. Its distance from the ball's centre below the
-// hinge grows with the angle until the corner is straight above the hinge. So the distance at the
-// greatest angle counts. Corners that start above the hinge count as straight above.
+// A corner (x, z) turns on a circle about the hinge. The corner's distance from the ball's centre
+// below the hinge grows with the angle until the corner is straight above the hinge. So the ball is
+// made from the distance at the greatest angle. Corners that start above the hinge are taken to be
+// straight above it.
 cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *plate,
                              double center_z)
 {
 	CAU_ASSERT(center_z <= hinge, "a ball about %g, above the hinge at %g", center_z, hinge);
 	double cosine = cos(angle_rad), sine = sin(angle_rad);
 	double below = hinge - center_z;
-	double farthest = 0; // squared, in the plane y = 0
+	double farthest = 0; // square of the largest distance, in the plane y = 0
 	for (int corner = 0; corner < 4; corner++) {
 		double x = corner & 1 ? plate->most.x : plate->least.x;
 		double z = corner & 2 ? plate->most.z : plate->least.z;

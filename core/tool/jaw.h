@@ -23,7 +23,7 @@ typedef struct cau_plate {
 
 cau_jaw cau_jaw_of(double side, double hinge, double angle_rad);
 
-// Returns the mirror image of a jaw: the jaw on the other side.
+// Returns the mirror image of a jaw: the jaw on the other side of the tool.
 cau_jaw cau_jaw_opposite(const cau_jaw *jaw);
 
 // Returns a plate with |y| <= half_width. The plate is nowhere thinner than its rounding: its
@@ -41,9 +41,10 @@ double cau_jaw_plate_distance(const cau_jaw *jaw, const cau_plate *plate, cau_ve
 cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *plate,
                              double center_z);
 
-// True if `point` (tool frame) is between the faces x = face of two jaws, or less than `depth`
-// inside one of them. It must be within half_width in y, below the hinge, and at most `reach` below
-// it. *coordinate is -1 at `low` and +1 at `high`. Gaps narrower than `depth` count as `depth`.
+// True if `point` (tool frame) is between the faces x = low_face and x = high_face of two jaws, or
+// less than `depth` inside one of them. The point must be within half_width in y, below the hinge,
+// and at most `reach` below the hinge. *coordinate is -1 at `low` and +1 at `high`. A gap narrower
+// than `depth` is taken to be `depth` wide.
 bool cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
                    double half_width, double reach, double depth, cau_vec3 point,
                    double *coordinate);

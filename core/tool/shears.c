@@ -73,7 +73,7 @@ static bool shears_between(const cau_tool_def *tool, double jaw, cau_vec3 point,
 	                     half_thickness(tool), point, coordinate);
 }
 
-// Only the clamp turns.
+// Describes the jaws of shears, of which only the clamp turns.
 static cau_tool_jaws shears_jaws(const cau_tool_def *tool)
 {
 	return (cau_tool_jaws){

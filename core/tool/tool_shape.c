@@ -6,7 +6,8 @@
 #include "tool/family.h"
 
 enum { TRACE_STEPS = 1024 };
-static const double TOUCH_M = 1e-6; // a segment nearer than this counts as meeting
+// largest distance, m, from the part at which a segment is taken to meet it
+static const double TOUCH_M = 1e-6;
 
 static const cau_tool_family *family_of(const cau_tool_def *tool)
 {

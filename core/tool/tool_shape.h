@@ -15,9 +15,10 @@ typedef enum cau_tool_part {
 
 // Returns the signed distance (m) to the part's surface at `point` in the tool's frame: tip at the
 // origin, shaft along +z, jaws open in x. The distance is negative inside and 1-Lipschitz, so it
-// may be sphere-traced. If the shape has no such part, it is INFINITY. `jaw` is 0 closed to 1 open.
-// `gradient` (unit, outward; may be NULL) is the direction away from the nearest surface point; if
-// several are equally near, that of one of them.
+// may be sphere-traced. If the shape has no such part, the distance is INFINITY. `jaw` is 0 for
+// closed jaws to 1 for open jaws. `gradient` (unit, outward; may be NULL) is the direction away
+// from the nearest surface point. If several surface points are equally near, it is the direction
+// from one of them.
 double cau_tool_distance(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 point,
                          cau_vec3 *gradient);
 
@@ -37,15 +38,16 @@ double cau_tool_thinnest_hot_m(const cau_tool_def *tool);
 // True if the shape has jaws that can grasp.
 bool cau_tool_has_jaws(const cau_tool_def *tool);
 
-// True if `point` (tool frame) is between the jaws, where it can be grasped. False if the shape has
-// no jaws. Points less than half a jaw's thickness inside a jaw count too, so that closed jaws hold
-// what they press. On success *jaw_coordinate (may be NULL) is -1 at one jaw and +1 at the other.
+// True if `point` (tool frame) is between the jaws, where the jaws can grasp it. False if the shape
+// has no jaws. The space between the jaws includes points less than half a jaw's thickness inside a
+// jaw, so that closed jaws hold what they press. On success *jaw_coordinate (may be NULL) is -1 at
+// one jaw and +1 at the other jaw.
 bool cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
                            double *jaw_coordinate);
 
-// How the jaws turn: about the y axis through z = hinge_m. Closed jaws meet in the plane x =
-// face_m. The jaw on the side of -x turns by share[0] of the opening angle, the other jaw by
-// share[1].
+// Describes how the jaws turn: about the y axis through z = hinge_m. Closed jaws meet in the plane
+// x = face_m. The jaw on the side of -x turns by share[0] of the opening angle, the jaw on the side
+// of +x by share[1].
 typedef struct cau_tool_jaws {
 	double hinge_m, face_m;
 	double share[2];
@@ -62,7 +64,7 @@ double cau_tool_jaw_angle(const cau_tool_jaws *jaws, cau_vec3 point);
 cau_vec3 cau_tool_turn_with_jaw(const cau_tool_jaws *jaws, cau_vec3 point, double angle_rad);
 
 // True if the segment a-b (tool frame) meets the part or is inside it. The segment is sphere-traced
-// from both ends, exact to 1e-6 m: a segment that passes closer counts as meeting. After 1,024
-// steps the result is true; the segment then ran within a thousandth of its length of the surface.
+// from both ends. If it is closer than 1e-6 m to the part, the result is true. After 1,024 steps
+// the result is also true: the segment then ran within a thousandth of its length of the surface.
 bool cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
                             cau_vec3 b);

@@ -6,17 +6,18 @@
 
 #include "cautery/assert.h"
 
-// A film thinner than this clings to wet tissue. No measurement was found. The value has the order
-// of the liquid layer that stays on a drained wall.
+// Depth of blood, m, up to which the film does not flow, because it clings to wet tissue. No
+// measurement was found. The value has the order of the liquid layer that stays on a drained wall.
 static const double clinging_m = 5e-5;
-// Greatest depth of blood; more drips off. It is the height of a drop on a level surface that it
-// half wets: sqrt(2) times the capillary length sqrt(gamma / (rho g)), with gamma = 0.056 N/m.
+// Greatest depth of blood, m; more drips off. It is the height of a drop on a level surface that
+// the drop half wets: sqrt(2) times the capillary length sqrt(gamma / (rho g)), with gamma = 0.056
+// N/m.
 static const double deepest_m = 3.3e-3;
-// In one step the difference in level between two vertices decreases by at most this share, so that
+// Largest share of the difference in level between two vertices that one step may remove, so that
 // no wave begins.
 static const double levelled_share = 0.25;
-// If at most this share of the blood moves in a second, the blood is at rest. A film never stops
-// getting thinner, but ever more slowly.
+// Share of the blood that moves in a second, up to which the blood is taken to be at rest. A film
+// never stops getting thinner, but does so ever more slowly.
 static const double still_per_s = 1e-3;
 
 cau_status cau_blood_create(cau_blood *blood, const cau_tissue *tissue, cau_arena *arena,
@@ -78,8 +79,8 @@ void cau_blood_add(cau_blood *blood, const uint8_t *visible, const double *posit
 	blood->any = true;
 }
 
-// Returns the volume that flows along an edge from `up` to the lower end. The film has the speed of
-// a laminar film on a slope. The width of the flow is the distance between vertices.
+// Returns the volume, m^3, that flows along an edge from vertex `up` to the lower end. The film has
+// the speed of a laminar film on a slope. The width of the flow is the distance between vertices.
 static double film_m3(const cau_blood *blood, int32_t up, double fall_m, double way_m,
                       double gravity_m_s2, double duration_s)
 {

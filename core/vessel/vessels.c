@@ -7,23 +7,24 @@
 #include "base/hash.h"
 #include "cautery/assert.h"
 
-// Stations for each radius of length. A cut can be as thin as a wire, and must not pass between two
+// Stations on a length of one radius. A cut can be as thin as a wire, and must not pass between two
 // stations.
 enum { STATIONS_A_RADIUS = 4 };
 static const double least_spacing_m = 1e-4;
-// A point is inside a tetrahedron, or on its surface, if none of its weights is below this.
+// Least weight of a point that is inside a tetrahedron or on its surface, allowing for rounding.
 static const double outside = -1e-6;
 
-// Rate of fusion, taken from the loss of birefringence of collagen (rat tail tendon). It is a
-// first-order reaction with ln A = 130 and 89 kcal/mol (Maitland and Walsh 1997).
+// Constants of the rate of fusion: ln A, with A in 1/s, and the activation energy. Fusion is the
+// loss of birefringence of collagen (rat tail tendon), a first-order reaction with ln A = 130 and
+// 89 kcal/mol (Maitland and Walsh 1997).
 static const double fusion_log_rate = 130;
 static const double fusion_energy_j_mol = 89 * 4184.0;
 static const double gas_j_molk = 8.314462618, zero_k = 273.15;
-// Tensile strength of two fused walls. Assumed: a third of the strength of a fresh artery, which is
-// about 1.5 MPa. No measurement of a fused wall was found.
+// Tensile strength of two fused walls, Pa. The value is an assumption: a third of the strength of a
+// fresh artery, which is about 1.5 MPa. No measurement of a fused wall was found.
 static const double fused_pa = 5e5;
-// Strain of the width of a round hole, over the strain of the solid around the hole (Kirsch 1898,
-// plane stress).
+// Strain of the width of a round hole, over the strain of the solid around (Kirsch 1898, plane
+// stress).
 static const double hole_strain = 3;
 // Discharge coefficient of an orifice with a sharp edge: the usual value.
 static const double discharge = 0.6;
@@ -31,8 +32,8 @@ static const double pi = 3.14159265358979323846;
 
 // ---- position of a vessel
 
-// Computes the barycentric coordinates of a point, and returns the least. Stops early once one is
-// at most `best`.
+// Computes the barycentric coordinates of a point, and returns the least coordinate. Stops early if
+// a coordinate is at most `best`.
 static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec3 at, double best,
                           double weight[4])
 {
@@ -49,8 +50,9 @@ static double barycentric(const cau_tissue *tissue, int32_t tetrahedron, cau_vec
 	return fmin(least, weight[0]);
 }
 
-// Finds the tetrahedron of the layer that contains the point. If there is none, finds the
-// tetrahedron in which the point's least coordinate is greatest. Returns that least coordinate.
+// Finds the tetrahedron of the layer that contains the point. If no tetrahedron contains the point,
+// finds the tetrahedron in which the point's least coordinate is greatest. Returns that least
+// coordinate.
 static double embed(const cau_tissue *tissue, const cau_tissue_layer *layer, cau_vec3 at,
                     cau_tube_point *point)
 {
@@ -252,7 +254,7 @@ static void look_at_station(cau_vessels *vessels, int32_t index,
 	for (int i = 1; i < CAU_STATION_POINTS; i++)
 		vessels->holes[index] += is_gone(around, &station->point[i]);
 	if (vessels->holes[index] == CAU_STATION_POINTS - 1)
-		vessels->parted[index] = 1; // the whole wall is gone
+		vessels->parted[index] = 1; // no part of the wall is left, so the vessel is parted
 }
 
 // ---- seals
@@ -304,10 +306,11 @@ double cau_vessel_outflow(const cau_vessel_def *def, double pressure_pa, double 
 
 // The flow of blood from one end of a vessel.
 typedef struct run {
-	double flow_m3_s;    // flow that leaves the vessel
-	double open;         // area through which the flow leaves, over the lumen's area
-	double best_seal_pa; // strength of the best seal between this end and the cut, or the other end
-	bool sealed, shut;   // a seal, or compression, stops the flow
+	double flow_m3_s; // flow that leaves the vessel
+	double open;      // area through which the flow leaves, over the lumen's area
+	// strength of the best seal between this end and the cut, or the other end if there is no cut
+	double best_seal_pa;
+	bool sealed, shut; // a seal, or compression, stops the flow
 } run;
 
 typedef struct vessel_end { // the end of a vessel from which blood comes
@@ -317,8 +320,8 @@ typedef struct vessel_end { // the end of a vessel from which blood comes
 } vessel_end;
 
 // Lets blood leave the vessel at a station, through a share of the lumen's area. All openings share
-// the supplying tube. So each opening adds the flow by which its area raises the flow of all
-// openings before. With `shed`, the blood is added to the tissue's surface.
+// the supplying tube. So each opening adds only the flow by which its area raises the flow of the
+// openings before it. If `end->shed` is set, the blood is added to the tissue's surface.
 static void leave(cau_vessels *vessels, const cau_vessel_surroundings *around, int32_t station,
                   const vessel_end *end, double share, run *out)
 {

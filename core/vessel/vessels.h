@@ -71,7 +71,7 @@ void cau_vessels_look(cau_vessels *vessels, const cau_vessel_surroundings *aroun
 // one step.
 void cau_vessels_step(cau_vessels *vessels, const cau_vessel_surroundings *around);
 
-// Whether blood leaves a vessel, or flows on the tissue.
+// True if blood leaves a vessel, or flows on the tissue.
 bool cau_vessels_flow(const cau_vessels *vessels);
 
 // Returns the pressure at which a seal of this damage opens, Pa.

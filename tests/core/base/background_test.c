@@ -35,7 +35,7 @@ static void test_jobs_run_in_order_and_are_waited_for(void **state)
 	job work = {.gate = PTHREAD_MUTEX_INITIALIZER, .value = 1};
 	int64_t expected = 1;
 	for (int i = 0; i < JOBS; i++) {
-		if (i % 39 == 0) // before the value overflows
+		if (i % 39 == 0) // start again before the value overflows
 			work.value = 1, expected = 1;
 		cau_background_start(background, run, &work);
 		cau_background_wait(background);

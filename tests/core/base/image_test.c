@@ -42,7 +42,8 @@ static bool is_patterned(const cau_pages *pages, size_t but_for_page)
 	return true;
 }
 
-// Counts the private mappings of images with these rights in this process. *one is one of them.
+// Counts the private mappings of images with these rights in this process. Sets *one to the address
+// of one mapping.
 static int mappings(const char *rights, void **one)
 {
 	char line[512], found[5];
@@ -72,7 +73,7 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(cau_image_show(image, &a, 1, false), (size_t)PAGES * page);
 	assert_ptr_equal(cau_image_of(KEY, &b, 1, NULL), image);
 	assert_int_equal(cau_image_show(image, &b, 1, false), (size_t)(PAGES - 1) * page);
-	// one mapping of a, two around the changed page of b
+	// the image has one mapping in a, and two in b, around the changed page
 	assert_int_equal(mappings("rw-p", NULL), 3);
 	assert_true(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&b, 20));
@@ -81,7 +82,8 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_false(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&a, 30));
 	assert_false(is_patterned(&b, 20));
-	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image); // the image is unchanged
+	// the image is unchanged, so the call returns it
+	assert_ptr_equal(cau_image_of(KEY, &c, 1, NULL), image);
 	assert_int_equal(cau_image_show(image, &c, 1, false), (size_t)PAGES * page);
 	for (int i = 0; i < 3; i++)
 		cau_image_release(image);
@@ -93,7 +95,8 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 	assert_int_equal(mappings("rw-p", NULL), 0);
 }
 
-// The first session's pages are shown without a comparison. Those of further sessions are compared.
+// The first session's pages are mapped without a comparison. The pages of further sessions are
+// compared.
 static void who_made_it_knows(void **state)
 {
 	(void)state;
@@ -134,7 +137,8 @@ static void nothing_can_write_an_image(void **state)
 	cau_pages_give_back(&a);
 }
 
-// Runs shorter than 16 KiB, parts of another size, and parts at another position stay unchanged.
+// Runs shorter than 16 KiB, parts of another size, and parts at another position are not replaced
+// by pages of the image.
 static void short_runs_and_others_stay_as_they_are(void **state)
 {
 	(void)state;
@@ -213,7 +217,8 @@ static void zeros_of_one_are_not_shown_to_another(void **state)
 	cau_pages_give_back(&c);
 }
 
-// No file can be opened, so all pages count as touched.
+// The system's list of touched pages cannot be opened, because no file can. So all pages count as
+// touched.
 static void without_the_systems_word_all_are_read(void **state)
 {
 	(void)state;

@@ -44,11 +44,11 @@ static void test_too_much_is_refused(void **state)
 	cau_pages_give_back(&pages);
 }
 
-// Pages that were written count as touched. cau_pages_touched touches no page.
+// Pages that were written are reported as touched. cau_pages_touched itself touches no page.
 static void test_touched_pages_are_known(void **state)
 {
 	(void)state;
-	enum { COUNT = 1500 }; // more than one read of cau_pages_touched
+	enum { COUNT = 1500 }; // more pages than one read of cau_pages_touched reports
 	static uint8_t touched[COUNT];
 	size_t page = (size_t)sysconf(_SC_PAGESIZE);
 	cau_pages pages;

@@ -98,7 +98,8 @@ typedef struct stall {
 	_Atomic int stalled, by_helpers;
 } stall;
 
-// Much longer than a loop takes, so that the caller finishes its own parts meanwhile.
+// Time, ns, that a helper stalls. It is much longer than a loop takes, so that the caller finishes
+// its own parts meanwhile.
 static const long stall_ns = 50000000;
 
 static void stall_once(void *context, int32_t index)
@@ -107,7 +108,7 @@ static void stall_once(void *context, int32_t index)
 	(void)index;
 	if (pthread_equal(pthread_self(), work->caller)) {
 		for (int i = 0; i < 1000 && !atomic_load(&work->stalled); i++)
-			sched_yield(); // so that the helper gets a part
+			sched_yield(); // yields, so that the helper gets a part
 		return;
 	}
 	atomic_fetch_add(&work->by_helpers, 1);
@@ -125,7 +126,7 @@ static void run_into_a_stall(cau_pool *pool, stall *work)
 	atomic_store(&work->by_helpers, 0);
 }
 
-// After such a wait the caller does some thousand parts alone. Then it shares parts again.
+// After a helper stalled, the caller does some thousand parts alone. Then it shares parts again.
 static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 {
 	(void)state;
@@ -141,8 +142,8 @@ static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 	cau_pool_destroy(pool);
 }
 
-// The caller sleeps in its first part until the helper has had a part, or for PATIENCE_MS. Even in
-// a shared loop the helper may need that long to get a core.
+// PATIENCE_MS: longest time that the caller sleeps in its first part, until the helper has had a
+// part. Even in a shared loop the helper may need that long to get a core.
 enum { PATIENCE_MS = 500, LONG_LOOPS = 6 };
 
 static void wait_for_a_helper(void *context, int32_t index)
@@ -155,9 +156,9 @@ static void wait_for_a_helper(void *context, int32_t index)
 			nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 }
 
-// The caller works alone for a number of parts, not of loops. So a large session, whose loops are
-// long, shares them again within LONG_LOOPS loops. If loops were counted, thousands would be
-// needed.
+// LONG_LOOPS long loops are enough for the caller to share parts again. The caller works alone for
+// a number of parts, not of loops. If loops were counted, a large session, whose loops are long,
+// would need thousands of them.
 static void test_long_loops_are_shared_again_as_soon(void **state)
 {
 	(void)state;

@@ -13,10 +13,10 @@
 #include "core/tool/tools.h"
 
 enum { DRAWS = 500 };
-// The Jacobi iteration leaves a few roundings of the largest entry.
+// Largest error, relative to the largest entry: the Jacobi iteration leaves a few roundings.
 static const double TOLERANCE = 2e-14;
 
-// V diag(value) V^T, with a random rotation V.
+// Computes V diag(value) V^T, with a random rotation V.
 static void random_symmetric(uint64_t *random, const double value[3], double out[6])
 {
 	double axis[3], v[3][3], scaled[3][3], full[3][3];

@@ -16,7 +16,7 @@
 static const double PI = 3.14159265358979323846, SIDE_M = 1e-4;
 static const double WATER_HEAT = 4186, BOILING = 2.257e6, DRY_W_MK = 0.2;
 
-// Returns the remaining share of a cosine over the bar, 10 K high, after a time.
+// Returns the share that is left of a cosine of temperature over the bar, 10 K high, after a time.
 static double cosine_left(double pull, double seconds)
 {
 	enum { LENGTH = 40 };
@@ -42,7 +42,7 @@ static void a_cosine_decays_by_diffusivity(void **state)
 }
 
 // Tissue that is stretched to 1.5 times its length conducts over 1.5 times the distance. Tissue
-// that is compressed to half conducts over half.
+// that is compressed to half its length conducts over half the distance.
 static void stretched_tissue_conducts_over_its_length(void **state)
 {
 	(void)state;
@@ -175,8 +175,8 @@ static void a_blade_cools_and_gives_its_heat(void **state)
 	cau_blade blade = {.temperature_c = 200, .heat_capacity_j_k = 0.05, .cooling_w_k = 1e-3};
 	run(&bar, &blade, 30);
 	assert_within(blade.temperature_c - 37, 163 * exp(-30 * 1e-3 / 0.05), 0.01);
-	// The cell has a third of the blade's heat capacity. The difference falls with 1 / C + 1 / (3
-	// C).
+	// The blade has three times the heat capacity C of the cell. The temperature difference decays
+	// at a rate in proportion to 1 / C + 1 / (3 C).
 	double capacity = cau_bioheat_capacity(&bar, 0), rate = 0.52 * 1e-6 * 4 / (3 * capacity);
 	blade = (cau_blade){.temperature_c = 77, .heat_capacity_j_k = 3 * capacity};
 	bar.contact[bar.contact_count++] = (cau_contact_cell){.cell = 0, .over_length_m = 1e-6};
@@ -186,7 +186,8 @@ static void a_blade_cools_and_gives_its_heat(void **state)
 	cau_arena_finish(&arena);
 }
 
-// A blade much lighter than its cell reaches the cell's temperature, and never passes it.
+// A blade that is much lighter than the cell it touches reaches the cell's temperature, and never
+// passes it.
 static void a_light_blade_is_stable(void **state)
 {
 	(void)state;
@@ -284,8 +285,8 @@ static void nothing_flows_through_a_cell_that_is_gone(void **state)
 	cau_arena_finish(&arena);
 }
 
-// If all cells are within half a degree of ambient, they are set to ambient in one step. Their heat
-// counts as perfused.
+// If all cells are within half a degree of ambient, they are set to ambient in one step. The ledger
+// adds their heat to the perfused heat.
 static void the_last_warmth_is_forgotten(void **state)
 {
 	(void)state;

@@ -42,8 +42,8 @@ static void a_bar_between_two_jaws(void **state)
 		current.electrode[1] = (cau_electrode_cell){LENGTH - 1, 2 * SIDE_M * pull, 0};
 		current.electrode_count = 2;
 		solve(&current, &bar, 1e-2, false);
-		// Stretching multiplies the bar's length by the stretch and divides its cross section by
-		// it.
+		// Stretching multiplies the bar's length by the stretch, and divides the bar's cross
+		// section by the stretch.
 		double ohm = LENGTH * SIDE_M * stretch[k] / (SIGMA * SIDE_M * SIDE_M / stretch[k]);
 		assert_within(1 / current.conductance_s, ohm, 1e-4);
 		cau_current_heat(&current, &bar, 30);
@@ -63,7 +63,7 @@ static double from_sphere(cau_vec3 point, const double *size_m)
 }
 
 // Returns the distance from a spheroid around z with half axes size_m[0] and size_m[1], to first
-// order. It is exact at the surface.
+// order. The distance is exact at the surface.
 static double from_spheroid(cau_vec3 p, const double *size_m)
 {
 	cau_vec3 scaled = {p.x / size_m[0], p.y / size_m[0], p.z / size_m[1]};
@@ -101,8 +101,8 @@ static void fill(electrode_stage *stage, distance_function *distance, const doub
 			}
 }
 
-// Connects cells next to the electrode. Each has the electrode's potential at the electrode's
-// surface, on the line to a neighbour inside the electrode.
+// Connects the cells next to the electrode. The length of a connection is from the cell's middle to
+// the electrode's surface, along the line to a neighbour inside the electrode.
 static void touch(electrode_stage *stage, distance_function *distance, const double *size_m)
 {
 	const cau_cells *cells = &stage->bioheat.cells;
@@ -173,7 +173,7 @@ static void a_needle_in_tissue_without_end(void **state)
 	cau_arena_finish(&arena);
 }
 
-// A disc in a sheet, with the return electrode 30 mm away.
+// The closed form of a disc in a sheet, with the return electrode 30 mm away.
 static void a_disc_in_a_sheet(void **state)
 {
 	(void)state;
@@ -204,7 +204,7 @@ static void a_second_solve_has_nothing_to_do(void **state)
 	assert_true(current.iterations > 10);
 	solve(&current, &bar, 1e-2, false);
 	assert_int_equal(current.iterations, 0);
-	cau_bioheat_take_out(&bar, 15); // a gap interrupts the current
+	cau_bioheat_take_out(&bar, 15); // removes a cell, so that a gap interrupts the current
 	cau_current_solve(&current, &bar, 1e-2, false, 1e-9, 2000);
 	assert_near(current.conductance_s, 0, 1e-9 * SIGMA * SIDE_M);
 	cau_arena_finish(&arena);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests cells of sheets and solids: their volume, their positions in deformed tissue, and what
-// holds an element together.
+// Tests the cells of sheets and solids: their volume, their positions in deformed tissue, and
+// whether an element's cells still connect its vertices.
 #include "bioheat/tissue_cells.h"
 
 #include <math.h>
@@ -173,14 +173,16 @@ static void a_slit_separates_an_element(void **state)
 		}
 		rows++;
 	}
-	assert_in_range(rows, 4, 5); // where the slit's middle crosses the longest side
+	// the number of rows until the slit's middle crosses the longest side
+	assert_in_range(rows, 4, 5);
 	assert_true(cau_tissue_cells_separated(&cells, 0));
 	assert_false(cau_tissue_cells_separated(&cells, 1));
 	rig_finish(&r);
 }
 
-// The element of a cut's lips is removed. Cells that are connected to the other triangle move with
-// it. Cells without a connection are severed, and their heat is removed.
+// One of two triangles is removed, with a slit beside it. Cells that are connected to the other
+// triangle move with that triangle. Cells without a connection are severed, and their heat is
+// removed.
 static void what_an_element_leaves_moves_with_its_neighbour(void **state)
 {
 	(void)state;
@@ -189,7 +191,8 @@ static void what_an_element_leaves_moves_with_its_neighbour(void **state)
 	fill_all(&cells, &r, SIDE_M, 4000);
 	cau_cells *grid = &cells.bioheat.cells;
 	int32_t far = cau_cells_find(grid, (int32_t[]){0, 0, 0});
-	for (int32_t i = 0; i < grid->count; i++) // a slit between the triangle's corner and the rest
+	// makes a slit between the triangle's corner and the rest
+	for (int32_t i = 0; i < grid->count; i++)
 		if (grid->place[3 * i] + grid->place[3 * i + 1] == 3)
 			cau_bioheat_take_out(&cells.bioheat, i);
 	cells.bioheat.temperature[far] = 80;
@@ -283,7 +286,7 @@ static void a_link_s_cells_move_with_its_ends(void **state)
 	int32_t link = cau_tissue_cells_element(&r.tissue, CAU_PRIMITIVE_LINK, 0);
 	assert_true(cau_tissue_cells_fill(&cells, link));
 	double x[18];
-	for (int i = 0; i < 18; i += 3) { // pulled to twice the length, and turned
+	for (int i = 0; i < 18; i += 3) { // the link is pulled to twice its length, and turned
 		const double *rest = r.tissue.rest + i;
 		memcpy(x + i, (double[]){2 * rest[2] + 0.1, rest[1], rest[0]}, 3 * sizeof *x);
 	}

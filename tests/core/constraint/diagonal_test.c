@@ -5,10 +5,10 @@
 #include "reference/stress.h"
 
 enum { DRAWS = 40 };
-// About forty roundings, because D_m^-1 is used on both sides.
+// Largest relative error of forces: about forty roundings, because D_m^-1 is used on both sides.
 static const double FORCE_TOLERANCE = 1e-11;
 
-// omega of the element.
+// Returns omega of the element.
 static double omega_of(const rig *r, int kind)
 {
 	cau_element_map map;
@@ -138,7 +138,7 @@ static void test_link_goes_half_way_at_each_end(void **state)
 	}
 	rig_local(&r, x, got);
 	assert_true(rig_difference(got, expected, 18) < FORCE_TOLERANCE);
-	r.solver.diagonal = 0; // the other system has the whole force
+	r.solver.diagonal = 0; // the system with A has the whole force
 	rig_local(&r, x, got);
 	for (int i = 0; i < 18; i++)
 		expected[i] *= 2;

@@ -41,7 +41,7 @@ static inline void element_edges(const rig *r, int triangle, const double *x, do
 		out[c][2] = n[c] / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-// The axes in which F is expressed: for a triangle the columns t_u, t_v and normal; for a
+// Computes the axes in which F is expressed: for a triangle the columns t_u, t_v and normal; for a
 // tetrahedron I.
 static inline void element_axes(const rig *r, int triangle, double axes[3][3])
 {

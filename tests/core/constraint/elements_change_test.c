@@ -23,7 +23,8 @@ static double weight_of(const rig *r, int kind, int32_t slot)
 static void test_targets_are_set_and_read(void **state)
 {
 	(void)state;
-	const double root[6] = {0.5, 0.75, 0.25, 0.125, -0.0625, 0.03125}; // exact in float
+	// all six values are exact in float
+	const double root[6] = {0.5, 0.75, 0.25, 0.125, -0.0625, 0.03125};
 	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig r;
 		make(&r, precision);
@@ -37,14 +38,15 @@ static void test_targets_are_set_and_read(void **state)
 			for (int i = 0; i < (kind ? 6 : 3); i++)
 				assert_true(got[i] == root[i]);
 		}
-		// fat without a limit has a limit after its target is set
+		// once its target is set, fat without a limit has a limit
 		double expected =
 			r.tissue.tetrahedron_volume[9] * r.tissue.layer[0].def.fat[0].limit_stiffness_pa;
 		assert_near(cau_real_get(e->fat.limit_weight, e->single, slot), expected, 1e-7 * expected);
 		assert_int_equal(e->fat.limited[slot / CAU_BATCH], 1);
 		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; b++)
 			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
-		cau_elements_mark_targets(e, &r.solver.slots); // as after the restore of a snapshot
+		// the marks are the same if they are computed after the restore of a snapshot
+		cau_elements_mark_targets(e, &r.solver.slots);
 		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; b++)
 			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
 		rig_finish(&r);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records and shares of work: each exists once.
+// Tests records and shares of work: each record belongs to one vertex, and each batch to one share.
 #include <string.h>
 
 #include "core/dissect/cutting.h"
@@ -12,8 +12,8 @@ static void make(rig *r, int precision)
 	rig_build(r, NULL, 1);
 }
 
-// Each vertex of an element has a record, which belongs to that vertex and is summed by it once. A
-// record that no vertex sums belongs to no element.
+// Each vertex of an element has a record. The record belongs to that vertex, and the vertex sums it
+// once. A record that no vertex sums belongs to no element.
 static void test_every_record_is_summed_once(void **state)
 {
 	(void)state;
@@ -64,7 +64,7 @@ static void test_shares_write_apart(void **state)
 		const cau_local_work *work = &r.solver.slots.work[w];
 		assert_int_equal(work->first_record, next);
 		next += work->record_count;
-		for (int32_t s = work->first; s < work->last; s++) // including padding
+		for (int32_t s = work->first; s < work->last; s++) // the loop includes padding
 			for (int i = 0; i < rig_vertex_count(work->kind); i++) {
 				int32_t record = rig_record(&r, work->kind, s, i);
 				assert_true(record >= work->first_record && record < next);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energies of fat against closed forms, and against a stress computed here.
+// The energies of fat against closed forms, and against a stress that the test computes.
 #include "constraint/law.h"
 #include "core/constraint/element.h"
 #include "reference/stress.h"
@@ -7,12 +7,13 @@
 
 enum { CAPACITY = 64, DRAWS = 40 };
 
-// Relative to E. The reference values in uniaxial.txt have 15 digits. D_m^-1 of this tetrahedron
-// adds about ten rounding errors. A stress is a difference of terms as large as E.
+// Largest errors of a stress, relative to E. The reference values in uniaxial.txt have 15 digits.
+// D_m^-1 of this tetrahedron adds about ten rounding errors. A stress is a difference of terms as
+// large as E.
 static const double UNIAXIAL_TOLERANCE = 1e-11;
 static const double STRESS_TOLERANCE = 1e-11;
-// Psi from the stress by Simpson's rule over 200 parts of a straight path: relative error h^4 /
-// 180.
+// Largest relative error of Psi from the stress, by Simpson's rule over 200 parts of a straight
+// path. The rule has the relative error h^4 / 180.
 static const double WORK_TOLERANCE = 1e-7;
 
 static void make(rig *r, int model, double young, double poisson)
@@ -62,7 +63,7 @@ static void test_stress_by_hand(void **state)
 		double volume = r.tissue.tetrahedron_volume[0];
 		for (int i = 0; i < DRAWS; i++) {
 			double f[3][3], stress[3][3], expected[3][3];
-			rig_random_gradient(&random, 0.8, f); // some of them inverted
+			rig_random_gradient(&random, 0.8, f); // some of these f are inverted
 			element_answer(&r, 0, f, stress);
 			cau_reference_stress(models[m], young, poisson, f, expected);
 			for (int k = 0; k < 9; k++)
@@ -73,7 +74,7 @@ static void test_stress_by_hand(void **state)
 	}
 }
 
-// P = 2 mu (F - R) + lambda tr(R^T F - I) R, with R by plain averaging.
+// Checks P = 2 mu (F - R) + lambda tr(R^T F - I) R, with R by plain averaging.
 static void test_corotated_by_hand(void **state)
 {
 	(void)state;
@@ -130,8 +131,8 @@ static void test_energy_is_the_work_done(void **state)
 	}
 }
 
-// dF = -Psi P / |P|^2 with the printed St. Venant-Kirchhoff energy. The weight is (2 mu + 3 lambda)
-// times the volume.
+// Checks the printed energy constraint: dF = -Psi P / |P|^2 with the St. Venant-Kirchhoff energy.
+// The weight is (2 mu + 3 lambda) times the volume.
 static void test_energy_constraint_by_hand(void **state)
 {
 	(void)state;

@@ -23,7 +23,7 @@ static void every_row_is_a_law(void **state)
 		for (int other = 0; other < model; other++)
 			assert_string_not_equal(law->word, cau_law_of(other)->word);
 	}
-	assert_false(cau_law_of(CAU_MODEL_ENERGY)->has_energy); // the printed constraint has none
+	assert_false(cau_law_of(CAU_MODEL_ENERGY)->has_energy); // the printed constraint has no energy
 }
 
 int main(void)

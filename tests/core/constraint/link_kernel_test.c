@@ -5,7 +5,8 @@
 #include "core/constraint/element.h"
 #include "core/rig/law_scenes.h"
 
-// a dozen roundings; the change of length is a small difference
+// Largest relative error of a link's force: a dozen roundings, enlarged because the change of
+// length is a small difference of two lengths.
 static const double FORCE_TOLERANCE = 1e-11;
 
 static void test_links_are_springs(void **state)
@@ -59,8 +60,8 @@ static void test_a_link_of_no_length(void **state)
 	}
 }
 
-// The energy of a flat sheet's hinge is w/2 |e|^2, and that of a bent one w/2 (|e| - |rest|)^2. A
-// rotation of the whole sheet changes neither.
+// A flat sheet's hinge has the energy w/2 |e|^2, and a bent sheet's hinge w/2 (|e| - |rest|)^2. A
+// rotation of the whole sheet changes neither energy.
 static void test_hinges_keep_their_bend(void **state)
 {
 	(void)state;

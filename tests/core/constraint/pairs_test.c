@@ -64,7 +64,7 @@ static void test_pairs_are_neighbours_of_one_group(void **state)
 				assert_orders_agree(&r.tissue, kind, e, partner[e]);
 			}
 			assert_int_equal(2 * pairs, members + alone);
-			assert_true(alone <= members / 50); // in a regular mesh few are alone
+			assert_true(alone <= members / 50); // in a regular mesh few elements have no partner
 		}
 	rig_finish(&r);
 }

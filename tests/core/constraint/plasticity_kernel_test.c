@@ -5,7 +5,7 @@
 #include "core/constraint/element.h"
 
 static const double YIELD = 0.03, MOST = 0.16;
-// Ten roundings of strains below one, and an inverse square root.
+// Largest error of strains below one: ten roundings, and an inverse square root.
 static const double STRAIN_TOLERANCE = 1e-12;
 
 static void make(rig *r, double yield, double most)
@@ -143,7 +143,8 @@ static void test_flow_takes_the_stress_away(void **state)
 		settle(&r, f);
 	element_answer(&r, 0, f, last);
 	double mean = (last[0][0] * f[0][0] + last[1][1] * f[1][1] + last[2][2] * f[2][2]) / 3;
-	double deviator = last[0][0] * f[0][0] - mean; // of P F^T; the rest is pressure
+	// the deviator of P F^T; what is left is pressure
+	double deviator = last[0][0] * f[0][0] - mean;
 	assert_true(fabs(deviator) < 1e-6 * norm(first));
 	rig_finish(&r);
 }
@@ -153,7 +154,8 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 {
 	(void)state;
 	static const char *const tiers[] = {"baseline", "avx2", "avx512"};
-	// strains of a tenth, computed as differences of squares near one, over three ticks
+	// largest error of strains of a tenth, computed as differences of squares near one, over three
+	// ticks
 	static const double tolerance[] = {3e-5, 1e-13};
 	double expected[6 * 128] = {0};
 	for (int precision = CAU_PRECISION_COUNT - 1; precision >= 0; precision--)
@@ -175,7 +177,7 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 					r.solver.kernels->settle(&r.solver.elements, &r.solver.slots.work[w],
 					                         r.solver.displacement);
 			}
-			// a hundred roundings of numbers near one
+			// the tolerance is a hundred roundings of numbers near one
 			expect_maps(&r, r.solver.elements.single ? 6e-6 : STRAIN_TOLERANCE);
 			for (int i = 0; i < 6; i++)
 				for (int32_t s = 0; s < r.tissue.tetrahedron_count; s++)

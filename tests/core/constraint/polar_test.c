@@ -5,7 +5,8 @@
 
 enum { DRAWS = 300, RIVALS = 200 };
 static const double YOUNG = 1000; // equals 2 mu, because Poisson's ratio is 0
-// The last Newton step leaves about epsilon, and D_m^-1 adds ten roundings.
+// Largest error of an entry of R. The last Newton step leaves about epsilon, and D_m^-1 adds ten
+// roundings.
 static const double ROTATION_DOUBLE = 1e-12, ROTATION_SINGLE = 5e-6;
 
 static void make(rig *r, int precision)
@@ -41,7 +42,7 @@ static void random_turn(uint64_t *random, double out[3][3])
 	mat_rotation(axis, random_between(random, -3.1, 3.1), out);
 }
 
-// U diag(s) V^T, with random rotations U and V.
+// Computes F = U diag(s) V^T, with random rotations U and V.
 static void with_singular_values(uint64_t *random, double a, double b, double c, double f[3][3])
 {
 	double u[3][3], v[3][3];
@@ -122,8 +123,8 @@ static void test_inverted_and_flat_elements_get_a_rotation(void **state)
 	}
 }
 
-// A mirror image of the rest shape. All singular values are equal, so every mirror axis is as good
-// as any other. The result must be a rotation.
+// Tests a mirror image of the rest shape. All singular values are equal, so every mirror axis is as
+// good as any other. The result must be a rotation.
 static void test_mirror_image(void **state)
 {
 	(void)state;

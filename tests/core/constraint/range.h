@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The range limit computed by angles. strain_range.h computes the same from products.
+// A second computation of the nearest member of a strain range, for tests of strain_range.h. This
+// one uses the angle between two columns of F; strain_range.h uses their dot products.
 #pragma once
 
 #include "core/rig/rig.h"
 
-// RANGE_ROUNDING of strain_range.h, in double, moves limits by 1e-10. The effect is up to ten times
-// as large for the columns drawn here.
+// Largest error of a residual. RANGE_ROUNDING of strain_range.h, in double, moves limits by 1e-10.
+// The effect is up to ten times as large for the columns drawn here.
 static const double RANGE_TOLERANCE = 1e-8;
 
 typedef struct range_limits {
@@ -24,8 +25,9 @@ static inline double range_cosine(double f[3][3], int a, int b)
 	return range_dot(f, a, b) / sqrt(range_dot(f, a, a) * range_dot(f, b, b));
 }
 
-// Returns the part of `turn` by which the column of length s turns; the column of length t turns by
-// the rest. The squared distance s^2 sin^2 first + t^2 sin^2 (turn - first) is then least.
+// Returns the part of `turn` by which the column of length s turns. The column of length t turns by
+// the rest. With this part, called `first`, the squared distance s^2 sin^2 first + t^2 sin^2 (turn
+// - first) is least.
 static inline double range_first_turn(double s, double t, double turn)
 {
 	return turn / 2 + atan2(sin(turn) * (t * t - s * s), cos(turn) * (s * s + t * t)) / 2;

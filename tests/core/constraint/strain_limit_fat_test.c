@@ -6,7 +6,8 @@
 #include "reference/stress.h"
 
 enum { DRAWS = 60 };
-// About thirty roundings of numbers near one, and those of D_m^-1.
+// Largest error of a residual: about thirty roundings of numbers near one, and the roundings of
+// D_m^-1.
 static const double RESIDUAL_TOLERANCE = 1e-12;
 static const double YOUNG = 100, POISSON = 0.3, LIMIT_PA = 5000;
 static const double TARGET[6] = {0.4, 0.9, 1.2, 0.1, -0.06, 0.15};
@@ -142,7 +143,8 @@ static void test_range_is_the_nearest_of_each_limit(void **state)
 		double f[3][3], got[3][3], expected[3][3];
 		rig_random_gradient(&random, i % 2 ? 0.4 : 0.04, f);
 		residual(&r, f, got);
-		if (range_residual(&limits, f, expected)) { // the rest is rounding of the known stress
+		// the tolerance is the rounding of the known stress
+		if (range_residual(&limits, f, expected)) {
 			inside++;
 			assert_near(mat_distance(got, expected), 0, RESIDUAL_TOLERANCE);
 		} else {

@@ -5,7 +5,7 @@
 #include "core/constraint/range.h"
 
 enum { DRAWS = 60 };
-// About twenty roundings of numbers near one.
+// Largest error of a residual: about twenty roundings of numbers near one.
 static const double RESIDUAL_TOLERANCE = 1e-13;
 static const double TARGET[3] = {0.4, 0.9, 0.15};
 
@@ -88,7 +88,8 @@ static void test_target_is_the_polar_factor(void **state)
 		assert_projected(f, got, TARGET);
 		mat_multiply(f, root, q);
 		if (!(mat_determinant(f) > 0))
-			continue; // reversed: the polar factor is a rotation of the sheet, not of f as drawn
+			// if f is reversed, the polar factor is a rotation of the sheet, not of f as drawn
+			continue;
 		mat_polar(q, q);
 		mat_multiply(q, root, p);
 		for (int k = 0; k < 9; k++)
@@ -99,8 +100,8 @@ static void test_target_is_the_polar_factor(void **state)
 	rig_finish(&r);
 }
 
-// The unordered pairs of eq. 12, each once: R = sum of C (dC/dF) / |dC/dF|^2, with C = f_a.f_b -
-// t_ab.
+// Checks the residual of the unordered pairs of eq. 12, each once: R = sum of C (dC/dF) /
+// |dC/dF|^2, with C = f_a.f_b - t_ab.
 static void test_linearised_is_equation_13(void **state)
 {
 	(void)state;
@@ -186,7 +187,7 @@ static void test_range_of_what_is_flat_is_finite(void **state)
 		for (int e = 0; e < 6; e++)
 			size += fabs(flat[k][e / 3][e % 3]);
 		for (int e = 0; e < 9; e++)
-			// at most as far as the set of admissible F
+			// |R| is at most the distance from the set of admissible F
 			if (!(fabs(got[e / 3][e % 3]) <= 1 + 2 * size))
 				fail_msg("case %zu: %g", k, got[e / 3][e % 3]);
 	}

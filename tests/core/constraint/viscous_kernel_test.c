@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscosity against a stress computed here, and its potential against the work of that stress.
+// Viscosity against a stress that the test computes, and its potential against the work of that
+// stress.
 #include "core/constraint/element.h"
 
 enum { DRAWS = 40 };
 
 static const double viscosity_s = 0.004, young_pa = 4000, poisson = 0.41, sheet_pa = 2e4;
-// Relative to the largest stress: about ten roundings of D_m^-1, as in fat_energy_test.c.
+// Largest error of a stress, relative to the largest stress: about ten roundings of D_m^-1, as in
+// fat_energy_test.c.
 static const double TOLERANCE = 1e-11;
-// Simpson's rule over 200 parts of a straight path. It is exact for powers up to three, which is
-// enough here.
+// Largest relative error of work, by Simpson's rule over 200 parts of a straight path. The rule is
+// exact for powers up to three, and the stress has no higher powers.
 static const double WORK_TOLERANCE = 1e-10;
 
 static void make(rig *r, int triangle)
@@ -52,7 +54,7 @@ static void viscous_answer(rig *r, int triangle, double f[3][3], double stress[3
 		stress[k / 3][k % 3] -= law[k / 3][k % 3];
 }
 
-// F C : (E - R) t / h, times volume. For a triangle E and R have two axes.
+// Computes F C : (E - R) t / h, times volume. For a triangle E and R have two axes.
 static void expected_stress(const rig *r, int triangle, double f[3][3], double from[3][3],
                             double out[3][3])
 {
@@ -140,7 +142,7 @@ static void test_potential_is_the_work_done(void **state)
 }
 
 // If an element has only rotated since R was taken, its stress is 0 up to rounding. The rounding is
-// relative to the stress with R at rest.
+// relative to the stress of an R that is taken at rest.
 static void test_turning_is_not_damped(void **state)
 {
 	(void)state;

@@ -125,7 +125,7 @@ static void test_counts_after_random_cuts(void **state)
 	rig_finish(&r);
 }
 
-// A restore has only the parted edges.
+// A recount, as after a restore, computes the same state from the parted edges alone.
 static void test_recount_gives_the_same(void **state)
 {
 	(void)state;
@@ -243,7 +243,7 @@ static void test_exposure_by_a_tool(void **state)
 	rig r;
 	make(&r);
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
-	tool.hot_radius_m = 0.012; // contains both ends of some edges
+	tool.hot_radius_m = 0.012; // a sphere of this radius contains both ends of some edges
 	tool.grid_step_m = 0.003;
 	cau_pose pose = pose_at(0.011, 0.007, 0.004);
 	cau_heat_grid grid;

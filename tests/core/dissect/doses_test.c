@@ -77,7 +77,8 @@ static double volume_taken_m3(const rig *r)
 // ---- volume of a cut
 
 static const double resolutions[] = {0.5, 1, 1.5, 2};
-// With sanitizers only the two coarse ones: the others would take a minute, and run the same code.
+// Meshes that are tested: with sanitizers only the two coarse ones. The fine ones would take a
+// minute, and run the same code.
 enum { RESOLUTIONS = CAU_TEST_SANITIZED ? 2 : sizeof resolutions / sizeof *resolutions };
 
 // Returns the mean volume of a cut of 60 mm, by a ball of 6 mm along the top of a slab, over paths
@@ -97,7 +98,8 @@ static double mean_volume_m3(double resolution, int parting, double spread_c)
 	heat->absorption_per_s = 0.6;
 	rig_build(&r, NULL, 1);
 	double sum = 0;
-	for (int i = 0; i < OFFSETS; i++) { // golden ratio over a cell, so that all paths differ
+	// offsets by the golden ratio over a cell, so that all paths differ
+	for (int i = 0; i < OFFSETS; i++) {
 		double share = fmod(0.618034 * i, 1), cell = 0.004 / resolution;
 		drag way = {.radius_m = 0.006, .temperature_c = 90, .speed_m_s = 0.004};
 		memcpy(way.from, (double[]){-0.03 + cell * i / OFFSETS, cell * share, 0}, sizeof way.from);
@@ -126,7 +128,8 @@ static void what_a_cut_takes_is_not_the_meshs(void **state)
 	}
 }
 
-// With the paper's rule, the volume depends on the mesh. This shows that the test above can fail.
+// With the paper's rule, by edges, the volume depends on the mesh. This shows that the test above
+// can fail.
 static void by_edges_it_is(void **state)
 {
 	(void)state;

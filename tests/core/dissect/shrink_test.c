@@ -7,7 +7,7 @@
 #include "core/dissect/cutting.h"
 
 static const double RAMP_S = 0.2, STEP_S = 1.0 / 60;
-// Ten roundings, and two square roots of numbers between 0.01 and 1.
+// Largest error of a target: ten roundings, and two square roots of numbers between 0.01 and 1.
 static const double TARGET_TOLERANCE = 1e-12;
 static const double SHEET_SHRINK[2] = {0.1, 0.3}, FAT_SHRINK[3] = {0.1, 0.6, 0.9};
 static const double SHEET_TARGET[3] = {0.4, 0.7, 0.1};
@@ -240,7 +240,8 @@ static void test_denatured_elements(void **state)
 			burnt b;
 			make(&b, fat, targeted);
 			int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE, edges = fat ? 6 : 3;
-			// an edge heated by 0.5 counts as coagulated, so 0.24 is less than half
+			// an edge heated by 0.5 is coagulated, so at 0.24 the element is less than half
+			// coagulated
 			denature(&b, kind, 7, edges, 0.24, AXIS[fat]);
 			assert_int_equal(b.r.shrink.active_count, 0);
 			denature(&b, kind, 7, edges, 0.26, AXIS[fat]);
@@ -272,7 +273,7 @@ static void test_ramp(void **state)
 			            TARGET_TOLERANCE);
 		assert_true(ticks < 100);
 	}
-	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // within one tick of the ramp's time
+	assert_near(ticks * STEP_S, RAMP_S, STEP_S * 1.001); // the tolerance is one tick
 	rig_finish(&b.r);
 }
 

@@ -9,9 +9,10 @@
 #include "dissect/dissection_internal.h"
 
 static const double stiffness_pa = 1e6, tear_j_m2 = 200;
-// share of the released energy that an element at a tip stores: tears.c
+// share of the released energy that an element at the tip of a cut stores, as in tears.c
 static const double band_share = 0.4;
-static const double near_share = 1e-6; // relative distance from the limit stretch, to either side
+// relative distance from the stretch at which an element tears, to either side
+static const double near_share = 1e-6;
 
 static double *stretched(const rig *r, double x, double y, double z)
 {
@@ -53,9 +54,10 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 		cau_sheet_material *sheet = rig_add_sheet(&r, 5, 4)->sheet; // cells of 20 mm
 		sheet->limit_stiffness_pa = stiffness_pa;
 		sheet->heat.tear_energy_j_m2 = tear_j_m2;
-		sheet->target[0] = sheet->target[1] = 0.1; // taut at rest, which does not count
+		// the sheet is taut at rest, which adds no load
+		sheet->target[0] = sheet->target[1] = 0.1;
 		sheet->limit = ranged ? CAU_LIMIT_RANGE : CAU_LIMIT_TARGET;
-		sheet->strain_max[0] = 0.3; // stretch within the range does not count
+		sheet->strain_max[0] = 0.3; // stretch within the range adds no load
 		build(&r, CAU_PARTING_ELEMENTS);
 		double beyond = sqrt(2 * band_share * tear_j_m2 / 0.02 / stiffness_pa);
 		double least = (ranged ? 1.3 : 1) + beyond;
@@ -72,7 +74,7 @@ static void a_sheet_bears_what_its_parameters_say(void **state)
 static void coagulated_tissue_bears_less(void **state)
 {
 	(void)state;
-	for (int quarters = 0; quarters <= 8; quarters++) { // quarters of an exposure of 0.5
+	for (int quarters = 0; quarters <= 8; quarters++) { // exposures of 0 to 1, in quarters of 0.5
 		rig r;
 		rig_begin(&r);
 		cau_layer_def *layer = rig_add_sheet(&r, 5, 4);
@@ -141,12 +143,12 @@ static void one_overshoot_tears_nothing(void **state)
 	build(&r, CAU_PARTING_EDGES);
 	cau_dissection *d = &r.dissection;
 	double *far = stretched(&r, 3, 1, 1), *near = stretched(&r, 1, 1, 1);
-	for (int k = 0; k < 4; k++) { // overloaded in every other tick
+	for (int k = 0; k < 4; k++) { // the element is overloaded in every other tick
 		cau_dissection_tear(d, far, true, r.solver.pool);
 		cau_dissection_tear(d, near, true, r.solver.pool);
 	}
 	assert_int_equal(d->tears.elements_torn, 0);
-	for (int k = 0; k < 5; k++) // consecutive ticks that have not converged
+	for (int k = 0; k < 5; k++) // these are consecutive ticks that have not converged
 		cau_dissection_tear(d, far, false, r.solver.pool);
 	assert_int_equal(d->tears.elements_torn, 0);
 	cau_dissection_tear(d, far, false, r.solver.pool);

@@ -14,7 +14,7 @@
 
 static const double AMBIENT_C = 37;
 static const double TICK_S = 1.0 / 60;
-// An edge that is wholly inside the hot ball, so all nodes around it are held.
+// Ends of an edge that is wholly inside the hot ball, so all nodes around the edge are held.
 static const cau_vec3 A = {-4e-4, 2e-4, 1e-4}, B = {5e-4, -3e-4, 2e-4};
 
 static cau_heat_grid create(const cau_tool_def *tool)
@@ -81,7 +81,7 @@ static void test_no_exposure_outside_the_shape(void **state)
 	double mean = (cau_heat_grid_at(&grid, near) + cau_heat_grid_at(&grid, by)) / 2;
 	assert_true(mean > 100);
 	assert_true(cau_exposure_gain(&grid, &tool, &tool.pose, 0, near, by, 0.4, TICK_S) == 0);
-	// Both ends are outside, the edge passes through the ball.
+	// Both ends are outside the ball, and the edge passes through it.
 	cau_vec3 across = {-3.1e-3, 1e-3, 0};
 	assert_true(cau_exposure_gain(&grid, &tool, &tool.pose, 0, near, across, 0.4, TICK_S) > 0);
 	cau_pose lifted = pose_at(0, 0, 5e-3); // the tool has left, and its heat is still there

@@ -14,7 +14,8 @@
 #include "core/tool/tools.h"
 
 enum { NODES = 12, COUNT = NODES * NODES * NODES };
-static const double ROUNDING_C = 1e-4; // rounding of sums of eight floats near 100
+// largest error, K: rounding of sums of eight floats near 100
+static const double ROUNDING_C = 1e-4;
 
 typedef struct pair { // a field, and the next wider field
 	cau_heat_field field[2];
@@ -53,8 +54,8 @@ static void make(pair *p, int64_t x, int64_t y, int64_t z, float boundary)
 				!k && is_outer(i) ? boundary : (float)linear(place_of(&p->field[k], i));
 }
 
-// Odd and even origins, above and below zero, so that all relative positions of the two fields
-// occur.
+// Origins of the inner field: odd and even, above and below zero, so that all relative positions of
+// the two fields occur.
 static const int64_t ORIGIN[][3] = {{0, 0, 0}, {-7, 3, 12}, {5, -4, -9}, {-1000001, 6, -2}};
 enum { ORIGINS = sizeof ORIGIN / sizeof *ORIGIN };
 
@@ -111,7 +112,8 @@ static void test_inner_nodes_are_given(void **state)
 			assert_true(p.field[1].temperature[i] == 1000 + (float)from);
 			taken++;
 		}
-		assert_int_equal(taken, 5 * 5 * 5); // every second one of ten inner nodes along each axis
+		// along each axis, every second one of ten inner nodes is taken
+		assert_int_equal(taken, 5 * 5 * 5);
 	}
 }
 

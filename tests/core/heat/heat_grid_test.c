@@ -47,9 +47,8 @@ static cau_vec3 node_position(const cau_heat_grid *grid, int64_t index)
 	                  (double)(grid->field[0].origin[2] + index / (n * n)) * grid->field[0].step_m};
 }
 
-// A point source of heat that has spread for `time` (s), with 100 degC at the centre at SPREAD_S.
-// At SPREAD_S its standard deviation is 2.9 steps of 1 mm. The boundary is 4.7 standard deviations
-// away.
+// Time, s, at which a point source of heat has spread to 100 degC at the centre. At this time its
+// standard deviation is 2.9 steps of 1 mm. The boundary is 4.7 standard deviations away.
 static const double SPREAD_S = 1.0;
 static double gaussian(const cau_heat_grid *grid, cau_vec3 p, double time)
 {
@@ -57,8 +56,8 @@ static double gaussian(const cau_heat_grid *grid, cau_vec3 p, double time)
 }
 
 // Returns the greatest error, relative to the solution's peak, after the Gaussian has spread. The
-// time is 8 parts of exactly dl^2 / (6 alpha) at 1 mm and 32 parts at 0.5 mm, so dt is scaled with
-// dl^2.
+// time is 8 parts of exactly dl^2 / (6 alpha) at 1 mm and 32 such parts at 0.5 mm, so dt is scaled
+// with dl^2.
 static double gaussian_error(double step_m, int nodes)
 {
 	static const double DURATION_S = 8 * 1e-6 / (6 * 4.2e-6);
@@ -86,7 +85,8 @@ static void test_gaussian(void **state)
 {
 	(void)state;
 	static const double ONE_PERCENT = 0.01;
-	// HIGHER_TERMS: terms of order dl^4 at 1 mm.
+	// SECOND_ORDER: ratio of the errors if the error falls with dl^2. HIGHER_TERMS: largest
+	// difference from this ratio, by terms of order dl^4 at 1 mm.
 	static const double SECOND_ORDER = 4, HIGHER_TERMS = 0.3;
 	double coarse = gaussian_error(1e-3, 32);
 	double fine = gaussian_error(0.5e-3, 64);
@@ -99,7 +99,7 @@ static void test_gaussian(void **state)
 static void test_substeps(void **state)
 {
 	(void)state;
-	const double limit = 1e-6 / (6 * 4.2e-6); // 39.7 ms at 1 mm
+	const double limit = 1e-6 / (6 * 4.2e-6); // longest stable substep, s, at 1 mm: 39.7 ms
 	assert_int_equal(cau_heat_grid_substeps(1e-3, 4.2e-6, limit), 1);
 	assert_int_equal(cau_heat_grid_substeps(1e-3, 4.2e-6, limit * 1.001), 2);
 	assert_int_equal(cau_heat_grid_substeps(1e-3, 4.2e-6, limit * 7), 7);
@@ -107,21 +107,23 @@ static void test_substeps(void **state)
 	assert_int_equal(cau_heat_grid_substeps(1e-3, 0, 1000), 1);
 }
 
-// At exactly the limit every new value is a mean of the six values around. So noise stays within
-// its extremes and decays. A step 5 % beyond would make the finest noise grow by a factor of 1.1 in
-// each part.
+// At exactly the limit every new value is a mean of the six values around it. So noise stays within
+// its extremes and decays. A step 5 % above the limit would make the finest noise grow by a factor
+// of 1.1 in each part.
 static void test_stable_at_the_limit(void **state)
 {
 	(void)state;
-	static const double ROUNDING_C = 1e-4; // rounding of float means near 100, over 64 parts
+	// largest error, K: rounding of float means near 100, over 64 parts
+	static const double ROUNDING_C = 1e-4;
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_heat_grid grid = create(&tool, &tool.pose);
 	uint64_t random = 21;
 	double most = 0;
-	for (int64_t i = 0; i < node_count(&grid); i++) { // a checkerboard, the least stable field
+	// the field is a checkerboard, the least stable field
+	for (int64_t i = 0; i < node_count(&grid); i++) {
 		int64_t n = grid.nodes, x = i % n, y = i / n % n, z = i / (n * n);
 		if (x * y * z == 0 || x == n - 1 || y == n - 1 || z == n - 1)
-			continue; // the boundary is at ambient
+			continue; // boundary nodes stay at ambient
 		int odd = (x + y + z) & 1;
 		grid.field[0].temperature[i] =
 			(float)(AMBIENT_C + (odd ? 60 : -60) + random_between(&random, -1, 1));
@@ -160,9 +162,11 @@ static void test_refusals(void **state)
 	                 CAU_OK);
 	cau_heat_grid_finish(&grid);
 	expect_refusal(&tool, 64.001 * limit, "grid_step_m");
-	tool.grid_step_m = tool.hot_radius_m * 1.001; // the hot part would fit between the nodes
+	// with this step the hot part would fit between the nodes
+	tool.grid_step_m = tool.hot_radius_m * 1.001;
 	expect_refusal(&tool, TICK_S, "grid_step_m");
-	tool = tool_with_defaults(CAU_TOOL_SPATULA); // a spatula is thinner than its hot radius
+	// the spatula's blade is thinner than the tool's hot radius, so the step is too large
+	tool = tool_with_defaults(CAU_TOOL_SPATULA);
 	tool.grid_step_m = tool.hot_radius_m / 2;
 	expect_refusal(&tool, TICK_S, "grid_step_m");
 	tool.grid_step_m = NAN;
@@ -181,7 +185,8 @@ static void test_refusals(void **state)
 static void test_hot_nodes_hold(void **state)
 {
 	(void)state;
-	// Cells: nearer to the surface, a node's value may round to the tool's temperature.
+	// Cells: distance from the surface up to which a node's value may round to the tool's
+	// temperature.
 	static const double AT_THE_SURFACE = 0.05;
 	for (int shape = 0; shape < CAU_TOOL_GRASPER; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
@@ -272,7 +277,8 @@ static void test_follows_in_whole_cells(void **state)
 static void test_heat_that_is_left_behind_stays(void **state)
 {
 	(void)state;
-	static const double COARSER = 0.1; // relative; cells of 4 mm resolve a spot of 8 mm no better
+	// largest relative difference: cells of 4 mm resolve a spot of 8 mm no better
+	static const double COARSER = 0.1;
 	double left_c[2];
 	for (int goes = 0; goes < 2; goes++) {
 		cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
@@ -321,12 +327,12 @@ static void test_comes_to_rest(void **state)
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0, TICK_S);
 		assert_true(cau_heat_grid_warmest(&grid) <= previous);
 		previous = cau_heat_grid_warmest(&grid);
-		// The slowest mode decays in 1.8 s; ln(133 / 0.01) such times are needed.
+		// The slowest mode decays in 1.8 s. The field is at rest after ln(133 / 0.01) such times.
 		assert_true(ticks < 60 * 30);
 	}
 	assert_true(ticks > 60);
 	float *field = grid.field[0].temperature;
-	grid.field[0].next[0] = 99; // would reach the field with the next exchange
+	grid.field[0].next[0] = 99; // this value would reach the field with the next exchange
 	cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0, TICK_S);
 	assert_ptr_equal(field, grid.field[0].temperature);
 	assert_true(grid.field[0].temperature[0] == (float)AMBIENT_C);
@@ -351,11 +357,12 @@ static void test_survives_a_bad_pose(void **state)
 static void test_interpolation(void **state)
 {
 	(void)state;
-	static const double ROUNDING_C = 1e-4; // rounding of floats near 100
+	static const double ROUNDING_C = 1e-4; // largest error, K: rounding of floats near 100
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_pose pose = pose_at(0.5, -0.25, 0.125);
 	cau_heat_grid grid = create(&tool, &pose);
-	for (int64_t i = 0; i < node_count(&grid); i++) { // linear: reproduced exactly
+	// a linear field, which interpolation reproduces exactly
+	for (int64_t i = 0; i < node_count(&grid); i++) {
 		cau_vec3 p = node_position(&grid, i);
 		grid.field[0].temperature[i] =
 			(float)(60 + 1e3 * (p.x - 0.5) + 2e3 * (p.y + 0.25) - 3e3 * (p.z - 0.125));

@@ -16,7 +16,8 @@
 static const double AMBIENT_C = 37;
 static const double TICK_S = 1.0 / 60;
 static const double RADIUS_M = 3e-3;
-// Required accuracy: 2 % of the tool's excess over ambient, with cells of a sixth of the radius.
+// Largest error that is accepted, as a share of the tool's excess over ambient: 2 %, with cells of
+// a sixth of the radius.
 static const double ASKED = 0.02;
 
 static cau_tool_def ball_of(double step_m, int cells)
@@ -84,7 +85,8 @@ static void test_around_a_ball(void **state)
 		int parts;
 		double part_s;
 	} run[] = {{60, 1.0 / 60}, {600, 1.0 / 60}, {600, 0.1}, {300, 1}, {600, 1}};
-	size_t runs = CAU_TEST_SANITIZED ? 1 : sizeof run / sizeof *run; // all runs use the same code
+	// sanitizers need one run, because all runs use the same code
+	size_t runs = CAU_TEST_SANITIZED ? 1 : sizeof run / sizeof *run;
 	for (size_t k = 0; k < runs; k++) {
 		double time_s = run[k].parts * run[k].part_s;
 		double worst = worst_around_ball(&tool, run[k].parts, run[k].part_s, time_s);
@@ -119,8 +121,8 @@ static void test_finer_is_better(void **state)
 }
 
 // In the first half second the warm layer is only a cell or two thick. At 0.1 s cells of a sixth of
-// the radius are too coarse, but ticks are short enough. Cells of half the length have less than a
-// third of the error. Ticks of an eighth have more than four fifths of the error.
+// the radius are too coarse, but ticks are short enough. With cells of half the length, the error
+// is less than a third. With ticks of an eighth of the length, it is still more than four fifths.
 static void test_soon_after_the_beginning(void **state)
 {
 	(void)state;
@@ -209,7 +211,7 @@ static void test_a_moving_ball(void **state)
 static void test_stable_wherever_the_surface_is(void **state)
 {
 	(void)state;
-	static const float ROUNDING_C = 1e-3F; // rounding of floats near 200
+	static const float ROUNDING_C = 1e-3F; // largest error, K: rounding of floats near 200
 	cau_tool_def tool = ball_of(1e-3, 16);
 	double limit = 1e-6 / (6 * tool.diffusivity_m2_s);
 	uint64_t random = 29;
@@ -262,8 +264,8 @@ int main(void)
 		cmocka_unit_test(test_stable_wherever_the_surface_is),
 		cmocka_unit_test(test_read_up_to_the_surface),
 	};
-	// These tests run the same code for longer. Sanitizers test moving fields in heat_field_test.c
-	// and heat_grid_test.c.
+	// These tests run the same code for longer, so they are left out with sanitizers. Moving fields
+	// are tested with sanitizers in heat_field_test.c and heat_grid_test.c.
 	const struct CMUnitTest figures[] = {
 		cmocka_unit_test(test_steady_around_a_ball),
 		cmocka_unit_test(test_finer_is_better),

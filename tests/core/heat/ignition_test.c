@@ -12,13 +12,14 @@
 #include "heat/exposure.h"
 
 enum { DRAWS = 100000 };
-static const double MEAN_C = 172, SPREAD_C = 17; // of fascia
+static const double MEAN_C = 172, SPREAD_C = 17; // mean and spread of fascia
 
 static void test_statistics(void **state)
 {
 	(void)state;
-	// A correct draw is outside five standard errors with a probability of 1e-6. The limit at 3
-	// takes 0.2 % of the spread.
+	// The standard error of a mean of the draws. A correct draw is outside five standard errors
+	// with a probability of 1e-6. Draws are limited to 3 standard deviations, which lowers their
+	// spread by 0.2 %.
 	const double error = SPREAD_C / sqrt(DRAWS);
 	double sum = 0, squares = 0, product = 0, previous = 0, beyond = 0;
 	for (int32_t edge = 0; edge < DRAWS; edge++) {
@@ -59,7 +60,7 @@ static void test_cut(void **state)
 		at_floor += wide == 0.1 * MEAN_C;
 		at_cut += wide == MEAN_C + 3 * (10 * MEAN_C);
 	}
-	assert_true(at_floor > DRAWS / 3); // both limits are reached, the upper one rarely
+	assert_true(at_floor > DRAWS / 3); // both limits are reached, the upper limit rarely
 	assert_true(at_cut > 0 && at_cut < DRAWS / 300);
 }
 
@@ -91,7 +92,8 @@ static void test_bundles_are_normal_everywhere(void **state)
 	}
 }
 
-// Returns the mean product of draws at two positions that are `way` apart.
+// Returns the mean product of draws at two positions that are `way` apart: 1 for equal draws, 0 for
+// independent draws.
 static double likeness(cau_vec3 way, cau_vec3 fibre)
 {
 	double product = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every law of the elements, each on a small mesh.
+// One scene for each law of the elements, on a small mesh.
 #pragma once
 
 #include "core/rig/rig.h"

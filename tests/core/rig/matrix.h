@@ -31,7 +31,7 @@ static inline void mat_transpose(double a[3][3], double out[3][3])
 	memcpy(out, turned, sizeof turned);
 }
 
-// A^T B
+// Computes A^T B.
 static inline void mat_transpose_multiply(double a[3][3], double b[3][3], double out[3][3])
 {
 	double turned[3][3];
@@ -74,8 +74,8 @@ static inline double mat_distance(double a[3][3], double b[3][3])
 	return most;
 }
 
-// The polar factor of a matrix with positive determinant, by repeated averages with the inverse
-// transpose.
+// Computes the polar factor of a matrix with positive determinant, by repeated averages with the
+// inverse transpose.
 static inline void mat_polar(double a[3][3], double q[3][3])
 {
 	memcpy(q, a, 9 * sizeof(double));
@@ -89,7 +89,7 @@ static inline void mat_polar(double a[3][3], double q[3][3])
 	}
 }
 
-// The rotation by `angle` about an axis of any length.
+// Computes the rotation by `angle` about an axis of any length.
 static inline void mat_rotation(const double axis[3], double angle, double out[3][3])
 {
 	double n = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -102,7 +102,7 @@ static inline void mat_rotation(const double axis[3], double angle, double out[3
 	out[1][2] -= s * u[0], out[2][1] += s * u[0];
 }
 
-// The symmetric matrix with the entries 00, 11, 22, 01, 02, 12.
+// Computes the symmetric matrix with the entries 00, 11, 22, 01, 02, 12.
 static inline void mat_of_symmetric(const double s[6], double out[3][3])
 {
 	out[0][0] = s[0], out[1][1] = s[1], out[2][2] = s[2];

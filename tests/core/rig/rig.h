@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene made in C, with its tissue, laws and solver, but without a session. Tests of laws, solver
-// and other core folders use it. If a module refuses its input, the functions fail the running
-// test.
+// A scene made in C, with its tissue, laws and solver, but without a session. Tests of laws, of the
+// solver and of other core folders use it. If a module refuses its input, the functions of this
+// file fail the running test.
 #pragma once
 
 // clang-format off
@@ -73,13 +73,13 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient);
 // Removes the element from dissection, laws and factor, as a cut does.
 void rig_remove(rig *r, int kind, int32_t element, uint64_t tick);
 
-// One tick of the factor's update, without a step.
+// Does one tick of the factor's update, without a step.
 void rig_update_factor(rig *r, uint64_t tick);
 
 // Maps rest positions by x -> A x, and moves them by random noise (m) in each coordinate.
 void rig_deform(const rig *r, double a[3][3], double noise_m, uint64_t *random, double *x);
 
-// A random matrix I + H, with entries of H from -size to size.
+// Computes a random matrix I + H, with entries of H from -size to size.
 void rig_random_gradient(uint64_t *random, double size, double a[3][3]);
 
 // Returns the largest |a_i - b_i| over n numbers, relative to the largest |b_i|.

@@ -5,7 +5,7 @@
 
 static const double everywhere_least[3] = {-1, -1, -1};
 
-// Similar to the paper's fascia: pinned along one side, with bending.
+// Adds fascia similar to the paper's: pinned along one side, with bending.
 static void add_fascia(rig *r)
 {
 	rig_add_sheet(r, 24, 20)->sheet[0].bending_stiffness_nm = 1e-4;
@@ -18,7 +18,7 @@ static void add_slab(rig *r)
 	rig_pin_box(r, everywhere_least, (double[]){1, 1, -0.0299});
 }
 
-// Two slabs and a sheet that are not connected. Nothing is pinned.
+// Adds two slabs and a sheet that are not connected. Nothing is pinned.
 static void add_pieces(rig *r)
 {
 	rig_add_slab(r, 5, 4, 3);
@@ -36,7 +36,7 @@ static void add_one_tetrahedron(rig *r)
 	rig_add_tetrahedra(r, 4, points[0], 1, vertex);
 }
 
-// Only the vertex at the corner (0.05, 0.04, 0) is free.
+// Adds a slab in which only the vertex at the corner (0.05, 0.04, 0) is free.
 static void add_one_free_vertex(rig *r)
 {
 	rig_add_slab(r, 2, 2, 1);
@@ -45,7 +45,7 @@ static void add_one_free_vertex(rig *r)
 	rig_pin_box(r, everywhere_least, (double[]){1, 1, -0.001});
 }
 
-// Fascia linked to fat: stiff and soft tissue together.
+// Adds fascia linked to fat: stiff and soft tissue together.
 static void add_layers(rig *r)
 {
 	rig_add_slab(r, 8, 6, 3);

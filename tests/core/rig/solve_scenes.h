@@ -12,9 +12,10 @@ typedef struct solve_scene {
 enum { SOLVE_SCENES = 6 };
 extern const solve_scene solve_scenes[SOLVE_SCENES];
 
-// x = A^-1 b (n x 3 by vertex) by the factor in double. Fixed vertices get 0.
+// Computes x = A^-1 b (n x 3 by vertex) by the factor in double. Fixed vertices get 0.
 void solve_by_factor(rig *r, const double *b, double *x);
-// x = A^-1 b by the packed sweeps.
+// Computes x = A^-1 b by the packed sweeps.
 void solve_by_sweep(rig *r, const double *b, double *x);
-// Dense A of the live elements, by vertices (n x n). Rows and columns of pinned vertices are 0.
+// Computes A of the live elements as a dense matrix, by vertices (n x n). Rows and columns of
+// pinned vertices are 0.
 void solve_dense_matrix(const rig *r, double *a);

@@ -8,8 +8,8 @@
 #include "session/session_internal.h"
 
 // Returns the error of the step over the free vertices of [first, last), in the mass norm, relative
-// to their motion. The motion counts as at least 0.5 um / `accuracy`, so that an error of half a
-// micrometre never exceeds `accuracy`. Returns 0 if no vertex is free.
+// to their motion. A motion below 0.5 um / `accuracy` is replaced by this value, so that an error
+// of half a micrometre never exceeds `accuracy`. Returns 0 if no vertex is free.
 static inline double step_error_part(const cau_session *session, const double *exact, int32_t first,
                                      int32_t last, double accuracy)
 {

@@ -3,9 +3,9 @@
 // so a test of exact bits may hold for one tier only.
 #pragma once
 
-// Returns the highest tier that the program may use: the environment's CAUTERY_TEST_TIER
-// (`baseline`, `avx2` or `avx512`). Returns NULL if the variable is not set: the best tier of the
-// machine. The program ends as skipped, with the reason, if the machine does not have the tier, or
-// has no higher one: a run without the variable would then be the same. It ends as failed if no
-// tier has that name.
+// Returns the highest tier that the program may use: the value of the environment variable
+// CAUTERY_TEST_TIER (`baseline`, `avx2` or `avx512`). Returns NULL, for the best tier of the
+// machine, if the variable is not set. Ends the program as failed if no tier has that name. Ends
+// the program as skipped, with the reason, if the machine does not have the tier. Does the same if
+// the machine has no higher tier, because the run would then be the same as without the variable.
 const char *test_tier(void);

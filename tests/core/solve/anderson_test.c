@@ -6,13 +6,15 @@
 #include "core/rig/law_scenes.h"
 #include "core/rig/solve_scenes.h"
 
-// Both iterations stop at a step that is 1e-11 of the first one. The plain iteration contracts by
-// more than 0.98 per step, so the remaining distance is at most 50 such steps.
+// Length of the last step, relative to the first step, at which both iterations stop. Each step of
+// the plain iteration is less than 0.98 times the step before, so the remaining distance is at most
+// 50 times the last step.
 static const double STILL = 1e-11;
-static const double FIXED_POINT_TOLERANCE = 1e-8;
+static const double FIXED_POINT_TOLERANCE =
+	1e-8; // largest distance of the results, over the motion
 enum { PLAIN_MOST = 6000, ACCELERATED_MOST = 600 };
 
-// Builds the law's mesh with a load. Sheets are made heavy and soft: with normal values the plain
+// Builds the law's mesh with a load. Sheets are made heavy and soft. With normal values the plain
 // iteration would need many thousands of steps across a sheet.
 static void make(rig *r, const law_scene *law)
 {

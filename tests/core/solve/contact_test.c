@@ -9,7 +9,8 @@
 #include "core/rig/rig.h"
 #include "solve/coupling.h"
 
-// Relative to the largest reaction, for a step that has converged to a residual of 1e-10.
+// Largest error of a force, relative to the largest reaction, for a step that has converged to a
+// residual of 1e-10.
 static const double FORCE_TOLERANCE = 1e-5;
 static const double GAP_TOLERANCE_M = 1e-8;
 static const double RADIUS_M = 0.02, DEPTH_M = 0.004, MARGIN_M = 0.008;
@@ -20,7 +21,7 @@ typedef struct pressed {
 	cau_contact_set *set;
 } pressed;
 
-// A block that is pinned at its bottom.
+// Makes a block that is pinned at its bottom.
 static void make_of(pressed *p, double friction, int32_t along, int32_t across, int32_t deep)
 {
 	rig_begin(&p->r);
@@ -76,10 +77,10 @@ static void solve(pressed *p)
 	cau_contact_prepare(p->set, &p->r.solver);
 	p->r.solver.contact = p->set;
 	assert_int_equal(cau_solver_run(&p->r.solver, NULL), CAU_OK);
-	cau_solver_evaluate(&p->r.solver); // the gradient without reactions
+	cau_solver_evaluate(&p->r.solver); // computes the gradient without reactions
 }
 
-// The gradient less the reactions is 0 at all vertices.
+// Checks that the gradient less the reactions is 0 at all vertices.
 static void assert_balance(const pressed *p)
 {
 	size_t n = 3 * (size_t)p->r.tissue.vertex_count;
@@ -135,7 +136,7 @@ static void test_pressed_without_and_with_friction(void **state)
 	}
 }
 
-// The kept columns have the same values as S.
+// Checks that the kept columns have the same values as S.
 static void assert_columns_are_whole(const pressed *p)
 {
 	for (int32_t i = 0; i < p->set->column_count; i++)
@@ -145,8 +146,8 @@ static void assert_columns_are_whole(const pressed *p)
 				p->set->inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
 }
 
-// First more constraints than whole columns, then few again. The solution satisfies the same
-// conditions in both cases.
+// Solves with more constraints than whole columns, then with few constraints again. The solution
+// satisfies the same conditions in both cases.
 static void test_rows_beyond_whole_columns(void **state)
 {
 	(void)state;

@@ -6,12 +6,12 @@
 #include "core/rig/solve_scenes.h"
 
 static const double LEAP_M = 0.025; // the grip's motion in one tick
-// Net force and torque at convergence, relative to the sums of the absolute values.
+// Largest net force and torque at convergence, relative to the sums of the absolute values.
 static const double BALANCE_TOLERANCE = 1e-6;
-// Momentum of a converged step: rounding in double.
+// Largest relative change of momentum in a converged step, which is rounding in double.
 static const double MOMENTUM_TOLERANCE = 1e-9;
 
-// A block that is pinned at its bottom and gripped at its top.
+// Makes a block that is pinned at its bottom and gripped at its top.
 static void make_gripped(rig *r, int model, int precision, int32_t threads)
 {
 	rig_begin(r);
@@ -32,7 +32,7 @@ static void leap(rig *r, double x, double z)
 		}
 }
 
-// One tick of eq. 1 and 2 without load: s = x, so the velocity is discarded.
+// Computes one tick of eq. 1 and 2 without load: s = x, so the velocity is discarded.
 static void tick(rig *r)
 {
 	memcpy(r->solver.predicted, r->solver.position,

@@ -4,7 +4,8 @@
 
 #include "core/rig/solve_scenes.h"
 
-// Central differences at 1e-5 of the slab's thickness: truncation and rounding near 1e-9.
+// Step, m, of central differences, 1e-5 of the slab's thickness, and their largest relative error.
+// Truncation and rounding are near 1e-9.
 static const double DIFFERENCE_STEP_M = 1e-7, DIFFERENCE_TOLERANCE = 1e-6;
 
 static void make(rig *r, int32_t threads)
@@ -70,7 +71,7 @@ static void test_inertia_and_drag_by_hand(void **state)
 				r.solver.position[3 * r.solver.drag[k].vertex + c] - r.solver.drag[k].target[c];
 			expected += r.solver.drag[k].coefficient * away * away / 2;
 		}
-	// rounding: another order of additions
+	// the tolerance is rounding, because the additions have another order
 	assert_near(cau_solver_evaluate(&r.solver), expected, 1e-13 * expected);
 	assert_true(cau_solver_elastic_energy(&r.solver) == 0);
 	rig_finish(&r);
@@ -91,8 +92,8 @@ static void test_threads_change_nothing(void **state)
 	}
 }
 
-// Work that one thread does beside the first local step of a tick is done once. The result is that
-// of the local step alone.
+// Work that one thread does during the first local step of a tick is done once. The result is the
+// same as without this work.
 static void count(void *context)
 {
 	++*(int *)context; // only one thread changes it

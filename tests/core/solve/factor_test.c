@@ -4,10 +4,11 @@
 
 #include "core/rig/solve_scenes.h"
 
-// |A x - b| relative to |A| |x|: a direct solve has a few dozen roundings.
+// Largest |A x - b| relative to |A| |x|. A direct solve has a few dozen roundings.
 static const double RESIDUAL_TOLERANCE = 1e-14;
-// Tolerance for solutions of a downdated against a fresh factor: 1e-10, or 1e-13 times the worst
-// ratio of an element's stiffness to a vertex's inertia, whichever is larger.
+// Largest relative difference between the solutions of a downdated and a fresh factor:
+// DOWNDATE_TOLERANCE, or DOWNDATE_RATIO times the worst ratio of an element's stiffness to a
+// vertex's inertia, whichever is larger.
 static const double DOWNDATE_TOLERANCE = 1e-10, DOWNDATE_RATIO = 1e-13;
 
 static void make(rig *r, int scene)

@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Properties of every law: the gradient is that of the energy; an element has no net force or
-// torque; it has no force at rest or once removed; precisions and instruction sets agree.
+// Tests properties of every law. The gradient is the derivative of the energy. An element has no
+// net force or torque, and no force at rest or once it is removed. Precisions and instruction sets
+// agree.
 #include <string.h>
 
 #include "core/rig/law_scenes.h"
 
-// Central differences of step h: truncation h^2 relative, rounding 1e-16 E / (h |g|), both about
-// 1e-9 for these meshes at h = 1e-5 of their thickness.
+// Step h, m, of central differences, and their largest relative error. Truncation is h^2 relative,
+// and rounding is 1e-16 E / (h |g|). Both are about 1e-9 for these meshes at h = 1e-5 of their
+// thickness.
 static const double DIFFERENCE_STEP_M = 1e-7;
 static const double DIFFERENCE_TOLERANCE = 1e-6;
-// A sum of a few products has about twenty roundings of the largest term, which may be ten times
-// the result.
+// Largest sum of an element's forces (BALANCE) and moments (TORQUE), relative to the sums of the
+// absolute values. A sum of a few products has about twenty roundings of the largest term, which
+// may be ten times the result.
 static const double BALANCE_DOUBLE = 1e-13;
 static const double TORQUE_DOUBLE = 1e-11;
-// One rounding to float of D_m^-1, u and the material, 6e-8 each. Strains of about a tenth amplify
-// it, because a stress is a difference of terms ten times its size.
+// Largest relative difference between float and double. D_m^-1, u and the material are each rounded
+// once to float, by 6e-8. Strains of about a tenth amplify these errors, because a stress is a
+// difference of terms ten times its size.
 static const double PRECISION_TOLERANCE = 2e-5;
-// Fused multiply-add changes single roundings.
+// Largest relative difference between instruction sets: fused multiply-add changes single
+// roundings.
 static const double TIER_DOUBLE = 1e-12, TIER_SINGLE = 1e-5;
 
 static const double STRAIN = 0.12, NOISE_M = 5e-4;
@@ -169,7 +174,7 @@ static void test_removed_elements_are_silent(void **state)
 	}
 }
 
-// Without one element, the gradient is the old one less that element's part.
+// After one element is removed, the gradient is the old gradient less the part of the element.
 static void test_one_removed_leaves_the_others(void **state)
 {
 	(void)state;
@@ -248,8 +253,8 @@ static void test_dot_and_add_scaled(void **state)
 	}
 	const cau_kernels *whole = cau_kernels_choose(0, NULL), *half = cau_kernels_choose(1, NULL);
 	static const int counts[] = {0, 1, 7, 16, 1023, 1024, 1025, MOST};
-	// Strips of 64 float additions: the error is at most 64 x 6e-8 of the sum of the absolute
-	// values.
+	// Largest error of a dot product, relative to the sum of the absolute values. In strips of 64
+	// float additions the error is at most 64 x 6e-8.
 	static const double DOT_SINGLE = 4e-6, DOT_DOUBLE = 1e-14;
 	for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
 		double exact = 0, size = 0;
@@ -262,7 +267,7 @@ static void test_dot_and_add_scaled(void **state)
 		assert_near(half->dot((cau_reals *)fx, (cau_reals *)fy, 0, counts[k]), exact,
 		            DOT_SINGLE * size);
 	}
-	// start at an index: only the last element
+	// with a start index: only the last element
 	assert_true(whole->dot((cau_reals *)x, (cau_reals *)y, MOST - 1, 1) ==
 	            x[MOST - 1] * y[MOST - 1]);
 	double expected = y[MOST - 1] + 0.5 * x[MOST - 1];
@@ -271,7 +276,8 @@ static void test_dot_and_add_scaled(void **state)
 	assert_true(y[MOST - 1] == expected && fy[MOST - 1] == (float)expected);
 }
 
-enum { SPREAD_VERTICES = 45, SPREAD_COLUMNS = 37 }; // strips of 4 to 16 vertices, and a remainder
+// counts that make strips of 4 to 16 vertices, and a remainder
+enum { SPREAD_VERTICES = 45, SPREAD_COLUMNS = 37 };
 
 typedef struct spread_case {
 	_Alignas(64) unsigned char increment[4 * SPREAD_VERTICES * sizeof(double)];
@@ -304,12 +310,12 @@ static double spread_expected(const spread_case *of, bool single, int count, int
 	return sum;
 }
 
-// The columns spread together give the expected sums, and bit for bit the result of one column
-// after the other.
+// Checks that spreading several columns at once gives the expected sums, with the same bits as
+// spreading them one after the other.
 static void compare_spread(const cau_kernels *kernels, int count, int first, int last)
 {
 	static spread_case together, apart;
-	// number of additions, times the rounding of 6e-8 or 1.1e-16 of a sum of at most 40
+	// the number of additions times the rounding (6e-8 or 1.1e-16) of a sum of at most 40
 	double tolerance = kernels->single ? 6e-8 * 40 * 40 : 1.1e-16 * 40 * 40;
 	make_spread_case(&together, kernels->single);
 	make_spread_case(&apart, kernels->single);

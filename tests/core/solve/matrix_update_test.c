@@ -5,10 +5,11 @@
 
 #include "core/rig/solve_scenes.h"
 
-// Downdated against fresh, for solutions. The slab's stiffest element over its lightest vertex
-// makes 1e-13 w |G|^2 dt^2 / m slightly larger than 1e-10.
+// Largest relative difference between the solutions of a downdated and a fresh factor. With the
+// slab's stiffest element and its lightest vertex, 1e-13 w |G|^2 dt^2 / m is slightly larger than
+// 1e-10.
 static const double DOWNDATE_TOLERANCE = 2e-10;
-// longest time that a removed element may stay in the factor, simulated
+// longest simulated time, s, that a removed element may stay in the factor
 static const double WAIT_MOST_S = 0.050;
 
 enum { SLAB = 1, LAYERS = 5 };
@@ -108,7 +109,8 @@ static void test_more_are_shared_with_the_next_ticks(void **state)
 		solve_fresh(&c, CAU_PRECISION_DOUBLE, SLAB, fresh);
 		assert_true(rig_difference(c.solution, fresh, c.reals) < DOWNDATE_TOLERANCE);
 	}
-	for (int tick = 0; tick < 10; tick++) // the same number in each of several ticks
+	// the same number of elements is cut in each of several ticks
+	for (int tick = 0; tick < 10; tick++)
 		cut(&c, 8);
 	cut(&c, 0);
 	cut(&c, 0);
@@ -118,8 +120,8 @@ static void test_more_are_shared_with_the_next_ticks(void **state)
 	rig_finish(&c.r);
 }
 
-// After a burst, a new factor is computed. It comes into use one sixtieth of a second later, not
-// before, and is bit for bit the fresh one.
+// After a burst of cuts, a new factor is computed. It comes into use one sixtieth of a second
+// later, not before. It is bit for bit the factor that is computed from the same elements.
 static void test_a_burst_swaps_in_a_new_factor(void **state)
 {
 	(void)state;
@@ -187,7 +189,7 @@ static void test_cuts_during_the_making_are_not_lost(void **state)
 	assert_false(c.r.update.making);
 	solve_by_sweep(&c.r, c.load, c.solution);
 	solve_fresh(&c, CAU_PRECISION_DOUBLE, LAYERS, fresh);
-	// 10 MPa next to 5 kPa: larger rounding
+	// 10 MPa next to 5 kPa make rounding larger
 	assert_true(rig_difference(c.solution, fresh, c.reals) < 1e-7);
 	rig_finish(&c.r);
 }
@@ -195,7 +197,7 @@ static void test_cuts_during_the_making_are_not_lost(void **state)
 static void test_no_element_waits_long(void **state)
 {
 	(void)state;
-	// below, at and above the number that downdates can handle in a tick
+	// rates below, at and above the number that downdates can handle in a tick
 	static const int rates[] = {3, 7, 12, 13, 14, 16, 17, 24, 25, 40};
 	for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
 		cutter c;
@@ -246,7 +248,7 @@ static void test_every_run_is_the_same(void **state)
 	for (size_t k = 0; k < sizeof script / sizeof *script; k++) {
 		cut(&a, script[k]);
 		if (a.r.update.making)
-			cau_background_wait(a.r.update.background); // a's factor is ready early
+			cau_background_wait(a.r.update.background); // the factor of `a` is ready early
 		cut(&b, script[k]);
 		solve_by_sweep(&a.r, a.load, a.solution);
 		solve_by_sweep(&b.r, b.load, b.solution);
@@ -273,7 +275,7 @@ static void test_nothing_left(void **state)
 	for (size_t i = 0; i < c.reals; i++) {
 		double expected =
 			c.load[i] * c.r.solver.step_s * c.r.solver.step_s / c.r.tissue.mass[i / 3];
-		// rounding of one or two divisions
+		// the tolerance is the rounding of one or two divisions
 		assert_near(c.solution[i], expected, 1e-14 * fabs(expected));
 	}
 	rig_finish(&c.r);

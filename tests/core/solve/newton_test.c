@@ -6,9 +6,11 @@
 
 #include "core/rig/solve_scenes.h"
 
-// Central differences of gradients at +-10 nm: truncation and rounding.
+// Step, m, of central differences of gradients, and their largest relative error, which is
+// truncation and rounding.
 static const double DIFFERENCE_M = 1e-8, DIFFERENCE_TOLERANCE = 1e-5;
-static const double SOLVE_TOLERANCE = 1e-9; // rounding times a condition number of about 1e5
+// largest relative error of a solve: rounding times a condition number of about 1e5
+static const double SOLVE_TOLERANCE = 1e-9;
 
 enum { TAUT, LOOSE, RANGE, VISCOUS, LAWS };
 
@@ -31,7 +33,7 @@ static void make(rig *r, int law, double stretch)
 	rig_build(r, NULL, 1);
 	rig_factor(r);
 	assert_true(r->solver.newton_chosen);
-	cau_solver_take_strain(&r->solver, 1); // at rest
+	cau_solver_take_strain(&r->solver, 1); // takes the strain at rest as the reference
 	rig_deform(r, a, 2e-4, &random, r->solver.position);
 	cau_solver_take_strain(&r->solver, 0.8); // a fifth of the strain is new in this step
 	r->solver.drag = cau_arena_array(&r->arena, 1, sizeof *r->solver.drag);
@@ -71,7 +73,7 @@ static void add_product(const double *block, const int32_t vertex[2], bool turne
 		}
 }
 
-// y = H x, for an H that is assembled and not factored
+// Computes y = H x, for an H that is assembled and not factored.
 static void multiply(rig *r, const double *x, double *y)
 {
 	const cau_newton *h = &r->solver.loose.region;
@@ -123,7 +125,8 @@ static void the_hessian_is_the_derivative_of_the_gradient(void **state)
 	}
 }
 
-// In crumpled and in stretched sheets, H d = -g, and d lowers the objective.
+// In crumpled and in stretched sheets, the increment d satisfies H d = -g, and d lowers the
+// objective.
 static void its_increment_solves_it_and_leads_down(void **state)
 {
 	(void)state;
@@ -151,7 +154,7 @@ static void its_increment_solves_it_and_leads_down(void **state)
 		}
 }
 
-// A removed element has no part in H. Only masses are left.
+// A removed element has no part in H. If all elements are removed, H has only the masses.
 static void what_is_removed_is_not_in_it(void **state)
 {
 	(void)state;
@@ -254,13 +257,14 @@ static void settling_leaves_no_force(void **state)
 			else
 				left = fmax(left, fabs(gradient[i]));
 		}
-		assert_true(left < 1e-3 * size); // steps below 50 nm are not taken
+		// steps shorter than 50 nm are not taken, so a small force remains
+		assert_true(left < 1e-3 * size);
 		rig_finish(&r);
 	}
 }
 
-// A taut sheet is left to A. If a corner is crumpled, its slack triangles are the region. A sheet
-// with a range is a region in both cases.
+// A taut sheet is left to A. If a corner is crumpled, the slack triangles there are the region. A
+// sheet with a range is a region in both cases.
 static void what_is_slack_is_loose(void **state)
 {
 	(void)state;

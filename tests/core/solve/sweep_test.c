@@ -5,13 +5,14 @@
 
 #include "core/rig/solve_scenes.h"
 
-// The entries of the panels. Measured rounding of a well-conditioned solve: doubles 1e-15, floats
-// 4e-7 at worst (fascia), narrow 7e-5 at worst (fascia). The tolerances are larger, because other
-// processors may add in another order.
+// Forms of the panels' entries, with the largest relative error of a solve (CLOSE). The measured
+// rounding of a well-conditioned solve is 1e-15 with doubles, and at worst 4e-7 with floats and
+// 7e-5 with narrow entries (both for fascia). CLOSE is larger, because other processors may add in
+// another order.
 typedef enum form { DOUBLES, FLOATS, NARROW, FORM_COUNT } form;
 static const char *const FORM_NAMES[] = {"doubles", "floats", "narrow"};
 static const double CLOSE[] = {1e-13, 5e-6, 3e-4};
-static const double REFINED = 1e-10; // error after three increments
+static const double REFINED = 1e-10; // largest relative error after three increments
 static const char *const TIERS[] = {"baseline", "avx2", "avx512"};
 
 static void make(rig *r, int scene, form panels, const char *tier, int32_t threads)
@@ -78,7 +79,7 @@ static void test_agree_with_the_factor(void **state)
 			}
 }
 
-// r = b - A x, with A dense.
+// Computes r = b - A x, with A dense.
 static void residual(const double *a, const double *b, const double *x, size_t n, double *r)
 {
 	memcpy(r, b, 3 * n * sizeof *r);
@@ -88,8 +89,8 @@ static void residual(const double *a, const double *b, const double *x, size_t n
 				r[3 * i + c] -= a[i * n + j] * x[3 * j + c];
 }
 
-// Each increment corrects the error of the last, so rounding in the panels does not remain in the
-// result.
+// Each increment corrects the error of the increments before, so rounding in the panels does not
+// remain in the result.
 static void test_increments_refine(void **state)
 {
 	(void)state;
@@ -148,7 +149,7 @@ static void test_threads_change_nothing(void **state)
 		}
 }
 
-// Packing only the supernodes that downdates touched gives the same bits as packing all.
+// Packing only the supernodes that downdates changed gives the same bits as packing all supernodes.
 static void test_partial_packing_is_full_packing(void **state)
 {
 	(void)state;

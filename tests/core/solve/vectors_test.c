@@ -42,7 +42,8 @@ static void test_what_is_added_is_read(void **state)
 	}
 }
 
-// displace and step are inverse to each other, for every vertex of the range and no other.
+// displace and step are inverse to each other, for the vertices of the range. All other vertices
+// are unchanged.
 static void test_displacements_and_steps(void **state)
 {
 	(void)state;

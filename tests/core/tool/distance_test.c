@@ -12,7 +12,7 @@
 
 #include "core/tool/tools.h"
 
-// Rounding of a few operations on lengths near 1.
+// Largest error: rounding of a few operations on lengths near 1.
 static const double ROUNDING = 1e-14;
 
 static void test_capsule(void **state)
@@ -53,7 +53,8 @@ static void test_quarter_arc_against_sampling(void **state)
 	(void)state;
 	enum { SAMPLES = 2000, POINTS = 300 };
 	const double radius = 1.5, tube = 0.25;
-	// The nearest sample of the curve is at most half a spacing from the nearest point.
+	// Half the spacing of samples: the nearest sample of the curve is at most this far from the
+	// nearest point.
 	const double sampling = radius * (M_PI / 2) / SAMPLES / 2;
 	cau_vec3 center = {0.3, -0.2, 0.5};
 	uint64_t random = 11;

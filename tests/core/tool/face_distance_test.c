@@ -14,10 +14,12 @@
 
 enum { TRIES = 400, SAMPLES = 60 };
 
-// Allowed errors of the least distance. Along a long tool the search may end before it converges,
+// Largest errors of the least distance. Along a long tool the search may end before it converges,
 // after 24 steps.
-static const double OUTSIDE_SHARE = 0.02; // relative to the distance
-static const double INSIDE_SHARE = 0.2;   // relative to the radius
+// relative to the distance, for triangles outside the tool
+static const double OUTSIDE_SHARE = 0.02;
+// relative to the radius, for triangles that reach inside the tool
+static const double INSIDE_SHARE = 0.2;
 
 static cau_vec3 weighted(const cau_vec3 corner[3], const double weight[3])
 {

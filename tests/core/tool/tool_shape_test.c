@@ -17,14 +17,14 @@
 
 enum { POINTS = 2000 };
 
-static const double BOX_M = 0.015;      // half the box of random points
-static const double ROUNDING_M = 1e-14; // rounding of distances near 0.1 m
+static const double BOX_M = 0.015;      // half the side of the box of random points
+static const double ROUNDING_M = 1e-14; // largest error: rounding of distances near 0.1 m
 static const double JAWS[] = {0, 0.3, 1};
 
 typedef void (*check)(const cau_tool_def *tool, double jaw, cau_tool_part part);
 
-// Sets of sizes: the defaults, a fine tool, one that is wider than long, one whose jaws are thicker
-// than long, and the extremes that a scene allows.
+// Sizes of tools that are tested: the defaults, a fine tool, a tool that is wider than long, a tool
+// whose jaws are thicker than long, and the extremes that a scene allows.
 static const double sizes[][3] = {
 	{3e-3, 8e-3, 2.5e-3}, {4e-4, 1e-2, 2e-3}, {6e-3, 4e-3, 5e-3}, {4e-3, 1e-3, 4e-3},
 	{0.05, 1e-3, 2e-4},   {0.05, 1e-3, 0.05}, {2e-4, 0.1, 0.05},  {2e-4, 1e-3, 2e-4},
@@ -62,7 +62,7 @@ static int lacks(const cau_tool_def *tool, cau_tool_part part)
 	return !rows[tool->shape].hot && part == CAU_PART_HOT;
 }
 
-// The columns of the table agree with the functions that a shape has.
+// The columns of the table in scene.h agree with the functions that a shape has.
 static void test_rows_say_what_shapes_have(void **state)
 {
 	(void)state;
@@ -109,14 +109,15 @@ static void test_lipschitz(void **state)
 	for_every_part(check_lipschitz);
 }
 
-// Central differences of step h. On a crease the gradient is not unique. Where two surfaces meet at
-// an angle, the differences do not have unit length. Where two surfaces are nearly in one plane,
-// the gradient turns within the step, and the differences are between both.
+// Compares gradients with central differences of step h. On a crease the gradient is not unique.
+// Where two surfaces meet at an angle, the differences do not have unit length. Where two surfaces
+// are nearly in one plane, the gradient turns within the step, and the differences are between the
+// gradients of both surfaces.
 static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	static const double H_M = 1e-7;
-	// Truncation is h^2 / (3 R^2) with R the distance to a core, at least 1e-5 m at the points kept
-	// below; rounding is 1e-17 / h.
+	// Largest error of a difference. Truncation is h^2 / (3 R^2), where R is the distance to a
+	// core, at least 1e-5 m at the points that are compared. Rounding is 1e-17 / h.
 	static const double TOLERANCE = 1e-4;
 	if (lacks(tool, part))
 		return;
@@ -150,8 +151,8 @@ static void test_gradient(void **state)
 	for_every_part(check_gradient);
 }
 
-// A path from an outside point, against the gradient and by the distance, ends on the surface. A
-// micrometre further it is inside. No point of the part is outside its bound.
+// A path against the gradient, from an outside point and as long as the distance there, ends on the
+// surface. A micrometre further the path is inside. No point of the part is outside its bound.
 static void check_surface_and_bound(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	if (lacks(tool, part))
@@ -189,7 +190,7 @@ static void check_not_covered(const cau_tool_def *tool, double jaw, cau_tool_par
 	if (part != CAU_PART_BOTH || lacks(tool, CAU_PART_HOT))
 		return;
 	if (tool->tip_length_m < 2 * tool->hot_radius_m)
-		return; // jaws wider than long turn into the shaft
+		return; // jaws that are wider than long turn into the shaft
 	uint64_t random = 13;
 	for (int i = 0; i < POINTS; i++) {
 		cau_vec3 p = random_point(&random, box_of(tool));
@@ -335,7 +336,8 @@ static cau_vec3 aimed(const cau_tool_def *tool, double jaw, cau_tool_part part, 
 	return cau_add_scaled(a, -d * random_between(random, 0.5, 1.5), g);
 }
 
-// At samples with the spacing `gap`, a segment's least distance is known to within gap / 2.
+// Compares with samples at the spacing `gap`: they give a segment's least distance to within gap /
+// 2.
 static void check_segments(const cau_tool_def *tool, double jaw, cau_tool_part part)
 {
 	enum { SEGMENTS = 400, SAMPLES = 300 };
@@ -345,7 +347,7 @@ static void check_segments(const cau_tool_def *tool, double jaw, cau_tool_part p
 	uint64_t random = 17;
 	int met = 0, missed = 0;
 	for (int i = 0; i < SEGMENTS; i++) {
-		// by i % 4: long; short; near the tip; towards the nearest point
+		// kind of segment, by i % 4: 0 long, 1 short, 2 near the tip, 3 towards the nearest point
 		double box = box_of(tool);
 		cau_vec3 a = random_point(&random, i % 4 == 2 ? tool->hot_radius_m : box);
 		cau_vec3 b = i % 4 == 3 ? aimed(tool, jaw, part, a, &random)
@@ -442,7 +444,7 @@ static void test_turning_with_jaws(void **state)
 		cau_tool_jaws jaws = cau_tool_describe_jaws(&tool);
 		assert_near(jaws.share[0] + jaws.share[1], 1, 1e-12);
 		double arm = tool.tip_length_m / 2;
-		// 0.18: 1 - cos 0.6
+		// 1 - cos 0.6 is less than 0.18
 		double off = shapes[i] == CAU_TOOL_SHEARS ? tool.hot_radius_m * 0.18 : 1e-9;
 		for (int side = 0; side < 2; side++) {
 			double sign = side ? 1 : -1;

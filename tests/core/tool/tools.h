@@ -8,7 +8,7 @@
 #define assert_near(value, expected, tolerance)                                                    \
 	assert_true(fabs((value) - (expected)) <= (tolerance))
 
-// A tool with the defaults of the table in scene.h, at the origin, without rotation.
+// Returns a tool with the defaults of the table in scene.h, at the origin, without rotation.
 static inline cau_tool_def tool_with_defaults(int shape)
 {
 	cau_tool_def tool = {.shape = shape, .pose = {.rotation = {1, 0, 0, 0}}};
