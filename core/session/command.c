@@ -134,8 +134,8 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 }
 
 // ---- application
-// Whether the tool's heat grid and grasp also suit the new definition. They depend on these members
-// only.
+// True if the tool's heat grid and grasp also suit the new definition. They depend only on the
+// members that are compared here.
 static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
 {
 	return now->shape == def->shape && now->hot_radius_m == def->hot_radius_m &&

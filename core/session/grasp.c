@@ -87,8 +87,8 @@ static cau_vec3 local_point(const holding *h, const int32_t vertex[3], const dou
 }
 
 // Finds the two points of a face between jaws of this opening that are farthest apart along and
-// across the jaws. Two points keep the face from turning about one. Returns how many points there
-// are.
+// across the jaws. A face that is held at two points cannot turn about one point. Returns how many
+// points there are.
 static int find_points(const holding *h, const int32_t vertex[3], double jaw, double weight[2][3])
 {
 	double least = HUGE_VAL, most = -HUGE_VAL;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets a command's material in a layer's definition, or finds that the layer has it already.
+// Sets a command's material in a layer's definition, or finds that the layer has this material
+// already.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
@@ -36,8 +37,8 @@ bool cau_layer_take_material(cau_layer_def *def, const cau_command *command)
 	return true;
 }
 
-// ---- whether it has the material already
-// Compares field by field, because the padding bytes between fields may differ.
+// ---- whether the layer has the material already Compares field by field, because the padding
+// bytes between fields may differ.
 
 #define SAME(name, ...) &&a->name == b->name
 

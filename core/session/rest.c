@@ -32,7 +32,7 @@ static const double quiet_s = 0.5;
 // last change, in ticks of 1/60 s. With the default force_filter_s this is less than quiet_s.
 static const double filter_constants = 10;
 static const double still_m = 1e-6;
-static const double still_share = 1e-5; // of the tissue's size; the smaller limit holds
+static const double still_share = 1e-5; // as a share of the tissue's size; the smaller limit holds
 
 cau_status cau_session_make_rest(cau_session *session, cau_error *error)
 {

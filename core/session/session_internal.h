@@ -123,7 +123,7 @@ typedef struct cau_watch {
 struct cau_session {
 	cau_arena arena;
 	cau_arena rebuilt_arena; // system that was built when the pins last changed: pins.c
-	cau_image *image;        // share.c: memory shared with other sessions; NULL: none
+	cau_image *image;        // share.c: memory shared with other sessions, or NULL
 	cau_scene_def *scene;
 	uint64_t definition_hash;
 	cau_tissue tissue;
@@ -134,7 +134,7 @@ struct cau_session {
 	cau_shrink shrink;
 	cau_near near;
 	cau_tissue_cells *cells; // cells of energy `tissue`; NULL: energy `paper`
-	cau_vessels *vessels;    // the scene's vessels; NULL: none
+	cau_vessels *vessels;    // the scene's vessels, or NULL if it has none
 	cau_contact_set contact;
 	cau_collide collide;             // meet.c: solver.collide points here, or is NULL
 	struct cau_candidate *candidate; // reach.c: scratch memory
@@ -190,8 +190,8 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
 // command.c: checks the ranges of a command's values. The kind of the command must be valid.
 cau_status cau_command_check(const cau_session *session, const cau_command *command,
                              cau_error *error);
-// level.c: whether the command repeats the present level, or will be refused. has_definition
-// decides it for a CONFIGURE, has_material for a SET_MATERIAL.
+// level.c: whether the command repeats the present level, or will be refused. For a CONFIGURE
+// has_definition decides this, for a SET_MATERIAL has_material.
 bool cau_session_changes_nothing(cau_session *session, const cau_command *command);
 bool cau_session_has_definition(const cau_tool *tool, const cau_tool_def *def);
 bool cau_session_has_material(const cau_session *session, const cau_command *command);
@@ -203,8 +203,8 @@ int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, ca
 // *end gets the command that ends an enable with `ticks` that acts at this tick. Returns false if
 // the enable has no end.
 bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_command *end);
-// cau_session_stay makes the tool's actual pose its target. cau_session_stays: whether it is
-// already.
+// cau_session_stay sets the tool's target to its actual pose. cau_session_stays returns whether the
+// target is the actual pose already.
 void cau_session_stay(cau_tool *tool);
 bool cau_session_stays(const cau_tool *tool);
 // sound.c: checks the invariants of tools, energy and waiting commands as a step begins, in every
@@ -241,12 +241,13 @@ void cau_session_keep_tick_poses(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);
 void cau_session_drop_tool(cau_session *session, int32_t index);
 int32_t cau_session_find_tool(const cau_session *session, const char *name);
-// proxy.c, in this order. cau_session_lead_tool moves a tool's anchor to its commanded pose, and
-// the start of its pose with it. cau_session_couple gives both to the solve. cau_session_take_poses
-// reads the tools' poses from the solve. cau_session_hold_back begins the tick again if tools would
-// pass tissue that is not held. These tools make a part of their motion, on the last attempt none.
-// It returns false if there is no such tool, or no attempt left. cau_session_let_follow speeds up
-// tools that were not held back in a tick.
+// proxy.c, in this order. cau_session_lead_tool moves a tool's anchor to the commanded pose, and
+// shifts the start of the actual pose with the anchor. cau_session_couple gives anchor and pose to
+// the solve. cau_session_take_poses reads the tools' poses from the solve. cau_session_hold_back
+// begins the tick again if tools would pass tissue that is not held. Such tools then make only a
+// part of their motion; on the last attempt they do not move. The function returns false if there
+// is no such tool, or no attempt left. cau_session_let_follow speeds up tools that were not held
+// back in a tick.
 enum { CAU_ATTEMPTS = 2 };
 void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose *asked_before);
 void cau_session_lead_tool_on(cau_session *session, cau_tool *tool);
@@ -283,15 +284,15 @@ double cau_session_margin(const cau_tool_def *def);
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
                          int32_t taken, int32_t *left_out);
 
-// Share of the tip's radius. A face deeper inside the tool than this was missed.
+// Depth inside a tool beyond which a face counts as missed, as a share of the tip's radius.
 static const double cau_missed_share = 0.5;
 // reach.c: contact with faces.
 
 // Returns the greatest distance, m, of a vertex from its position at the tick's start. The result
 // is not a number if a position is not a number.
 double cau_session_farthest(const cau_session *session);
-// Whether a tool has contact with faces as well as with vertices. A grasping tool has not, because
-// tissue is between and inside its jaws.
+// Whether a tool has contact with faces as well as with vertices. A grasping tool has no contact
+// with faces, because tissue is between and inside its jaws.
 bool cau_session_feels_faces(const cau_tool *tool);
 // Whether the part may be within the margin, m, of any point of the box. It uses that the distance
 // changes by at most the motion of the point.
@@ -332,7 +333,7 @@ void cau_session_begin_collide(cau_session *session);
 // n x 3) is more than `most_m` away. *told gets whether a diverged or inverted vertex is among
 // them. Returns false if tissue contact is off for the tick.
 bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
-// electrosurgery.c: energy `tissue`. make_cells creates the cells if the scene asks for it.
+// electrosurgery.c: energy `tissue`. make_cells creates the cells if the scene has this energy.
 // blade_of returns the blade of a tool that is added. operate computes power, heat and parting of a
 // tick. has_cooled: whether all tissue and tools have cooled down.
 cau_status cau_session_make_cells(cau_session *session, cau_error *error);

@@ -144,7 +144,8 @@ static void take_reals(void *const *to, void *const *from, int count, int32_t sl
 		memcpy(to[i], from[i], (size_t)slots * cau_real_bytes(single));
 }
 
-// Sets weights and laws from the materials, then what has changed since.
+// Sets the elements' weights and laws from the materials. Then restores what changed during the
+// session.
 static void take_elements(cau_session *session, const snapshot_state *state)
 {
 	cau_elements *to = &session->solver.elements;

@@ -70,7 +70,7 @@ typedef struct snapshot_state {
 	double *inverse;
 	// m, (vertex_count x 3): positions when the quiet ticks began.
 	double *quiet_from;
-	// (vertex_count): excluded from contact; with a contact thickness.
+	// (vertex_count): 1 for a vertex that was excluded from contact. Only with a contact thickness.
 	uint8_t *exempt_before;
 	cau_tissue_cells *cells;         // the cells, with energy `tissue`
 	double *fusion;                  // (station_count): seal of each station, with vessels

@@ -17,8 +17,9 @@
 
 static const double least_margin_m = 5e-4, most_margin_m = 2e-3;
 static const double touching_m = 2e-4; // a vertex nearer than this touches; others are only near
-// Touching vertices per constraint. Up to this ratio the least deep vertices, around the rim, are
-// left out. That is better than gaps between constraints. Above it the constraints are spread.
+// Largest ratio of touching vertices to constraints at which the least deep vertices, around the
+// rim, are left out. Leaving out the rim is better than gaps between constraints. Above this ratio
+// the constraints are spread.
 static const int32_t most_crowded = 2;
 
 double cau_session_margin(const cau_tool_def *def)

@@ -77,8 +77,8 @@ typedef struct carried {
 	double along[3];                // unit vector
 } carried;
 
-// Chooses the constraints that carry the load: those that push; if none pushes, the nearest.
-// `held`: those of the grasp.
+// Chooses the constraints that carry the load. With `held` these are all of the grasp's. Otherwise
+// they are the constraints that push; if none pushes, the nearest.
 static void choose(const cau_session *session, int32_t index, bool held, carried *out)
 {
 	const cau_contact_set *set = &session->contact;
@@ -268,7 +268,8 @@ static bool are_finite(const double *numbers, size_t count)
 	return true;
 }
 
-// Whether all numbers of a record are finite. Columns that are far behind cuts may give others.
+// Whether all numbers of a record are finite. Columns that do not include many cuts yet may give
+// numbers that are not finite.
 static bool is_finite(const cau_tool_contact *record)
 {
 	bool finite = are_finite(record->force_n, 3) && are_finite(record->compliance_m_n, 6) &&

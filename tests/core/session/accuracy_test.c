@@ -8,7 +8,7 @@
 #include "session/session_internal.h"
 
 enum { CONVERGED = 300, MOST = 60, MOST_SAMPLES = 400 };
-// Relative residual, in the norm in which steps are measured.
+// Relative residual at which a step is taken as converged, in the norm in which steps are measured.
 static const double converged_residual = 1e-7;
 
 // ---- scenes
@@ -169,7 +169,7 @@ static void a_taut_sheet_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 40 : 120, CAU_TEST_SANITIZED ? 8 : 2);
 		expect_right("taut", &of);
-		// 3 for vertices alone: contact points of faces move with the tool
+		// It would be 3 with contact of vertices alone: contact points of faces move with the tool.
 		assert_true(of.iterations <= 10 * of.count);
 	}
 }
@@ -182,7 +182,8 @@ static void fat_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 36 : 100, CAU_TEST_SANITIZED ? 12 : 3);
 		expect_right("fat", &of);
-		// 14 for vertices alone: contact points of faces move with the tool.
+		// The bound would be 14 with contact of vertices alone: contact points of faces move with
+		// the tool.
 		assert_true(of.iterations <= 17 * of.count);
 	}
 }
@@ -226,8 +227,8 @@ static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 	free(scene);
 }
 
-// A free sheet does not reach 1 % in so few iterations. It uses all iterations, and reports its
-// error.
+// A free sheet does not reach 1 % in so few iterations. Its steps use all iterations, and report
+// their error.
 static void what_is_not_reached_is_told(void **state)
 {
 	(void)state;

@@ -8,10 +8,11 @@
 #include "session/session_internal.h"
 
 enum { MOST_TICKS = 400 };
-// Duration and length of the cut, at the scenes' 2 mm/s.
+// Duration, s, and length, m, of the cut, at the scenes' 2 mm/s.
 static const double drawn_s = 6, drawn_m = 0.012;
-// Under sanitizers a step takes thirty times as long. There fascia is cut just far enough to
-// measure its lips. The lips of fat need a long trench, so only other builds test them.
+// Duration, s, of the cut under sanitizers, where a step takes thirty times as long. There fascia
+// is cut just far enough to measure its lips. The lips of fat need a long trench, so only other
+// builds test them.
 static const double drawn_under_sanitizers_s = 0.5;
 enum { COLD_TICKS = CAU_TEST_SANITIZED ? 60 : 600 };
 // Least mean displacement of the lips beyond that of the same tissue without tension, in edge

@@ -13,7 +13,8 @@
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// Under sanitizers steps take long, and all cuts run the same code.
+// Number of cuts whose mean is taken. Under sanitizers one cut suffices, because steps take long
+// and all cuts run the same code.
 enum { WAYS = CAU_TEST_SANITIZED ? 1 : 8 };
 static const double half_cut_m = 0.02, cell_m = 0.002, near_m = 1e-4;
 
@@ -94,7 +95,7 @@ static void assert_alike(double volume_m3, double shipped_m3, double fineness)
 		         100 * most);
 }
 
-// The paper's rule also removes half a cell all round. The test can detect that.
+// The paper's rule also removes half a cell all round. The test would detect such a difference.
 static void half_the_cells_take_as_much(void **state)
 {
 	(void)state;
@@ -112,7 +113,8 @@ static void half_the_cells_take_as_much(void **state)
 static void steps_and_iterations_take_as_much(void **state)
 {
 	(void)state;
-	static const double fineness = 0.5, alike = 0.1; // a cell is a fiftieth of the cut
+	static const double fineness = 0.5,
+						alike = 0.1; // largest relative difference; a cell is a fiftieth of the cut
 	static const struct {
 		double step_s;
 		int32_t iterations; // 0: the scene's number

@@ -8,8 +8,8 @@
 
 #include "session/session_internal.h"
 
-// Relative error of the system's solution (core/README.md, "What must hold, whatever the speed").
-// The larger of the two bounds holds.
+// Largest relative error of the system's solution (core/README.md, "What must hold, whatever the
+// speed"). The larger of the two bounds holds.
 static const double system_tolerance = 1e-10;
 static const double condition_tolerance = 1e-13; // times the condition number
 // Greatest delay of a falling strip by waiting downdates, as a share of the fallen height.

@@ -241,8 +241,8 @@ static void coagulated_tissue_shrinks(void **state)
 	cau_session_destroy(session);
 }
 
-// Cells have the thickness with which the sheet was created, even if the thickness has changed
-// since.
+// The cells of a sheet keep the thickness with which the sheet was created, even if a command
+// changes the thickness later.
 static void a_changed_thickness_is_restored(void **state)
 {
 	(void)state;
@@ -316,7 +316,8 @@ static int32_t living_links(const cau_session *session)
 	return count;
 }
 
-// The links of the middle row lead to vertices 3 mm beside it.
+// y of the ball's path, m. The links of the fascia's middle row (y = 0) lead to vertices of the fat
+// at y = -3 mm. The ball passes half way between.
 static const double half_way_m = -1.5e-3;
 
 static void draw_between_layers(cau_session *session, int first, int end)
@@ -526,7 +527,7 @@ static void power_ends_when_the_load_has_risen(void **state)
 	assert_true(cau_session_hash(session) == cau_session_hash(other));
 	stage_step(session, 30);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);
-	// Energy is on already, so this does not count as off and on.
+	// Energy is on already, so this command does not end and restart it.
 	stage_energize(session, "hook", 1);
 	stage_step(session, 1);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);

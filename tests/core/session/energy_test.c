@@ -7,7 +7,7 @@
 
 enum { FEW = 10, CONVERGED = 1000 };
 
-// Rounding of energies in double, relative to the largest of them.
+// Largest error of an energy: rounding in double, relative to the largest energy.
 static const double ROUNDING = 1e-9;
 
 typedef struct tally {
@@ -91,7 +91,7 @@ static void a_hanging_sheet_gains_nothing(void **state)
 // Euler applies the force at a step's end during the whole step. So of the work of n steps a share
 // of 1 / n is lost, and no step gains energy.
 enum { PULL_TICKS = 40 };
-static const double LOSS_MOST = 0.1; // twice 2 / PULL_TICKS
+static const double LOSS_MOST = 0.1; // largest share of lost work: twice 2 / PULL_TICKS
 
 static void assert_brought_in(cau_session *session, const tally *t, const char *by)
 {

@@ -10,15 +10,15 @@
 #include "reference/case.h"
 #include "session/session_internal.h"
 
-// Share of the largest displacement, and of the largest force component of the case.
+// Largest error, as a share of the case's largest displacement or largest force component.
 static const double tolerance = 1e-3;
 
 enum { MOVING_TICKS = 40, SETTLING_TICKS = 80, ITERATIONS = 100 };
 // Relative residual of each step, far below the tolerances.
 static const double residual = 1e-7;
-// Near critical damping for the cantilever, the softest case.
+// Damping of motion, 1/s: near critical damping for the cantilever, the softest case.
 static const double damping_per_s = 26;
-static const double longest_step = 1.0 / 30; // the least inertia that a scene may have
+static const double longest_step = 1.0 / 30; // s; so inertia is the least that a scene may have
 
 static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
 {

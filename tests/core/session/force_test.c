@@ -9,7 +9,7 @@
 
 static const double asked_of_solution = 0.01, asked_over_meshes = 0.1, asked_of_hertz = 0.1;
 static const double asked_at_four_cells = 0.03,
-					asked_at_two = 0.1; // difference of largest and least force, over the mean
+					asked_at_two = 0.1; // largest force less least force, over the mean
 
 // Presses a ball in beside the lines of the mesh, so that no vertex is below the ball.
 static double press(indent_stand *stand)

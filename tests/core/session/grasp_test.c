@@ -41,7 +41,7 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 	double *before = malloc(bytes);
 	assert_non_null(before);
 	memcpy(before, stage_frame(session).position, bytes);
-	for (int tick = 0; tick < 20; tick++) { // while the jaws close
+	for (int tick = 0; tick < 20; tick++) { // the jaws close meanwhile
 		stage_step(session, 1);
 		cau_frame frame = stage_frame(session);
 		assert_true(stage_farthest(&frame, before, stage_info(session).vertex_count) < 1e-4);
@@ -56,7 +56,7 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 	for (int tick = 1; tick <= 40; tick++) {
 		stage_move(session, "jaws", 0.004, 0.003, -0.002 + fmin(speed_m * tick, way_m));
 		stage_step(session, 1);
-		if (tick == 20) { // holds on faces are part of snapshots
+		if (tick == 20) { // a snapshot must contain the holds on faces
 			stage_bytes shot = stage_snapshot(session);
 			bool exact = false;
 			cau_error error = {0};

@@ -12,8 +12,8 @@
 static const double SIZE_M[3] = {0.06, 0.04, 0.02};
 static const int32_t CELLS[3] = {9, 6, 3};
 static const double FORCE_N = 80, LEAP_M = 0.025;
-// Greatest distance in a state without a fault: twice the size of the slab, and half of that again
-// for the motion of a step before it is checked.
+// Greatest distance of a vertex, m, in a state without a fault: twice the size of the slab, and
+// half of that again for the motion of a step before it is checked.
 static const double FARTHEST_M = 3 * 0.0748;
 enum { TICKS = 20, LIMITS = 4 };
 
@@ -185,7 +185,7 @@ static void no_pull_ends_in_a_silent_disaster(void **state)
 	for (int model = 0; model < CAU_MODEL_COUNT; model++)
 		for (int fat = 0; fat < LIMITS; fat++)
 			for (int membrane = 0; membrane < LIMITS; membrane++) {
-				if (fat && membrane) // one limit at a time
+				if (fat && membrane) // only one of the two layers has a limit
 					continue;
 				tries++;
 				for (int k = 0; k < PULLS; k++)

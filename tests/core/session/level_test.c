@@ -122,7 +122,8 @@ static void stated_again_a_level_changes_nothing(void **state)
 	(void)state;
 	cau_scene_def *scene = between_jaws();
 	for (int kind = 0; kind < CAU_COMMAND_COUNT; kind++) {
-		assert_true(levels[kind] != once[kind]); // each kind is in one of the two lists
+		assert_true(levels[kind] !=
+		            once[kind]); // each kind must be in exactly one of the two lists
 		for (int variant = 0; variant < MOST && levels[kind]; variant++)
 			for (int what = 0; what < BEFORE_COUNT; what++) {
 				static const int agains[] = {0, 5, -2};

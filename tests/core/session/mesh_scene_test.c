@@ -233,7 +233,7 @@ static size_t write_organ(const organ *of, unsigned char *bytes)
 	return used;
 }
 
-// Makes the organ as the server does: the unit is guessed from the surface, which is then filled.
+// Makes an organ as the server does: guesses the unit from the surface, then fills the surface.
 static void organ_lives(int number)
 {
 	static unsigned char bytes[84 + 50 * FACETS];

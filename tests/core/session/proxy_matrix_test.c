@@ -32,7 +32,7 @@ enum {
 	TISSUES = sizeof tissues / sizeof *tissues,
 };
 
-static const double most_penetration_m = 1e-4; // of a ball at rest, anywhere on the drawn surface
+static const double most_penetration_m = 1e-4; // depth of a ball at rest in the drawn surface
 
 // Returns the depth of a press. A thin tip that dents soft tissue farther than this finally passes.
 static double depth_m(const kind *k)
@@ -75,13 +75,15 @@ static bool is_held(const pressing *p, const kind *k)
 static void nothing_crosses(void **state)
 {
 	(void)state;
-	enum { SHARE = CAU_TEST_SANITIZED ? 61 : 9, FIRST = 3 }; // odd, so that all speeds are tested
+	// SHARE is odd, so that the presses take the four speeds in turn.
+	enum { SHARE = CAU_TEST_SANITIZED ? 61 : 9, FIRST = 3 };
 	const char *wanted = getenv("PROXY_MATRIX");
 	bool all = wanted && !strcmp(wanted, "all");
 	int share = wanted && atoi(wanted) > 0 ? atoi(wanted) : SHARE;
 	int number = 0, failed = 0, tried = 0;
 	for (int t = 0; t < TISSUES; t++)
-		for (int c = 0; c < (t == PRESSING_LAYERS ? 1 : CELLS); c++) // layers has its own mesh
+		for (int c = 0; c < (t == PRESSING_LAYERS ? 1 : CELLS);
+		     c++) // `layers` has only its own mesh
 			for (int k = 0; k < KINDS; k++)
 				for (int s = 0; s < SPEEDS; s++) {
 					bool heavy = t == PRESSING_SLAB && cells_m[c] < 2e-3; // 70,000 tetrahedra

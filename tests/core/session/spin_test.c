@@ -110,7 +110,7 @@ static double off_the_rigid_one(const cau_session *session, cau_vec3 rest_centre
 
 // Bounds for the accuracy of the rotation.
 typedef struct wanted {
-	double kept, aside, off_m, gained, ends; // the last two are relative to the energy
+	double kept, aside, off_m, gained, ends; // `gained` and `ends` are relative to the energy
 } wanted;
 
 static void check_spin(const cau_scene_def *scene, cau_vec3 omega, int ticks, const wanted *most)

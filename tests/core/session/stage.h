@@ -62,7 +62,7 @@ void stage_step(cau_session *session, int32_t ticks);
 cau_frame stage_frame(const cau_session *session);
 cau_session_info stage_info(const cau_session *session);
 cau_balance stage_balance(cau_session *session);
-// From the present frame.
+// Returns a tool's state from the present frame.
 const cau_tool_state *stage_tool(const cau_session *session, const char *name);
 
 // ---- commands, for the next tick

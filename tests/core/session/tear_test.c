@@ -61,7 +61,7 @@ static cau_scene_def *strip_scene(int parting, int32_t cells, bool solid, double
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	scene->parting = parting;
 	scene->iterations = 200;
-	scene->damping_per_s = 20; // so that slow motion is nearly at rest
+	scene->damping_per_s = 20; // with this damping slow motion is nearly at rest
 	int32_t along = (int32_t)lround(cells * long_m / wide_m);
 	if (solid) {
 		const double size[3] = {long_m, wide_m, wide_m / cells};

@@ -95,7 +95,8 @@ static void planes_fit_the_force(void **state)
 	assert_memory_equal(contact.force_n, tool->raw_force_n, sizeof contact.force_n);
 	assert_true(contact.force_n[2] > 0.05 && contact.plane_count > 0);
 	int32_t touching = 0;
-	// Friction is part of the force, but not of the planes. It moves the position by at most this.
+	// Friction is part of the force, but not of the planes. Friction moves the position by at most
+	// `slack`.
 	double slack =
 		tool->definition.friction * cau_length(cau_vec3_of(contact.force_n)) *
 		fmax(contact.compliance_m_n[0], fmax(contact.compliance_m_n[1], contact.compliance_m_n[2]));
