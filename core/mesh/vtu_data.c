@@ -180,7 +180,8 @@ static double *read_text(const cau_vtu_coding *coding, const cau_vtu_array *arra
 {
 	size_t capacity = array->text_bytes / NUMBER_TEXT_BYTES_LEAST + 1;
 	double *number = cau_mesh_array(capacity, sizeof *number);
-	cau_scan scan = *coding->scan; // so that messages count lines from the start of the file
+	cau_scan scan = *coding->scan; // a copy of the file's scan, so that messages count lines from
+	                               // the start of the file
 	scan.at = (size_t)(array->text - scan.bytes);
 	scan.count = scan.at + array->text_bytes;
 	if (!number)

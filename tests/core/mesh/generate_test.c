@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Relative rounding of a sum of 30,000 terms.
+// Largest relative error of a sum: rounding of 30,000 terms.
 static const double sum_tolerance = 1e-12;
 
 static void sheet_of_the_fascia_scene_has_its_counts(void **state)
