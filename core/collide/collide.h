@@ -118,7 +118,8 @@ typedef struct cau_collide {
 	double *answer;     // N, (n x 3): result of cau_collide_apply, at loaded vertices
 	// State of the last filter, and counts of the tick.
 	double kept_share; // least share of its distance that a pair keeps in a step (filter.c)
-	// The last filter changed the step; it did so because pairs are not known farther.
+	// `held_back`: the last filter changed the step. `out_of_reach`: the filter changed the step
+	// because pairs farther away are not known.
 	bool held_back, out_of_reach;
 	int32_t held_back_count, search_count;
 	int32_t cut_short_count; // times that pairs exceeded the capacity, so that steps were shortened

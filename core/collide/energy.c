@@ -29,8 +29,9 @@ static double potential(double stiffness, double thickness, double distance, dou
 	return scale * (0.5 + log(half / at)) + force * in + *curvature * in * in / 2;
 }
 
-// If a known direction separates the parts by more than the thickness, the nearest points are not
-// searched. This factor exceeds all rounding, so the result is the same without that shortcut.
+// Factor on the thickness. If a known direction separates the parts by more than the product, the
+// nearest points are not searched. The factor exceeds all rounding, so a search would give the same
+// result.
 static const double surely = 1 + 1e-9;
 
 double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
