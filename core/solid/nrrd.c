@@ -272,7 +272,8 @@ static cau_status read_lines(header *of, const unsigned char *bytes, size_t byte
 			*data = at;
 			return CAU_OK;
 		}
-		// Longer lines describe pictures.
+		// A line that is longer than the buffer is cut, because only descriptions of pictures are
+		// so long.
 		length = length < LINE_BYTES - 1 ? length : LINE_BYTES - 1;
 		memcpy(line, from, length);
 		line[length] = 0;

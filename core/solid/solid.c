@@ -13,13 +13,14 @@
 #include "solid/gmsh_writer.h"
 #include "solid/tets.h"
 
-// TETRAHEDRA_CHOSEN is what a session steps in real time on one core, with time left for a cut.
+// TETRAHEDRA_CHOSEN: default target number of tetrahedra. On one core, a session steps this number
+// in real time, with time left for a cut.
 enum { TETRAHEDRA_CHOSEN = 8000, MORE_MOST = 16, SAMPLES = 24, SAMPLES_LEAST = 200, TRIES = 5 };
-// Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of the spacing (4 of 6).
-// Their mean is 0.911 of the spacing.
+// Spacing of the lattice for edges of mean length 1. Edges of the lattice are as long as its
+// spacing (2 of 6) or sqrt(3)/2 of the spacing (4 of 6). Their mean is 0.911 of the spacing.
 static const double spacing_of_edge = 1.0 / 0.911;
 static const double tetrahedra_of_cell = 12;
-// Share of the longest side: a shorter spacing comes only from rounding.
+// Least spacing, as a share of the longest side. A shorter spacing comes only from rounding.
 static const double spacing_least = 1e-4;
 
 typedef struct work {

@@ -151,8 +151,8 @@ static double random_share(void)
 	return (double)(state >> 11) * 0x1p-53;
 }
 
-// Expects that a box that is called uniform has its label at its corners and at random points. Some
-// of these are outside the domain's own box.
+// Checks boxes for which is_uniform() returns true: label_at() must return the same label at the
+// box's corners and at random points in it. Some boxes are outside the domain.
 static void boxes_keep_their_word(const char *name)
 {
 	int seen[CAU_SOLID_LABEL_MAX + 1] = {0};
