@@ -4,9 +4,9 @@
 
 #include "core/dissect/cutting.h"
 
-// Rounding of sums of thousands of terms.
+// Largest relative error of a mass: rounding of sums of thousands of terms.
 static const double MASS_TOLERANCE = 1e-12;
-// Rounding of a 3x3 inverse of a well-shaped element.
+// Largest error of an inverse: rounding of a 3x3 inverse of a well-shaped element.
 static const double INVERSE_TOLERANCE = 1e-12;
 
 static void make(rig *r)
