@@ -319,8 +319,8 @@ static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 			(cau_contact_cell){.blade = index, .cell = cell, .over_length_m = pressed ? over : 0};
 }
 
-// Each tick updates the pull-back of every eighth cell, because deformation changes little from
-// tick to tick.
+// Number of ticks in which the pull-back of every cell is updated once. Each tick updates every
+// eighth cell, because deformation changes little from tick to tick.
 enum { STRETCH_TURNS = 8 };
 
 // Arcs jump to all cells within their reach. Averaged over a tick, the cells share one spot

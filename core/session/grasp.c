@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What jaws grasp: vertices between the jaws (touch.c) or, if there are none, points of faces. Jaws
-// that are smaller than the elements may have no vertex between them. A hold on a point pulls at
-// the corners of its face by their weights, as contact does (solve/contact.h). So the tissue moves
-// with the jaws from its position at closing, and nothing jumps.
+// Jaws grasp vertices between them (touch.c) or, without such vertices, points of faces. Jaws that
+// are smaller than the elements may have no vertex between them. A hold on a point pulls at the
+// corners of its face by their weights, as contact does (solve/contact.h). So the tissue moves with
+// the jaws from its position at closing, and nothing jumps.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"

@@ -4,7 +4,8 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Index of the region's material; 0 (the default) if the region has none.
+// Returns the index of the region's material; 0 (the default) if the region has no material of its
+// own.
 static int32_t find_material(const cau_layer_def *def, bool fat, int32_t region)
 {
 	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",

@@ -66,7 +66,7 @@ static void go_in_legs(cau_session *session, const double *guess, double *at)
 	}
 }
 
-// Replaces the first guess by its part that tissue contact permits.
+// Shortens the first guess to the motion that tissue contact permits.
 static void stop_guess(cau_session *session, double *guess)
 {
 	cau_step_solver *solver = &session->solver;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tool has a commanded pose and an actual pose. A driver leads the commanded pose within the
-// tool's speed limits (tool_motion.c). The actual pose is coupled to it by a spring
+// tool's speed limits (tool_motion.c). The actual pose is coupled to the commanded pose by a spring
 // (solve/coupling.h). A tick begins with a guess of the actual pose, with which contacts are found.
 // The solve then returns the actual pose.
 //

@@ -18,10 +18,10 @@
 #include "tool/face_distance.h"
 
 static const double touch_m = 1e-5; // a face nearer than this touches the tool
-// A face that is deeper in the tool than `dip` gets a contact constraint from the next step on. The
-// constraint still permits a depth of `stand`, because a flat face and a round tip may differ by
-// that. A face held exactly at the surface would be pressed as if the tip were larger. Both limits
-// are the smaller of a length and a share of the tip's radius.
+// Two depths of a face in a tool. A face deeper than `dip` gets a contact constraint from the next
+// step on. `stand` is the depth that the constraint still permits, because a flat face and a round
+// tip may differ by this depth. A face held exactly at the surface would be pressed as if the tip
+// were larger. Both limits are the smaller of a length and a share of the tip's radius.
 static const double dip_m = 6e-5, dip_share = 0.3;
 static const double stand_m = 8e-5, stand_share = 0.03;
 // Height, m, by which a round tip curves away from a face between two constraints of this face. A
@@ -318,8 +318,8 @@ static double distance_of(const reach *r, const cau_pose *pose, cau_vec3 point)
 
 // Whether the face can have met the tool in the tick. First test: its distance at the tick's start
 // is within the greatest motion since. When the tool turns, a corner beyond the tool's own size
-// moves farther. Second test: the same from the present position. Faces that fail would be refused
-// by is_missed, after a longer search.
+// moves farther. Second test: the same with the distance at the present position. Faces that fail
+// would be refused by is_missed, after a longer search.
 static bool may_be_met(const reach *r, int32_t face)
 {
 	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;

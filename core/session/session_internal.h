@@ -41,7 +41,8 @@ typedef struct cau_tool {
 	// The tick's pose_before and jaw_before, kept during its second substep.
 	cau_pose tick_pose;
 	double tick_jaw;
-	// Share of its motion to `led` that the anchor makes in a tick; below 1 when held back.
+	// Share of the motion to `led` that the anchor makes in a tick; below 1 while the tool is held
+	// back.
 	double pace;
 	cau_heat_grid grid;
 	cau_blade blade; // the metal of the hot part, with energy `tissue`: electrosurgery.c
@@ -100,7 +101,8 @@ typedef struct cau_substep {
 	// Used only with two substeps:
 	double *tick_start; // m, (n x 3): x at the tick's start, from the second substep on
 	double *base;       // m, (n x 3): x + q v1
-	// N, (n x 3): force of the tools in the first substep, times its share in the tick's mean.
+	// N, (n x 3): force of the tools in the first substep, times the substep's share in the tick's
+	// mean.
 	double *push;
 	bool disturbed;                 // a substep did not end at its solution
 	double touching_j;              // energy of tissue on tissue at the tick's start
@@ -268,8 +270,8 @@ bool cau_session_find_thrown(cau_session *session);
 // tool passes where tissue cannot be held.
 void cau_session_let_through(cau_session *session);
 
-// touch.c, thin.c: a vertex near a tool, with its signed distance, m. If there are too many, the
-// deepest are listed.
+// touch.c, thin.c: a vertex near a tool, with its signed distance, m. If there are more vertices
+// than CAU_MAX_TOUCHING, the deepest are listed.
 enum { CAU_MAX_TOUCHING = 2048 };
 typedef struct cau_touching {
 	int32_t vertex, place; // place: position along the broad phase's Morton curve
@@ -277,10 +279,11 @@ typedef struct cau_touching {
 } cau_touching;
 // thin.c: the distance, m, from a tool within which tissue may touch it in a tick.
 double cau_session_margin(const cau_tool_def *def);
-// Moves to the front of the list the vertices that get a contact constraint, where `taken` exist
-// already. At most CAU_NEAR_ROWS of all get one, and CAU_MAX_VERTEX_ROWS of those that touch. The
-// deepest come first unless they are spread. Returns their number; *left_out gets the number of
-// touching vertices without one.
+// Moves the vertices that get a contact constraint to the front of the list. `taken` constraints
+// exist already. Touching vertices may fill CAU_MAX_VERTEX_ROWS constraints in all, vertices that
+// are only near CAU_NEAR_ROWS. The deepest come first, unless the choice is spread (thin.c).
+// Returns the number of chosen vertices; *left_out gets the number of touching vertices without a
+// constraint.
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
                          int32_t taken, int32_t *left_out);
 
@@ -310,8 +313,8 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 void cau_session_release(cau_tool *tool);
 void cau_session_drop_frozen_grasps(cau_session *session);
 // grasp.c. hold_vertex returns a hold on a vertex. row_of_hold returns the contact constraint of a
-// hold, without its anchor. hold_of_row returns the hold of a constraint, or NULL. hold_is_left:
-// whether the held vertex or face still exists.
+// hold, without its anchor. hold_of_row returns the hold of a constraint, or NULL. hold_is_left
+// returns whether the held vertex or face still exists.
 cau_grasp cau_session_hold_vertex(int32_t vertex);
 cau_contact_row cau_session_row_of_hold(const cau_session *session, const cau_grasp *grasp,
                                         int32_t tool);
@@ -335,14 +338,14 @@ void cau_session_begin_collide(cau_session *session);
 bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
 // electrosurgery.c: energy `tissue`. make_cells creates the cells if the scene has this energy.
 // blade_of returns the blade of a tool that is added. operate computes power, heat and parting of a
-// tick. has_cooled: whether all tissue and tools have cooled down.
+// tick. has_cooled returns whether all tissue and tools have cooled down.
 cau_status cau_session_make_cells(cau_session *session, cau_error *error);
 cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def);
 void cau_session_operate(cau_session *session);
 bool cau_session_has_cooled(const cau_session *session);
 // bleed.c. make_vessels creates the scene's vessels. look_at_vessels finds their present state, as
-// after a restore. bleed advances seals, bleeding and blood by a tick. bleeds: whether blood leaves
-// a vessel or flows on the tissue.
+// after a restore. bleed advances seals, bleeding and blood by a tick. bleeds returns whether blood
+// leaves a vessel or flows on the tissue.
 cau_status cau_session_make_vessels(cau_session *session, cau_error *error);
 void cau_session_look_at_vessels(cau_session *session);
 void cau_session_bleed(cau_session *session);
@@ -388,8 +391,8 @@ double cau_session_size(const cau_session *session);
 // Greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
 // inversion.c. make_inversion allocates its array. follow_inversion counts, after a tick's solve,
-// the tetrahedra that stay inverted. is_inverted: whether a tetrahedron's volume is 0 or less;
-// `position` in m, (n x 3).
+// the tetrahedra that stay inverted. is_inverted returns whether a tetrahedron's volume is 0 or
+// less; `position` in m, (n x 3).
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error);
 void cau_session_follow_inversion(cau_session *session);
 void cau_session_forget_inversion(cau_session *session); // called after a restore
@@ -409,9 +412,9 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error);
 void cau_session_begin_energy(cau_session *session);
 void cau_session_end_energy(cau_session *session);
 void cau_session_mark_changed(cau_session *session);
-// rest.c. make_rest allocates its array. rests: whether the coming tick is a tick at rest; commands
-// that are due wake the tissue. rest_tick makes a tick at rest. fall_asleep decides, at the end of
-// any other tick, whether the tissue rests from the next tick on.
+// rest.c. make_rest allocates its array. rests returns whether the coming tick is a tick at rest;
+// commands that are due wake the tissue. rest_tick makes a tick at rest. fall_asleep decides, at
+// the end of any other tick, whether the tissue rests from the next tick on.
 cau_status cau_session_make_rest(cau_session *session, cau_error *error);
 bool cau_session_rests(cau_session *session);
 cau_status cau_session_rest_tick(cau_session *session, cau_error *error);

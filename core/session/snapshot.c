@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes the whole state at a tick border as bytes, and restores it.
 //
-// A downdated factor differs in its last bits from a factor computed anew. So a snapshot holds the
-// history of the factor: the ordered updates since the last canonical factorisation, and those that
-// still wait. The whole snapshot is read and checked (snapshot_read.c) before the session is
-// changed.
+// A downdated factor differs in its last bits from a factor that is computed again. So a snapshot
+// holds the history of the factor: the ordered updates since the last canonical factorisation, and
+// those that still wait. The whole snapshot is read and checked (snapshot_read.c) before the
+// session is changed.
 #include <stdlib.h>
 #include <string.h>
 

@@ -16,7 +16,7 @@ enum {
 	// Version 15 has the elements that cells move with, a tool's blade and load_rise_off. No
 	// release wrote earlier versions, and none is read.
 	CAU_SNAPSHOT_VERSION = 15,
-	CAU_SNAPSHOT_HASH_BYTES = 8, // at the end of the snapshot
+	CAU_SNAPSHOT_HASH_BYTES = 8, // bytes of the hash at the end of the snapshot
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };
 

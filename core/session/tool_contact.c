@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contact of each tool, linearised about a tick, for clients that render forces between ticks
-// (cautery/channels.h, cau_tool_contact). While it is watched, it is computed after each step from
-// the solved contact constraints. It changes no state.
+// (cautery/channels.h, cau_tool_contact). While a client watches the contact, it is computed after
+// each step from the solved contact constraints. The computation changes no state.
 //
 // Compliance: displacement of a load's own position by a unit load, which is distributed over the
-// contact constraints like their reactions. It is the tissue's answer (solve/tangent.h). The
-// virtual coupling is in series with it.
+// contact constraints like their reactions. The compliance is that of the tissue alone
+// (solve/tangent.h). The virtual coupling is in series with it.
 //
 // Planes: constraints with nearly the same normal form one plane. The plane's offset is where the
 // linear contact would end. With this offset, the plane gives the tick's force at the tick's
@@ -20,7 +20,7 @@
 #include "solve/tangent.h"
 
 enum { MOST_LOADS = 3 * CAU_MAX_CONTACTS };
-static const double alike = 0.9; // cosine between normals that form one plane: 26 degrees
+static const double alike = 0.9; // least cosine between normals of one plane: 26 degrees
 
 struct cau_contact_watch {
 	cau_tangent tangent;

@@ -176,7 +176,7 @@ static void describe_tools(cau_session *session)
 	session->contact.tool_count = session->tool_count;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
-		bool held_back = session->contact.tool[i].held_back; // from the attempt before
+		bool held_back = session->contact.tool[i].held_back; // set in the attempt before
 		session->contact.tool[i] = (cau_contact_tool){
 			.held_back = held_back,
 			.def = &tool->state.definition,

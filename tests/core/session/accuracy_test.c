@@ -13,7 +13,7 @@ static const double converged_residual = 1e-7;
 
 // ---- scenes
 
-// A taut sheet, pinned at its rim, with a hook that is pressed in and drawn.
+// Returns a scene: a taut sheet, pinned at its rim, with a hook that is pressed in and drawn.
 static cau_scene_def *make_taut(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
@@ -23,7 +23,7 @@ static cau_scene_def *make_taut(void)
 	return scene;
 }
 
-// A block of fat on a pinned floor, with a hook that is pressed in and drawn.
+// Returns a scene: a block of fat on a pinned floor, with a hook that is pressed in and drawn.
 static cau_scene_def *make_block(void)
 {
 	const double size[3] = {0.06, 0.04, 0.01}, least[3] = {-1, -1, -0.0101},
@@ -38,7 +38,7 @@ static cau_scene_def *make_block(void)
 	return scene;
 }
 
-// A sheet that hangs free from one edge. Its slow modes hardly converge.
+// Returns a scene: a sheet that hangs free from one edge. Its slow modes hardly converge.
 static cau_scene_def *make_free(void)
 {
 	const double least[3] = {-1, 0.0249, -1}, most[3] = {1, 1, 1};
@@ -188,8 +188,9 @@ static void fat_is_right(void **state)
 	}
 }
 
-// A steady push needs no second increment to report its force. A push that jumps needs one in the
-// same tick, because a blow differs from the steady steps from which the solver learned.
+// A steady push needs no second increment to report its force. A push that jumps needs a second
+// increment in the same tick, because a blow differs from the steady steps from which the solver
+// learned.
 static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 {
 	(void)state;

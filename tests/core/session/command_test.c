@@ -314,8 +314,8 @@ static void a_tool_that_leaps(void **state)
 			stage_step(session, 1);
 			cau_vec3 after = cau_vec3_of(stage_tool(session, "hook")->pose.position_m);
 			double most = scene->tools[0].max_speed_m_s * info.step_s;
-			assert_true(cau_length(cau_sub(after, before)) <=
-			            most * (1 + 1e-9)); // with 1e-9 for rounding
+			// The bound allows 1e-9 for rounding.
+			assert_true(cau_length(cau_sub(after, before)) <= most * (1 + 1e-9));
 			assert_true(farthest(session) < 0.5);
 		}
 	}

@@ -162,8 +162,8 @@ static void nothing_crosses(void **state)
 		if (presses[i].radius_m < wide_ball_m)
 			continue;
 		wide_n = wide_n > 0 ? wide_n : end.force_n;
-		assert_true(fabs(end.force_n / wide_n - 1) <
-		            0.1); // The same material gives the same force in finer cells.
+		// The same material gives the same force in finer cells.
+		assert_true(fabs(end.force_n / wide_n - 1) < 0.1);
 		assert_int_equal(end.left_out, 0);
 	}
 	assert_int_equal(failed, 0);

@@ -18,7 +18,7 @@ enum { MOVING_TICKS = 40, SETTLING_TICKS = 80, ITERATIONS = 100 };
 static const double residual = 1e-7;
 // Damping of motion, 1/s: near critical damping for the cantilever, the softest case.
 static const double damping_per_s = 26;
-static const double longest_step = 1.0 / 30; // s; so inertia is the least that a scene may have
+static const double longest_step = 1.0 / 30; // s; with a long step, inertia is least
 
 static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
 {

@@ -4,7 +4,7 @@
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// Jaws 2 mm wide and 4 mm long on cells of 10 mm, half way between vertices.
+// Returns a scene: jaws 2 mm wide and 4 mm long on cells of 10 mm, half way between vertices.
 static cau_scene_def *coarse_scene(double x, double y, double z)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
@@ -100,7 +100,7 @@ static void empty_jaws_close_whole_and_say_so(void **state)
 
 // ---- jaws that stop at the tissue between them
 
-// A block on a pinned floor, 3 mm wide in x. Open jaws reach around it.
+// Returns a scene: a block on a pinned floor, 3 mm wide in x. Open jaws reach around it.
 static cau_scene_def *block_scene(int shape, double young_pa)
 {
 	const double size[3] = {0.003, 0.012, 0.012},

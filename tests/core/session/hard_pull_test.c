@@ -107,7 +107,7 @@ static void lead_patch(cau_session *session)
 typedef struct pull {
 	const char *name;
 	void (*begin)(cau_session *session);
-	int beyond_tissue; // the pull, 80 N on a vertex, tears fat of 5 kPa
+	int beyond_tissue; // 1: the pull (80 N on a vertex) would tear fat of 5 kPa
 } pull;
 enum { PULLS = 4 };
 static const pull pulls[PULLS] = {{"patch", push_patch, 1},

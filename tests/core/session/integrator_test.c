@@ -152,8 +152,8 @@ static void implicit_euler_is_as_it_was(void **state)
 
 // ---- viscosity
 
-static const double damping_ratio =
-	0.05; // share of critical damping at 5 Hz; 0.73 of the amplitude is left after a period
+// Share of critical damping at 5 Hz; 0.73 of the amplitude is left after a period.
+static const double damping_ratio = 0.05;
 
 static double kept_by_kelvin_and_voigt(double hz, double viscosity_s)
 {

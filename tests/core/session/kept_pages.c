@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Replaces base/pages.h, by the linker, in tests that restore thousands of snapshots. Pages that
-// are given back are kept for the next taker. Unmapping them took half of the time of such a test,
-// because each time the kernel interrupts the other processors. Kept pages are filled with ones
-// (not a number, or -1), so a read after their return finds no valid state. This is not used under
-// sanitizers and in fuzzing, where such a read ends the program.
+// are given back are kept for the next request. Unmapping them took half of the time of such a
+// test, because each time the kernel interrupts the other processors. Kept pages are filled with
+// ones (not a number, or -1), so a read after their return finds no valid state. The replacement is
+// not used under sanitizers and in fuzzing, where such a read ends the program.
 #include <pthread.h>
 #include <string.h>
 

@@ -4,8 +4,8 @@
 
 #include <stdio.h>
 
-static const double bounded_m =
-	0.3; // largest distance of a vertex: a pull of 0.1 m on a scene of 0.12 m stays below
+// Largest distance of a vertex, m. A pull of 0.1 m on a scene of 0.12 m stays below this distance.
+static const double bounded_m = 0.3;
 // Number of directions of pulls under sanitizers, where a step takes thirty times as long. The
 // other directions use the same code.
 static const size_t ways_under_sanitizers = 1;

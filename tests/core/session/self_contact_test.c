@@ -43,7 +43,7 @@ static cau_scene_def *touching_scene(void)
 	return scene;
 }
 
-// A sheet above a slab that is pinned at its floor.
+// Returns a scene: a sheet above a slab that is pinned at its floor.
 static cau_scene_def *make_flap(void)
 {
 	const double size[3] = {0.05, 0.04, 0.008};
@@ -152,8 +152,8 @@ static cau_scene_def *make_busy(void)
 {
 	cau_scene_def *scene = stage_layered();
 	scene->contact_thickness_m = THICKNESS_M;
-	for (int32_t i = 0; i < scene->layer_count;
-	     i++) // tissue that parts soon, even under a fast hook
+	// The fascia parts soon, even under a fast hook.
+	for (int32_t i = 0; i < scene->layer_count; i++)
 		if (scene->layers[i].kind == CAU_LAYER_FASCIA)
 			scene->layers[i].sheet[0].heat.ignition_c = 8;
 	return scene;
@@ -266,8 +266,8 @@ static void what_is_thrown_finds_its_way_back(void **state)
 	enum { LEAST_INVERTED = 300 };
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;
-	scene->iterations =
-		10; // with twenty iterations, the scene's number, 130 vertices stay excluded
+	// With twenty iterations, the scene's number, 130 vertices stay excluded.
+	scene->iterations = 10;
 	for (int32_t i = 0; i < scene->layer_count; i++) // no tissue tears
 		scene->layers[i].sheet[0].heat.tear_energy_j_m2 =
 			scene->layers[i].fat[0].heat.tear_energy_j_m2 =

@@ -159,7 +159,7 @@ static void a_factor_serves_its_own_matrix_alone(void **state)
 	stage_bytes beginning = stage_snapshot(session);
 	uint64_t fresh = 0;
 	for (int round = 0; round < 4; round++) {
-		if (round == 1) { // round 0: as it began; round 1: with another matrix
+		if (round == 1) { // round 1 has another matrix; round 0 keeps the first
 			cau_command stiffer;
 			cau_default_command(&stiffer, CAU_COMMAND_SET_MATERIAL);
 			stiffer.as.material.kind = CAU_LAYER_FAT;

@@ -140,7 +140,8 @@ static void check_spin(const cau_scene_def *scene, cau_vec3 omega, int ticks, co
 	cau_session_destroy(session);
 }
 
-static const cau_vec3 about[] = {{0, 0, 10}, {10, 0, 0}, {6, 0, 8}, {8, 4.8, 3.6}}; // rad/s
+// Angular velocities, rad/s.
+static const cau_vec3 about[] = {{0, 0, 10}, {10, 0, 0}, {6, 0, 8}, {8, 4.8, 3.6}};
 enum { AXES = sizeof about / sizeof about[0] };
 
 static void a_free_block_turns_as_a_rigid_one(void **state)

@@ -261,9 +261,9 @@ static void act(cau_session *session, uint64_t tick, bool as_commands)
 		else
 			cau_session_hold_still(session, "hook", 0);
 	}
+	// This enable follows the energy-off or hold at the same tick border.
 	if (tick % 7 == 5)
-		stage_submit(session,
-		             &on); // this enable follows the energy-off or hold at the same tick border
+		stage_submit(session, &on);
 }
 
 static void as_commands_they_give_the_same_bits(void **state)

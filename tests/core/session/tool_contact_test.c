@@ -5,7 +5,7 @@
 
 static const double tick_s = 1.0 / 60;
 
-// A ball of 3 mm above the middle of a slab of elastic fat, whose top is at z = 0.
+// Returns a scene: a ball of 3 mm above the middle of a slab of elastic fat, whose top is at z = 0.
 static cau_scene_def *ball_on_slab(void)
 {
 	const double size[3] = {0.04, 0.04, 0.012};
@@ -88,7 +88,7 @@ static void planes_fit_the_force(void **state)
 	double first = -1;
 	for (int32_t i = 0; i < near.plane_count; i++)
 		first = fmax(first, near.plane[i].offset_m / near.plane[i].normal[2]);
-	assert_true(fabs(first - 0.003) < 2e-4); // where the ball of 3 mm touches
+	assert_true(fabs(first - 0.003) < 2e-4); // the height at which the ball of 3 mm touches
 	go(session, 0, 0, 0.0015, 60);
 	cau_tool_contact contact = contact_of(session);
 	const cau_tool_state *tool = stage_tool(session, "ball");

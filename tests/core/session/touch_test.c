@@ -11,8 +11,8 @@
 // Greatest depth, m, of a vertex inside a pushing tool at the end of a step, with ten iterations
 // and a tool that moves at 2 cm/s.
 static const double penetration_m = 2e-5;
-static const double cone_tolerance =
-	1e-6; // largest excess over the cone: rounding, relative to the normal force
+// Largest excess over the cone: rounding, relative to the normal force.
+static const double cone_tolerance = 1e-6;
 static const double weight_tolerance = 0.01;
 
 // ---- pushing
@@ -199,7 +199,8 @@ static void contact_says_what_it_left_out(void **state)
 	// This ball has many constraints, within the capacity.
 	check_rows((const int32_t[3]){16, 16, 6}, 0.04, 8e-3, &left_out);
 	assert_int_equal(left_out, 0);
-	check_rows((const int32_t[3]){40, 40, 2}, 0.05, 5e-3, &left_out); // more than the capacity
+	check_rows((const int32_t[3]){40, 40, 2}, 0.05, 5e-3,
+	           &left_out); // beyond the capacity
 	assert_true(left_out > 0);
 }
 
@@ -216,7 +217,7 @@ static cau_scene_def *resting_scene(void)
 	fat->fat[0].young_modulus_pa = 50000;
 	stage_mesh_of(scene, fat)->translate_m[2] = 0.0041;
 	cau_tool_def *table = stage_add_tool(scene, "table", CAU_TOOL_SPHERE, 0, 0, -0.05);
-	table->hot_radius_m = 0.05; // its top is at z = 0, and its shaft below
+	table->hot_radius_m = 0.05; // the ball's top is at z = 0, its shaft below
 	table->grid_step_m = 0.01;
 	table->pose.rotation[0] = 0;
 	table->pose.rotation[1] = 1;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A blood vessel in a session (core/vessel). It bleeds where it is cut, but not where jaws press it
-// shut or a seal holds. Snapshots restore its state.
+// A blood vessel in a session (core/vessel). The vessel bleeds where it is cut, but not where jaws
+// press it shut or a seal holds. Snapshots restore its state.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
 
 static const double sealed_m = -0.005, deep_m = -0.007, above_m = 0.04;
-// Under sanitizers these tests use half as many cells along each axis, and skip tests that need
-// fine cells.
+// Numbers of ticks for each action. Under sanitizers these tests use half as many cells along each
+// axis, and skip tests that need fine cells.
 enum {
 	TRAVEL = 12, // ticks for a motion: twice those for 48 mm, the longest, at the tools' 0.5 m/s
 	CLOSING = 40,
