@@ -8,7 +8,7 @@
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
-static const double near = 1e-5; // share of the bounding diagonal
+static const double near = 1e-5; // share of the bounding diagonal within which vertices merge
 
 typedef struct grid {
 	const double *position;

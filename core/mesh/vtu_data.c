@@ -9,9 +9,9 @@
 #include "mesh/mesh_memory.h"
 
 enum {
-	DEFLATE_RATIO_MAX = 1032,    // no zlib stream grows by a larger factor
+	DEFLATE_RATIO_MAX = 1032,    // largest factor by which a zlib stream grows
 	DATA_BYTES_MAX = 1 << 30,    // most bytes of one array
-	NUMBER_TEXT_BYTES_LEAST = 2, // a digit and a blank
+	NUMBER_TEXT_BYTES_LEAST = 2, // least bytes of a number as text: a digit and a blank
 };
 
 typedef struct bytes {

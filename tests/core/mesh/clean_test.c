@@ -89,8 +89,8 @@ static void vertices_merge_across_cells(void **state)
 		cau_mesh mesh = copy_of(5, position, 2, (int32_t[]){0, 1, 2, 3, 4, 0}, 0, NULL);
 		cau_mesh_report report = {0};
 		assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
-		assert_int_equal(report.duplicate_vertices,
-		                 1); // the two are 1.39e-5 apart; the limit is 1.73e-5
+		// The two vertices are 1.39e-5 apart; the limit is 1.73e-5.
+		assert_int_equal(report.duplicate_vertices, 1);
 		cau_mesh_finish(&mesh);
 	}
 }

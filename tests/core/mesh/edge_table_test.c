@@ -81,9 +81,9 @@ static void slab_keeps_eulers_characteristic(void **state)
 	assert_int_equal(cau_edge_table_make(&primitives, NULL, &table, NULL), CAU_OK);
 	assert_int_equal(cau_face_table_make(&primitives, &faces, NULL), CAU_OK);
 	check_table(&primitives, &table);
-	assert_int_equal(mesh.vertex_count - table.edge_count + faces.face_count -
-	                     mesh.tetrahedron_count,
-	                 1); // Euler's characteristic of a ball
+	// Euler's characteristic of a ball is 1.
+	assert_int_equal(
+		mesh.vertex_count - table.edge_count + faces.face_count - mesh.tetrahedron_count, 1);
 	assert_int_equal(table.hinge_count, 0);
 	cau_face_table_finish(&faces);
 	cau_edge_table_finish(&table);
