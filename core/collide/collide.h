@@ -4,7 +4,7 @@
 // A pair is a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
 // thickness h has an energy, which is part of eq. 4 (energy.c). For the distance d the energy is
 //
-//     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d),
+//     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d).
 //
 // The energy is continuous, with its slope and curvature [offset geometric contact, Chen et al.
 // 2025]. Below 0.002 h the force grows linearly, so the force is finite even where tissue

@@ -8,7 +8,7 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double soft_share = 0.002; // share of the thickness: below it, force grows linearly
+static const double soft_share = 0.002; // share of the thickness below which force grows linearly
 enum { SHARE = 256 };                   // pairs in one share of the work
 
 static double potential(double stiffness, double thickness, double distance, double *slope,

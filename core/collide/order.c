@@ -86,7 +86,7 @@ void cau_collide_gather(cau_collide *collide)
 					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
 				if (collide->pair_count == collide->most_pairs)
 					return;
-				collide->apart_m[collide->pair_count] = 0; // not measured yet
+				collide->apart_m[collide->pair_count] = 0; // the distance is not measured yet
 				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
 				pair->kind = (cau_gap_kind)kind;
 				pair->thickness_m = found->thickness_m;
