@@ -56,7 +56,7 @@ static double real_at(const head *of, int place, int width)
 	return (double)value;
 }
 
-// Finds out which header a file has. Returns false if there is none.
+// Finds out which header a file has. Returns false if there is no known header.
 static bool find_head(const unsigned char *bytes, size_t byte_count, head *of)
 {
 	*of = (head){.bytes = bytes};

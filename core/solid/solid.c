@@ -232,7 +232,8 @@ static cau_status mesh_with(work *of, double spacing, cau_error *error)
 	tell(of, "lattice", 0.1);
 	cau_status status = cau_lattice(&of->domain, spacing, &of->tets, error);
 	int64_t most = MORE_MOST * (int64_t)aim_of(of);
-	if (!status && !(of->wish->edge > 0) && of->tets.count > most) // checked before cutting
+	// The number of tetrahedra is checked before the lattice is cut.
+	if (!status && !(of->wish->edge > 0) && of->tets.count > most)
 		return cau_fail(error, CAU_BAD_VALUE, "edge",
 		                "the tissue is so thin that its solid needs more than %lld tetrahedra: "
 		                "make a sheet of it (as "

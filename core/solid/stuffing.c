@@ -18,8 +18,8 @@
 enum { HALVINGS = 12 };
 // Distance, as a share of an edge's length, within which a vertex moves to the cut.
 static const double snap_share = 0.35;
-static const double cut_least =
-	0.06; // least distance of a cut from an edge's ends, as a share of its length
+// Least distance of a cut from an edge's ends, as a share of the edge's length.
+static const double cut_least = 0.06;
 static const double still_good = 0.2; // least quality that a move may leave
 
 // A cut of an edge from inside to outside.
