@@ -64,7 +64,7 @@ static void test_maps_reproduce_the_rest_shape(void **state)
 			}
 			for (int c = 0; c < map.rank; c++)
 				for (int row = 0; row < 3; row++) {
-					double expected = row == c; // for fat
+					double expected = row == c; // the identity, for fat
 					if (kind == CAU_ELEMENT_TRIANGLE)
 						expected = r.tissue.triangle_frame[6 * e + 3 * c + row];
 					else if (kind == CAU_ELEMENT_LINK)
