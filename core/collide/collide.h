@@ -134,7 +134,8 @@ typedef struct cau_collide {
 	cau_collide_slice *slice;                   // (blocks)
 	cau_collide_found *list[2];                 // by kind, (blocks x CAU_COLLIDE_SLICE)
 	uint8_t *alive_before[CAU_PRIMITIVE_KINDS]; // elements that were alive at the last search
-	// `exempt` at the last search or at the end of the last tick; all 1: unknown
+	// `exempt` at the last search or at the end of the last tick. All entries are 1 if this is
+	// unknown.
 	uint8_t *exempt_before;
 	// Boxes of the parts in groups of eight, in the order in which blocks list the parts. Each
 	// block begins a new group. `fresh_lane` has one bit for each part of a group: the part is

@@ -35,7 +35,8 @@ static int digit_of(const cau_collide_found *found, int digit)
 	return part >> (8 * (digit % (DIGITS / 2))) & (RADIX - 1);
 }
 
-// Returns false if all pairs have the same digit, so that none has to be moved.
+// Sorts the pairs by one digit. Returns false if all pairs have the same digit; then no pair is
+// moved.
 static bool sort_by_digit(const cau_collide_found *from, cau_collide_found *to, int32_t count,
                           int digit)
 {

@@ -12,7 +12,7 @@ static const double near_share = 0.1, far_share = 0.5;
 // Least thickness of a pair, as a share of the surface's thickness. A pair of less thickness is
 // left out.
 static const double least_thickness = 0.002;
-// A factor that exceeds any rounding of a distance.
+// Factor on a distance that exceeds any rounding of the distance.
 static const double surely = 1 + 1e-6;
 
 // Each kind of pair is compiled by itself, with the kind as a constant.

@@ -15,7 +15,7 @@ enum {
 	// capacity is for cells near tools.
 	FOLLOWED_MOST = CELLS_MOST / 4 * 3,
 	FOLLOW_TURNS = 60, // ticks in which each element is visited once; heat is slow
-	ITERATIONS = 60,   // most iterations for the potential; it starts from the last tick's
+	ITERATIONS = 60,   // most iterations for the potential, from that of the last tick
 };
 
 static const double filled_m = 3e-3; // elements nearer than this to a hot part get cells

@@ -342,8 +342,9 @@ static void search_block(reach *r, int32_t block)
 			offer(r, near->face[i]);
 }
 
-// Uses four independent maxima and sums, so that no operation waits for the one before. The sums
-// detect a motion that is not a number.
+// Finds the farthest motion of a vertex in the tick, m. Uses four independent maxima and sums, so
+// that no operation waits for the result of another operation. The sums detect a motion that is not
+// a number.
 double cau_session_farthest(const cau_session *session)
 {
 	const double *position = session->position, *start = session->position_start;

@@ -264,8 +264,8 @@ static cau_status make_canonical(cau_session *session, cau_error *error)
 // the first operation of the next update.
 static cau_status replay_group(cau_matrix_update *update, int32_t *k, cau_error *error)
 {
-	cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements with pinned vertices count in a group, but
-	                                         // add no rank
+	// A group also counts elements with pinned vertices, which add no rank.
+	cau_waiting list[CAU_DOWNDATES_AT_MOST];
 	int32_t count = 0, group = update->operation[*k].group;
 	for (; *k < update->operation_count && update->operation[*k].group == group; ++*k) {
 		CAU_ASSERT_INDEX(count, CAU_DOWNDATES_AT_MOST);

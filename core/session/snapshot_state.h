@@ -33,7 +33,8 @@ typedef struct snapshot_head {
 	int32_t refactorisations, inverted, edges_parted, elements_removed, elements_torn, quiet_ticks;
 	bool making, faulted, resting;
 	double gravity_m_s2[3];
-	int32_t shallow_steps; // what the solver learned from steps: solve/accuracy.h
+	// From here on: values that the solver learned from steps (solve/accuracy.h).
+	int32_t shallow_steps;
 	double accuracy, amplification[CAU_ACCURACY_DEPTHS], force_left;
 	double force_before[CAU_ACCURACY_TOOLS][3];
 } snapshot_head;

@@ -187,8 +187,8 @@ static void describe_tools(cau_session *session)
 	cau_session_couple(session);
 }
 
-// Adds the constraints of the vertices at a tool. They leave capacity for faces, which a tool could
-// otherwise pass.
+// Adds the constraints of the vertices at a tool. These constraints leave capacity for faces, which
+// a tool could otherwise pass.
 static void add_vertices(cau_session *session, int32_t index)
 {
 	cau_touching list[CAU_MAX_TOUCHING];

@@ -189,7 +189,7 @@ static void read_frame(const head *of, cau_volume *volume)
 			volume->axis[i][i] = real_at(of, of->at->pixdim + width * (i + 1), width);
 	}
 	int64_t unit = whole_at(of, of->at->units, of->at->units_bytes) & 7;
-	double unit_mm = unit == 1 ? 1000 : unit == 3 ? 1e-3 : 1; // 1: metres, 3: micrometres
+	double unit_mm = unit == 1 ? 1000 : unit == 3 ? 1e-3 : 1; // unit 1: metres, 3: micrometres
 	for (int i = 0; i < 3; i++) {
 		volume->origin[i] *= unit_mm;
 		for (int c = 0; c < 3; c++)

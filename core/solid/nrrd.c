@@ -37,7 +37,7 @@ static cau_status fail(header *of, const char *format, const char *word)
 static cau_status read_type(header *of, const char *text)
 {
 	static const struct {
-		const char *words; // all names of a type, each between bars
+		const char *words; // all names of a type, each name between two bars
 		cau_voxels is;
 	} types[] = {
 		{"|signed char|int8|int8_t|", {.kind = CAU_VOXEL_SIGNED, .bytes = 1}},

@@ -168,7 +168,7 @@ static cau_status read_domain(work *of, cau_error *error)
 
 // ---- meshing
 // Returns the volume inside the domain. Samples the middles of SAMPLES^3 cells of the box. If few
-// samples are inside, the tissue is thin. Then the domain's own value is better, if the domain is
+// samples are inside, the tissue is thin. Then the domain's own volume is better, if the domain is
 // closed.
 static double volume_inside(const cau_domain *domain, bool closed)
 {

@@ -187,7 +187,7 @@ static interval around(box *in, double value, double change)
 	return (interval){value - change, value + change};
 }
 
-// Returns the least distance of the edge from a to b to the origin.
+// Returns the least distance between the origin and the edge a b.
 static double edge_distance(const double a[3], const double b[3])
 {
 	double along[3], nearest[3];

@@ -189,7 +189,7 @@ static void degenerate_tetrahedra_are_left_out(void **state)
 	cau_mesh_report report = {0};
 	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
 	assert_int_equal(report.degenerate_tetrahedra, 2);
-	assert_int_equal(report.unused_vertices, 1); // a vertex of the removed elements
+	assert_int_equal(report.unused_vertices, 1); // only removed elements had this vertex
 	assert_int_equal(mesh.tetrahedron_count, 1);
 	assert_int_equal(mesh.tetrahedron_region[0], 21);
 	assert_int_equal(mesh.vertex_count, 4);

@@ -275,7 +275,7 @@ static void pins_take_frozen_vertices_over(void **state)
 		alone++;
 	int32_t strayed = alone + 1;
 	assert_false(session->fixed[strayed]);
-	session->dissection.live_elements[alone] = 0; // as if its last element had parted
+	session->dissection.live_elements[alone] = 0; // as if the vertex's last element had parted
 	session->fixed[alone] = session->fixed[strayed] = 1;
 	session->frozen_count = 2;
 	cau_command command = stage_command(CAU_COMMAND_PIN);
@@ -391,7 +391,7 @@ static void only_pinned_vertices_are_driven(void **state)
 	for (int32_t k = 0; k < frame.moved_count; k++)
 		told |= frame.moved[k] == pinned;
 	assert_true(told);
-	stage_step(session, 1); // the vertex stays there
+	stage_step(session, 1); // the vertex stays where it was led
 	assert_memory_equal(stage_frame(session).position + 3 * (size_t)pinned, at, sizeof at);
 	cau_session_destroy(session);
 	free(scene);

@@ -225,8 +225,8 @@ static void coagulated_tissue_shrinks(void **state)
 	cau_session *session = stage_open(scene, 1);
 	go(session, 0, DWELL_TICKS);
 	stage_energize(session, "hook", 0);
-	stage_step(session,
-	           60 + 12); // each element is visited within a second, and shrinks for 0.2 s
+	// Each element is visited within 60 ticks, and shrinks for 12 ticks (0.2 s).
+	stage_step(session, 60 + 12);
 	int32_t shrunk = 0;
 	for (int32_t t = 0; t < session->tissue.triangle_count; t++) {
 		double root[6], share = cau_dissection_coagulated(&session->dissection, 0, t);
@@ -412,7 +412,8 @@ static void edges_cannot_part_by_power(void **state)
 	free(scene);
 }
 
-// If the definition has no numbers for the blade, the blade is that of its shape, to the bit.
+// If the definition has no numbers for the blade, the blade has the numbers of the tool's shape, to
+// the bit.
 static void the_same_blade_by_numbers_changes_no_bit(void **state)
 {
 	(void)state;

@@ -95,7 +95,7 @@ static void nor_on_finer_meshes(void **state)
 	over_meshes(&wide, (double[]){3.2e-3, 1.6e-3, 1.3e-3}, 3);
 }
 
-// Returns the difference of largest and least force over their mean, at eight positions along a
+// Returns the largest force less the least force, over the mean force, at eight positions along a
 // cell.
 static double change(double cell_m)
 {

@@ -7,7 +7,8 @@
 #include "session/session_internal.h"
 
 enum { MOST = 60, CONVERGED = 300, TICKS = CAU_TEST_SANITIZED ? 40 : 60, EVERY = 2 };
-static const double converged_residual = 1e-7; // relative residual, in the norm of H
+// Largest relative residual of a converged step, in the norm of H.
+static const double converged_residual = 1e-7;
 // Largest force that a converged step leaves in double, as a share of the sheet's weight.
 static const double force_rounding = 1e-3, weight_n = 0.02;
 // Errors, by precision, that are too small to matter: below a tenth of the wanted accuracy. In

@@ -134,8 +134,8 @@ static void assert_possible(const cau_session *session, const char *what)
 		fail_msg("%s: %g m away, %d inverted", what, far, frame.statistics.inverted);
 }
 
-// The refusal names the tick and the layer. The frame shows the state before. A snapshot restores
-// the session.
+// Asserts that the refusal names the tick and the layer, that the frame shows the state before the
+// step, and that a snapshot restores the session.
 static void assert_faulted(cau_session *session, const stage_bytes *shot, const cau_error *refusal,
                            const char *what)
 {

@@ -70,8 +70,8 @@ static const cau_scene_def *present_of(const cau_session *session, const cau_sce
 	return &present;
 }
 
-// One tool is changed, one removed, one added. The definition includes this at once, and is the
-// same after the tick.
+// One tool is changed, one is removed, one is added. The definition includes these changes at once,
+// and is the same after the tick.
 static void tools_of_now(void **state)
 {
 	(void)state;

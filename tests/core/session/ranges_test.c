@@ -70,6 +70,7 @@ static void make_way(cau_tool_def *tool, const cau_field *field)
 	}
 }
 
+// True if the text of the table, quoted below, restricts the range of this field further.
 static bool is_word_bound(const cau_field *field, double value)
 {
 	bool definite = strcmp(field->name, "target") == 0;            // "positive definite"

@@ -232,8 +232,8 @@ static void many_motions_of_tools_that_grasp(void **state)
 	run_tools(6 * TOOL_MOTIONS, 6 * LOOK, true);
 }
 
-// A session restored to the present state reaches the same bits, without any other knowledge of the
-// past.
+// A session restored to the present state reaches the same bits, although it knows nothing else
+// about the past.
 static void expect_the_same_after_a_restore(cau_session *session)
 {
 	enum { TICKS = 4 };

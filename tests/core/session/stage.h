@@ -29,7 +29,7 @@ cau_scene_def *stage_scene(int precision);
 // Returns the scene deploy/scenes/NAME.json.
 cau_scene_def *stage_scene_named(const char *name);
 // Returns the scene deploy/scenes/NAME.json, but under sanitizers with half as many cells along
-// each axis. For tests whose bounds do not depend on the resolution.
+// each axis. Use this scene in tests whose bounds do not depend on the resolution.
 cau_scene_def *stage_scene_light(const char *name);
 
 // Add a layer on its own generated mesh, with the defaults of its kind. The results point into the

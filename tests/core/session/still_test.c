@@ -222,7 +222,7 @@ static void it_says_what_it_may_heat(void **state)
 	assert_null(cau_session_heats_beyond(session, NULL, 0));
 	cau_command later = energy(1, 100, 0);
 	stage_submit(session, &later);
-	// The queued enable would heat it later.
+	// The queued enable would let the hook heat later.
 	assert_string_equal(cau_session_heats_beyond(session, NULL, 0), "hook");
 	assert_null(cau_session_heats_beyond(session, &hook, 1));
 	cau_session_energy_off(session, "hook", 0);

@@ -73,8 +73,8 @@ static void records_are_there_while_watched(void **state)
 	free(scene);
 }
 
-// Planes begin where the record's force implies. Tissue that is near has planes before the tool
-// touches it.
+// The offsets of planes agree with the record's force. Tissue that is near has planes before the
+// tool touches it.
 static void planes_fit_the_force(void **state)
 {
 	(void)state;
