@@ -169,7 +169,7 @@ typedef struct cau_collide {
 cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
                               double friction, double step_s, cau_arena *arena, cau_error *error);
 
-// Length of the longest filtered step, m.
+// Returns the length of the longest filtered step, m.
 double cau_collide_most_step(const cau_collide *collide);
 
 // Begins a tick at positions x (m, n x 3). Before the call, list the drawn surface and fill
@@ -225,11 +225,11 @@ bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, b
 // distances.
 void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
 
-// A quick check for the steps of an iteration, most of which are short. The check does not visit
-// all vertices. Returns true if a step of at most `longest_m` from the present positions surely
-// keeps every vertex within its reach. Then fill `collide->step` only at the corners of the
-// `unclear` pairs, and call cau_collide_lets_pass. That function returns true if the step may be
-// taken unchanged. If either function returns false, call cau_collide_filter.
+// Checks quickly the steps of an iteration, most of which are short. The check does not visit all
+// vertices. Returns true if a step of at most `longest_m` from the present positions surely keeps
+// every vertex within its reach. Then fill `collide->step` only at the corners of the `unclear`
+// pairs, and call cau_collide_lets_pass. That function returns true if the step may be taken
+// unchanged. If either function returns false, call cau_collide_filter.
 bool cau_collide_foresee(cau_collide *collide, double longest_m);
 bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest_m);
 

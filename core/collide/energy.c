@@ -121,8 +121,8 @@ static void unload(cau_collide *collide)
 	collide->loaded_count = 0;
 }
 
-// The energy of friction is elastic up to the largest friction force, and has that constant force
-// beyond. The force is `present` times the slip.
+// Computes the energy of friction. The friction is elastic up to the largest friction force, and
+// beyond has this constant force. The force is `present` times the slip.
 double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip, const double *x,
                         cau_vec3 *slip, double *present)
 {

@@ -114,8 +114,8 @@ static cau_status check_shrink(const double *shrink, int count, const char *path
 	return CAU_OK;
 }
 
-// The target T must be symmetric positive definite. Its eigenvalues are squared stretches, from
-// 1e-4 to 100.
+// Checks a target T, which must be symmetric positive definite. The eigenvalues are squared
+// stretches, from 1e-4 to 100.
 static cau_status check_target(const double eigen[3], int count, const char *path, cau_error *error)
 {
 	for (int i = 0; i < count; i++)

@@ -134,14 +134,14 @@ static double hot_distance(const cau_tool *tool, cau_vec3 point)
 	                            CAU_PART_HOT, point, NULL);
 }
 
-// Largest distance of a cell's middle from metal that touches the cell: half a cell, and a fiftieth
-// of that for rounding.
+// Returns the largest distance of a cell's middle from metal that touches the cell: half a cell,
+// and a fiftieth of that for rounding.
 static double reach_of_metal_m(const cau_session *session)
 {
 	return 0.51 * session->scene->cell_m;
 }
 
-// Distance from the hot part within which metal or sparks reach a cell's middle.
+// Returns the distance from the hot part within which metal or sparks reach a cell's middle.
 static double touch_m(const cau_session *session, const cau_tool *tool)
 {
 	double peak_v = tool->state.definition.peak_v;

@@ -97,8 +97,8 @@ void cau_session_begin_pinch(const cau_session *session, cau_tool *tool)
 
 // ---- pressing
 
-// Motion of a grasped point per angle of the jaws, m/rad. It is 0 for all points until both faces
-// touch the tissue.
+// Returns the motion of a grasped point per angle of the jaws, m/rad. The motion is 0 for all
+// points until both faces touch the tissue.
 static cau_vec3 way_of(const cau_tool_jaws *jaws, extent held, extent faces, const cau_grasp *grasp)
 {
 	double width = held.high - held.low;

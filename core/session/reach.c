@@ -198,7 +198,7 @@ static bool describe_corners(const reach *r, cau_contact_row *row)
 	return free_count == 0 || free_count == 3;
 }
 
-// Squared distance, m^2, of two points.
+// Returns the squared distance, m^2, of two points.
 static double apart2(const reach *r, const cau_contact_row *a, const cau_contact_row *b)
 {
 	cau_vec3 off = cau_sub(cau_contact_point(a, r->session->position_start),

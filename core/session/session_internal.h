@@ -202,8 +202,8 @@ bool cau_session_has_material(const cau_session *session, const cau_command *com
 // Returns how many of `count` remain.
 typedef enum cau_void { CAU_VOID_LIMITS, CAU_VOID_ENABLES, CAU_VOID_ALL } cau_void;
 int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, cau_void which);
-// *end gets the command that ends an enable with `ticks` that acts at this tick. Returns false if
-// the enable has no end.
+// Fills *end with the command that ends the enable after its `ticks`. The enable acts at `tick`.
+// Returns false if the enable has no end.
 bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_command *end);
 // cau_session_stay sets the tool's target to its actual pose. cau_session_stays returns whether the
 // target is the actual pose already.
@@ -225,14 +225,15 @@ cau_status cau_session_make_substeps(cau_session *session, cau_error *error);
 void cau_session_begin_substeps(cau_session *session);
 void cau_session_next_substep(cau_session *session);
 void cau_session_end_substeps(cau_session *session);
-// Called after end_substeps. Velocities become a mixture: `share` of the tick's mean velocity, as
-// with implicit Euler, and the rest of their present value.
+// Changes the velocities after end_substeps. They become a mixture: `share` of the tick's mean
+// velocity, as with implicit Euler, and the rest of their present value.
 void cau_session_take_mean(cau_session *session, double share);
 // Predicts the second substep.
 void cau_session_predict_on(cau_session *session);
-// Distance, m, that a vertex would move in a tick along axis c at its velocity at the tick's end.
+// Returns the distance, m, that a vertex would move in a tick along axis c at its velocity at the
+// tick's end.
 double cau_session_way(const cau_session *session, int32_t vertex, int c);
-// Share of the last substep's forces in the tick's mean.
+// Returns the share of the last substep's forces in the tick's mean.
 double cau_session_last_share(const cau_session *session);
 // tool_motion.c: tools follow their drivers within their speed limits. lead_tools_on makes the rest
 // of the motion in the second substep. keep_tick_poses then sets pose_before and jaw_before to
@@ -259,8 +260,8 @@ bool cau_session_hold_back(cau_session *session, int attempt);
 void cau_session_let_follow(cau_session *session);
 // touch.c: finds contact constraints, attachments and drag before the solve.
 void cau_session_find_contacts(cau_session *session);
-// After the solve: whether tissue is inside a tool at its contact constraints, or met a tool
-// without having a constraint. The missing constraints are added.
+// Returns, after the solve, whether tissue is inside a tool at its contact constraints, or met a
+// tool without having a constraint. Adds the missing constraints.
 bool cau_session_find_missed(cau_session *session);
 // Whether tissue diverged because faces were held: it moved farther than without these constraints,
 // by more than a tip's width and the tip's own motion. Then the faces were not really held, even if
@@ -388,7 +389,7 @@ void cau_session_lead_driven(cau_session *session);
 // tissue's box at rest, m.
 void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
-// Greatest allowed distance of a vertex from its rest position, m.
+// Returns the greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
 // inversion.c. make_inversion allocates its array. follow_inversion counts, after a tick's solve,
 // the tetrahedra that stay inverted. is_inverted returns whether a tetrahedron's volume is 0 or
@@ -423,7 +424,7 @@ void cau_session_fall_asleep(cau_session *session);
 // turn freely, after all vertices are predicted.
 cau_status cau_session_make_spin(cau_session *session, cau_error *error);
 void cau_session_turn_prediction(cau_session *session);
-// After two substeps: restores the angular momentum of freely turning pieces to that at the tick's
+// Restores, after two substeps, the angular momentum of freely turning pieces to that at the tick's
 // start, by changing v2. This is done only if no tool is near and no tissue touches tissue.
 void cau_session_keep_momentum(cau_session *session);
 // motion.c: factor from a tick's displacement to the velocity after it, 1/s (eq. 2 and damping).

@@ -100,7 +100,7 @@ cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size
                              snapshot_state *state, cau_error *error);
 void cau_snapshot_drop(snapshot_state *state);
 
-// Hash of `count` bytes, the head and the arrays.
+// Returns the hash of `count` bytes: the head and the arrays.
 uint64_t cau_snapshot_hash(const void *bytes, size_t count);
 
 // Whether a session restored from the snapshot continues with the same bits as the session that

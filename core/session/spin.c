@@ -363,10 +363,11 @@ static void measure_ending(const cau_session *session, int32_t first, int32_t la
 	}
 }
 
-// In both substeps the forces have no torque about the positions where they act. For a turning
-// piece, a1 is half of the acceleration that holds the piece on its circle, because v is along the
-// circle and v1 along a chord. So sum m x2 x v2 differs from the angular momentum L at the tick's
-// start. This function adds to v2 the rotation that restores L.
+// Corrects the angular momentum of a piece. In both substeps the forces have no torque about the
+// positions where they act. For a turning piece, a1 is half of the acceleration that holds the
+// piece on its circle, because v is along the circle and v1 along a chord. So sum m x2 x v2 differs
+// from the angular momentum L at the tick's start. So the function adds to v2 the rotation that
+// restores L.
 static void keep_momentum(cau_session *session, int32_t first, int32_t last)
 {
 	motion m;

@@ -235,7 +235,7 @@ static cau_status move(cau_session *session, cau_status status, cau_error *error
 	return status;
 }
 
-// One tick: calls every stage in order.
+// Makes one tick: calls every stage in order.
 cau_status cau_session_step(cau_session *session, cau_error *error)
 {
 	if (session->faulted)

@@ -63,7 +63,7 @@ void cau_session_forget_contact(cau_session *session)
 
 // ---- compliance
 
-// Force along the normal, N; 0 for a constraint that does not push.
+// Returns the force along the normal, N; 0 for a constraint that does not push.
 static double push_of(const cau_contact_row *row)
 {
 	return row->attached ? 0

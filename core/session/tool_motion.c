@@ -49,7 +49,7 @@ void cau_session_drop_tool(cau_session *session, int32_t index)
 	        (size_t)(session->tool_count - index) * sizeof *session->tool);
 }
 
-// Angle between two rotations, rad.
+// Returns the angle between two rotations, rad.
 static double angle_between(const cau_pose *a, const cau_pose *b)
 {
 	double dot = 0;

@@ -110,8 +110,8 @@ static void face_sizes(const double *position, const int32_t vertex[4], double s
 	}
 }
 
-// The sine of the angle at the edge ij is 6 V |ij| / (|n_k| |n_l|). The faces opposite k and l meet
-// at this edge.
+// Uses that the sine of the angle at the edge ij is 6 V |ij| / (|n_k| |n_l|). The faces opposite k
+// and l meet at this edge.
 double cau_tet_quality(const double *position, const int32_t vertex[4])
 {
 	double size[4], least = 1, volume6 = cau_tetrahedron_volume6(position, vertex);

@@ -100,7 +100,7 @@ typedef struct voters {
 	double least[READ_MOST], most[READ_MOST];
 } voters;
 
-// The cubic B-spline.
+// Returns the cubic B-spline at a distance.
 static double weight_at(double distance)
 {
 	double t = fabs(distance);

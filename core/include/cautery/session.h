@@ -110,8 +110,8 @@ void cau_session_destroy(cau_session *session); // session may be NULL
 // Whether the session's scene has built-in tension. Creation brings the tissue to rest, unless the
 // session was created `unsettled`.
 bool cau_session_has_tension(const cau_session *session);
-// Hash of the built meshes and of each element's material. Two sessions of equal scenes with an
-// equal hash come to rest with the same bits.
+// Returns a hash of the built meshes and of each element's material. Two sessions of equal scenes
+// with an equal hash come to rest with the same bits.
 uint64_t cau_session_tissue_hash(const cau_session *session);
 
 // Shares memory with other sessions of equal tissue in this program that also called this function.
@@ -371,9 +371,9 @@ void cau_session_damage(const cau_session *session, const cau_selection *region,
 
 // ---- snapshots
 
-// A snapshot is the whole state at a tick border with the queued commands. It is tagged with
-// version, instruction set and a hash of the definition. Steps after a restore give the same bits
-// as steps without it.
+// A snapshot is the whole state at a tick border with the queued commands. A snapshot contains its
+// version, the instruction set and a hash of the definition. Steps after a restore give the same
+// bits as steps without it.
 size_t cau_session_snapshot_bytes(const cau_session *session); // upper bound of a snapshot's size
 // Writes a snapshot into the caller's bytes. Errors: CAU_LIMIT (capacity).
 cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
@@ -385,7 +385,8 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
                                bool *exact, cau_error *error);
 
-// Hash of the whole state (positions, velocities, heat, exposure, removed elements, tools).
+// Returns a hash of the whole state (positions, velocities, heat, exposure, removed elements,
+// tools).
 uint64_t cau_session_hash(const cau_session *session);
 
 // The energy ledger: where the energy of instruments went since creation, J

@@ -51,7 +51,7 @@ static cau_scene_def *make_free(void)
 
 // ---- errors
 
-// Error of the force on the first tool, relative to the exact force.
+// Returns the error of the force on the first tool, relative to the exact force.
 static double force_error(const cau_session *session, const cau_session *exact)
 {
 	double off = 0, force = 0;

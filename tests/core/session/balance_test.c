@@ -186,7 +186,7 @@ static void rest_stays_at_rest(void **state)
 	check_rest(CAU_PRECISION_SINGLE);
 }
 
-// With implicit Euler a body falls g dt^2 (1 + 2 + ... + n) in n ticks.
+// Checks a fall. With implicit Euler a body falls g dt^2 (1 + 2 + ... + n) in n ticks.
 static void check_fall(int precision, double tolerance)
 {
 	enum { TICKS = 60 };

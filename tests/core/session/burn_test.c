@@ -122,9 +122,9 @@ static element_list tetrahedra(const cut_run *run)
 	                      run->session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON]};
 }
 
-// Mean displacement along `axis`, away from the middle of the cut, in edge lengths. It is taken
-// over the vertices that lost an element and still have another. Vertices nearer to the middle than
-// `beyond_m` do not count.
+// Returns the mean displacement along `axis`, away from the middle of the cut, in edge lengths. The
+// mean is over the vertices that lost an element and still have an element. Vertices nearer to the
+// middle than `beyond_m` do not count.
 static double drawn_back_edges(const cut_run *run, element_list list, size_t axis, double beyond_m)
 {
 	cau_frame frame = stage_frame(run->session);

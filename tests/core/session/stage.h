@@ -84,7 +84,7 @@ int stage_cut_ticks(const cau_cut_def *cut, double step_s);
 
 // ---- numbers
 double stage_mean_edge_m(const cau_session_info *info);
-// Largest distance (m) of a vertex of the frame from its position in `from` (m, n x 3).
+// Returns the largest distance (m) of a vertex of the frame from its position in `from` (m, n x 3).
 double stage_farthest(const cau_frame *frame, const double *from, int32_t vertex_count);
 double stage_seconds(void); // wall clock, for reports
 

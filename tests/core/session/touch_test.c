@@ -156,9 +156,9 @@ static int32_t vertices_within(const cau_session *session, double margin_m, bool
 	return count;
 }
 
-// A ball at a block with this many cells. Near vertices have contact constraints; if there are too
-// many, only touching vertices have constraints. Touching vertices without a constraint are
-// reported.
+// Puts a ball into a block with this many cells, and checks the constraints. Near vertices have
+// contact constraints; if there are too many, only touching vertices have constraints. Touching
+// vertices without a constraint are reported.
 static void check_rows(const int32_t cells[3], double radius_m, double depth_m, int32_t *left_out)
 {
 	const double touching_m = 2e-4; // a vertex nearer than this touches (thin.c)
