@@ -6,8 +6,8 @@
 #include "cautery/assert.h"
 
 // Capacity in pairs: PAIRS_OF_VERTEX for each vertex of the tissue, and PAIRS_BESIDES for small
-// tissue. It bounds memory: if the list is full, the search keeps only the pairs that this step
-// needs (find.c).
+// tissue. The capacity bounds memory: if the list is full, the search keeps only the pairs that
+// this step needs (find.c).
 enum { PAIRS_OF_VERTEX = 8, PAIRS_BESIDES = 4096 };
 
 // Contact stiffness of a vertex: of_inertia times mass over step squared, plus of_elements times

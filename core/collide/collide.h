@@ -4,7 +4,7 @@
 // A pair is a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
 // thickness h has an energy, which is part of eq. 4 (energy.c). For the distance d the energy is
 //
-//     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d),
+//     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d).
 //
 // The energy is continuous, with its slope and curvature [offset geometric contact, Chen et al.
 // 2025]. Below 0.002 h the force grows linearly, so the force is finite even where tissue
@@ -118,7 +118,8 @@ typedef struct cau_collide {
 	double *answer;     // N, (n x 3): result of cau_collide_apply, at loaded vertices
 	// State of the last filter, and counts of the tick.
 	double kept_share; // least share of its distance that a pair keeps in a step (filter.c)
-	// The last filter changed the step; it did so because pairs are not known farther.
+	// `held_back`: the last filter changed the step. `out_of_reach`: the filter changed the step
+	// because pairs farther away are not known.
 	bool held_back, out_of_reach;
 	int32_t held_back_count, search_count;
 	int32_t cut_short_count; // times that pairs exceeded the capacity, so that steps were shortened
@@ -133,7 +134,8 @@ typedef struct cau_collide {
 	cau_collide_slice *slice;                   // (blocks)
 	cau_collide_found *list[2];                 // by kind, (blocks x CAU_COLLIDE_SLICE)
 	uint8_t *alive_before[CAU_PRIMITIVE_KINDS]; // elements that were alive at the last search
-	// `exempt` at the last search or at the end of the last tick; all 1: unknown
+	// `exempt` at the last search or at the end of the last tick. All entries are 1 if this is
+	// unknown.
 	uint8_t *exempt_before;
 	// Boxes of the parts in groups of eight, in the order in which blocks list the parts. Each
 	// block begins a new group. `fresh_lane` has one bit for each part of a group: the part is
@@ -167,7 +169,7 @@ typedef struct cau_collide {
 cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
                               double friction, double step_s, cau_arena *arena, cau_error *error);
 
-// Length of the longest filtered step, m.
+// Returns the length of the longest filtered step, m.
 double cau_collide_most_step(const cau_collide *collide);
 
 // Begins a tick at positions x (m, n x 3). Before the call, list the drawn surface and fill
@@ -223,11 +225,11 @@ bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, b
 // distances.
 void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
 
-// A quick check for the steps of an iteration, most of which are short. The check does not visit
-// all vertices. Returns true if a step of at most `longest_m` from the present positions surely
-// keeps every vertex within its reach. Then fill `collide->step` only at the corners of the
-// `unclear` pairs, and call cau_collide_lets_pass. That function returns true if the step may be
-// taken unchanged. If either function returns false, call cau_collide_filter.
+// Checks quickly the steps of an iteration, most of which are short. The check does not visit all
+// vertices. Returns true if a step of at most `longest_m` from the present positions surely keeps
+// every vertex within its reach. Then fill `collide->step` only at the corners of the `unclear`
+// pairs, and call cau_collide_lets_pass. That function returns true if the step may be taken
+// unchanged. If either function returns false, call cau_collide_filter.
 bool cau_collide_foresee(cau_collide *collide, double longest_m);
 bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest_m);
 

@@ -8,7 +8,7 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double soft_share = 0.002; // share of the thickness: below it, force grows linearly
+static const double soft_share = 0.002; // share of the thickness below which force grows linearly
 enum { SHARE = 256 };                   // pairs in one share of the work
 
 static double potential(double stiffness, double thickness, double distance, double *slope,
@@ -29,8 +29,9 @@ static double potential(double stiffness, double thickness, double distance, dou
 	return scale * (0.5 + log(half / at)) + force * in + *curvature * in * in / 2;
 }
 
-// If a known direction separates the parts by more than the thickness, the nearest points are not
-// searched. This factor exceeds all rounding, so the result is the same without that shortcut.
+// Factor on the thickness. If a known direction separates the parts by more than the product, the
+// nearest points are not searched. The factor exceeds all rounding, so a search would give the same
+// result.
 static const double surely = 1 + 1e-9;
 
 double cau_collide_press(const cau_collide *collide, int32_t pair, const double *x, cau_gap *gap,
@@ -120,8 +121,8 @@ static void unload(cau_collide *collide)
 	collide->loaded_count = 0;
 }
 
-// The energy of friction is elastic up to the largest friction force, and has that constant force
-// beyond. The force is `present` times the slip.
+// Computes the energy of friction. The friction is elastic up to the largest friction force, and
+// beyond has this constant force. The force is `present` times the slip.
 double cau_collide_slip(const cau_collide *collide, const cau_collide_grip *grip, const double *x,
                         cau_vec3 *slip, double *present)
 {

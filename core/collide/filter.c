@@ -11,12 +11,15 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-// Share of its distance, or of the thickness if that is less, that a pair keeps in a step.
+// Share that a pair keeps in a step: of its distance, or of its thickness if the thickness is less.
 static const double kept_share = 0.2;
-// Share for the first guess, which so adds no contact energy.
+// The same share for the first guess. With 1, no pair comes nearer than its thickness, so the guess
+// adds no contact energy.
 static const double kept_by_guess = 1;
-static const double least_share = 0.005; // share of the thickness: a pair this near comes no nearer
-static const double just = 1 - 1e-6; // share of a reach, so that rounding leads no vertex beyond it
+// Distance, as a share of the thickness, below which a pair comes no nearer.
+static const double least_share = 0.005;
+// Share of a reach that a step may use. Rounding then leads no vertex beyond the reach.
+static const double just = 1 - 1e-6;
 enum { PASSES = 8 };
 
 typedef struct look {
@@ -59,7 +62,7 @@ static bool comes_near(const cau_collide *collide, cau_collide_pair *pair, const
 	if (cau_gap_along(pair->kind, l->corner, pair->plane) - most_closing(pair, l) >= clear)
 		return false;
 	cau_gap gap = cau_gap_between(pair->kind, l->corner);
-	if (!(gap.distance > 0)) // crossed before: no plane separates the sides
+	if (!(gap.distance > 0)) // the parts crossed before, so no plane separates them
 		return false;
 	pair->plane = l->normal = gap.normal;
 	l->distance = gap.distance;
@@ -136,8 +139,8 @@ static void part(cau_collide *collide, const cau_collide_pair *pair, const look 
 
 // ---- shortening, which alone prevents every crossing
 
-// Shortens the steps of a pair's corners to half of the distance that the pair may lose. This stays
-// enough, whatever other pairs shorten.
+// Shortens the steps of a pair's corners to half of the distance that the pair may lose. The pair
+// then cannot cross, however much other pairs shorten the steps.
 static void stop(cau_collide *collide, const cau_collide_pair *pair, const look *l)
 {
 	double most = fmax((l->distance - l->floor) / 2, 0);

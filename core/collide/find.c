@@ -263,9 +263,9 @@ static bool list_near(const cau_collide *collide, int what, int32_t block, wante
 	return near->count > 0;
 }
 
-// Near parts of two blocks, one kind of part of each block. Fresh parts of the first block are
-// compared with all parts of the second block. Other parts of the first block are compared only
-// with fresh parts of the second block.
+// Two lists to compare: `own` has parts of one kind in the first block, `others` parts of one kind
+// in the second block. Only parts near the other block are listed. If `own` lists fresh parts,
+// `others` lists all parts, otherwise only fresh parts.
 typedef struct meeting {
 	near_parts own, others;
 } meeting;

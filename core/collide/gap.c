@@ -19,7 +19,7 @@ static double within_unit(double a)
 }
 
 // Finds the point on the face of corners 1 to 3 that is nearest to corner 0. `b` is the share of
-// each corner in it.
+// each corner in that point.
 static void nearest_on_face(const cau_vec3 *corner, double b[3])
 {
 	cau_vec3 ab = cau_sub(corner[2], corner[1]), ac = cau_sub(corner[3], corner[1]);

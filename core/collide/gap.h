@@ -23,7 +23,7 @@ typedef struct cau_gap {
 cau_gap cau_gap_between(cau_gap_kind kind, const cau_vec3 *corner);
 double cau_gap_distance(cau_gap_kind kind, const cau_vec3 *corner); // returns only the distance, m
 
-// Number of corners that belong to the first part.
+// Returns the number of corners that belong to the first part.
 static inline int cau_gap_first(cau_gap_kind kind)
 {
 	return kind == CAU_GAP_VERTEX_FACE ? 1 : 2;

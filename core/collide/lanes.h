@@ -17,7 +17,8 @@ typedef struct cau_collide_lanes {
 	_Alignas(sizeof(float[CAU_LANE_QUAD])) float least[3][CAU_LANES], most[3][CAU_LANES];
 } cau_collide_lanes;
 
-// One box that is tested against groups.
+// Vectors of four floats and of four masks. cau_collide_asking is one box that is tested against
+// groups.
 typedef float cau_lane_quad __attribute__((vector_size(CAU_LANE_QUAD * sizeof(float)), may_alias));
 typedef int32_t cau_lane_mask
 	__attribute__((vector_size(CAU_LANE_QUAD * sizeof(float)), may_alias));

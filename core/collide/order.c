@@ -35,7 +35,8 @@ static int digit_of(const cau_collide_found *found, int digit)
 	return part >> (8 * (digit % (DIGITS / 2))) & (RADIX - 1);
 }
 
-// Returns false if all pairs have the same digit, so that none has to be moved.
+// Sorts the pairs by one digit. Returns false if all pairs have the same digit; then no pair is
+// moved.
 static bool sort_by_digit(const cau_collide_found *from, cau_collide_found *to, int32_t count,
                           int digit)
 {
@@ -86,7 +87,7 @@ void cau_collide_gather(cau_collide *collide)
 					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
 				if (collide->pair_count == collide->most_pairs)
 					return;
-				collide->apart_m[collide->pair_count] = 0; // not measured yet
+				collide->apart_m[collide->pair_count] = 0; // the distance is not measured yet
 				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
 				pair->kind = (cau_gap_kind)kind;
 				pair->thickness_m = found->thickness_m;

@@ -6,12 +6,13 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-// A pair's thickness is at most this share of its distance at rest. Neighbours, between which the
+// Largest thickness of a pair, as a share of its distance at rest. Neighbours, between which the
 // surface itself may contract, have the smaller share.
 static const double near_share = 0.1, far_share = 0.5;
-// Share of the surface's thickness; a pair of less thickness is left out.
+// Least thickness of a pair, as a share of the surface's thickness. A pair of less thickness is
+// left out.
 static const double least_thickness = 0.002;
-// A factor that exceeds any rounding of a distance.
+// Factor on a distance that exceeds any rounding of the distance.
 static const double surely = 1 + 1e-6;
 
 // Each kind of pair is compiled by itself, with the kind as a constant.

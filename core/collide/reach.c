@@ -8,13 +8,14 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-// Share of the thickness: a pushed vertex may always move this far.
+// Distance that a pushed vertex may always move, as a share of the thickness.
 static const double least_room = 0.4;
-static const double room_of_step = 1.5; // share of its step: a pushed vertex may move this far
-// Share of the thickness: extra reach for the steps of an iteration.
+// Distance that a pushed vertex may move, as a share of its step.
+static const double room_of_step = 1.5;
+// Extra reach for the steps of an iteration, as a share of the thickness.
 static const double room_of_tick = 0.1;
-static const double ahead = 0.3;   // share of the thickness: extra reach for later ticks
-static const double used_up = 0.6; // share of the reach: vertices beyond it get new anchors
+static const double ahead = 0.3;   // extra reach for later ticks, as a share of the thickness
+static const double used_up = 0.6; // share of the reach; vertices beyond get new anchors
 enum { TRIES = 12 };
 
 double cau_collide_most_room(const cau_collide *collide, double step_m)
@@ -100,7 +101,8 @@ static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_ne
 }
 
 // Searches only the pairs that the step needs, or with a share of that reach. A search with a
-// longer reach would find all of these pairs too. So it cannot succeed where this search fails.
+// longer reach would find all of these pairs too. So a search with a longer reach cannot succeed
+// where this search fails.
 static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
                          cau_collide_need need, double share)
 {

@@ -173,8 +173,8 @@ static void turn_over(int32_t *block[2], int32_t count)
 	memset(block[0], 0xff, (size_t)count * sizeof(int32_t));
 }
 
-// Marks the corners of edges and vertices that are now listed by another block than before, or by
-// none, or were listed by none.
+// Marks the corners of edges and vertices that are now listed by another block than before, or that
+// only began or only ceased to be listed.
 static void compare_places(cau_surface *surface)
 {
 	int32_t *const *edge = surface->edge_block, *const *vertex = surface->vertex_block;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surface that can touch: the drawn faces with their edges and vertices, in blocks of faces
-// that are near each other at rest. The faces that a block may list are fixed. Its lists and their
-// order follow only from which faces are drawn.
+// that are near each other at rest. The faces that a block may list are fixed. A block's lists and
+// their order depend only on which faces are drawn.
 #pragma once
 
 #include <stdbool.h>
@@ -30,7 +30,7 @@ typedef struct cau_surface {
 	int32_t *order; // (face_count): all faces, ordered by position at rest
 	int32_t *own;   // (block_count + 1): block b has the faces order[own[b]] to order[own[b + 1]]
 	int32_t *face_edge; // (face_count x 3): edges, found when a face is first drawn; -1 before
-	// The block that lists each edge or vertex; -1: none. Index 0: present lists, 1: the lists
+	// The block that lists each edge or vertex; -1: no block. Index 0: present lists, 1: the lists
 	// before.
 	int32_t *edge_block[2], *vertex_block[2];
 	// (vertex_count): corners of parts whose listing began, ended or moved to another block. The

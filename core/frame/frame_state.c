@@ -78,7 +78,7 @@ static void expose_edge(cau_frame_state *frame, const cau_dissection *dissection
 	}
 }
 
-// Counts an edge that has parted in any layer, once, at both its ends.
+// Counts a parted edge at both ends. An edge counts once, even if it has parted in several layers.
 static void char_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
 {
 	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);

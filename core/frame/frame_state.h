@@ -29,11 +29,12 @@ typedef struct cau_frame_state {
 cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
                             const cau_dissection *dissection, cau_arena *arena, cau_error *error);
 
-// Called after a tick. `from` is the position at its start, `to` at its end (n x 3).
+// Updates the frame after a tick. `from` has the positions at the tick's start, `to` those at its
+// end (n x 3).
 void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, const double *from,
                       const double *to);
 
-// Called after a tick at rest: no vertex moved and no element was cut.
+// Updates the frame after a tick at rest: no vertex moved and no element was cut.
 void cau_frame_stand_still(cau_frame_state *frame);
 
 // Computes everything again, after creation and restore. Marks every vertex as moved and every word

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress channel: small-strain von Mises stress from the fat's Green strain. It is a picture,
-// not a design value: it shows where tissue is strained, in the units of the tissue's Young's
+// The stress channel: small-strain von Mises stress from the fat's Green strain. The channel is for
+// display, not for design: it shows where tissue is strained, in the units of the tissue's Young's
 // modulus.
 #include <math.h>
 #include <string.h>

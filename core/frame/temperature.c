@@ -7,7 +7,7 @@
 #include "cautery/assert.h"
 #include "frame/frame_state.h"
 
-static const double BOX_MARGIN_M = 1e-6; // the blocks' boxes are in single precision
+static const double BOX_MARGIN_M = 1e-6; // m; rounding of the blocks' boxes to single precision
 
 void cau_frame_cool(cau_frame_state *frame, const cau_tissue *tissue, double ambient_c)
 {

@@ -38,7 +38,8 @@ static int lowest_corner(const int32_t *vertex, int count, const int32_t *map)
 	return lowest;
 }
 
-// Whether the two triangles of a quadrangle that is cut from this corner face the same way.
+// Whether the two triangles of a quadrangle that is cut along the diagonal from `corner` face the
+// same way.
 static bool is_convex_cut(const double *position, const int32_t vertex[4], int corner)
 {
 	double first[3], second[3];

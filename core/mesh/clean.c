@@ -153,7 +153,8 @@ static cau_status merge_vertices(cau_mesh *mesh, int32_t *map, int32_t *merged, 
 	if (!cau_vertex_merge_near(mesh->position, mesh->vertex_count, map))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for merging vertices");
 	map_corners(mesh, map);
-	*merged = drop_unused(mesh, map); // exactly the merged vertices, because all others are used
+	// These are exactly the merged vertices, because all other vertices are used.
+	*merged = drop_unused(mesh, map);
 	CAU_ASSERT(*merged >= 0 && mesh->vertex_count > 0, "%d vertices merged, %d left", *merged,
 	           mesh->vertex_count);
 	return CAU_OK;
@@ -390,7 +391,7 @@ cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *er
 		status = drop_thirds(mesh, &done->third_tetrahedra, error);
 	if (!status)
 		unused = drop_unused(mesh, map); // vertices of removed elements
-	if (!status)                         // the rest may be far smaller than the whole mesh
+	if (!status)                         // the remaining mesh may be far smaller than before
 		status = check_bounds(mesh, error);
 	done->unused_vertices += unused;
 	done->duplicate_elements += repeated;

@@ -68,8 +68,8 @@ static bool reserve(cau_face_table *table, int32_t tetrahedron_count)
 	       table->triangle_covers;
 }
 
-// Fills the sheets' own faces. They have no owner and no cover. What the triangles cover is found
-// with the tetrahedra's faces.
+// Fills the sheets' own faces. They have no owner and no cover. fill_fat_face finds which face of a
+// tetrahedron a triangle covers.
 static void fill_sheet_faces(const cau_primitives *p, cau_face_table *table)
 {
 	if (p->triangle_count)

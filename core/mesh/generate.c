@@ -88,8 +88,8 @@ static void fill_lattice(cau_mesh *mesh, const double size_m[3], const int32_t c
 			}
 }
 
-// Each cell has two triangles, counter-clockwise seen from +z. The diagonal goes from the cell's
-// corner of least x and y to that of greatest x and y, as on the top of a slab.
+// Makes a sheet. Each cell has two triangles, counter-clockwise seen from +z. The diagonal goes
+// from the cell's corner of least x and y to that of greatest x and y, as on the top of a slab.
 cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
 {
 	*mesh = (cau_mesh){0};
@@ -165,8 +165,8 @@ cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error
 	return CAU_OK;
 }
 
-// Figure 5: a closed fan of cells[0] triangles around vertex 0. The rim is on the ellipse with the
-// axes size_m[0] along x and size_m[1] along y. The rim starts on +x.
+// Makes the pattern of figure 5: a closed fan of cells[0] triangles around vertex 0. The rim is on
+// the ellipse with the axes size_m[0] along x and size_m[1] along y. The rim starts on +x.
 cau_status cau_mesh_make_pattern(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
 {
 	*mesh = (cau_mesh){0};

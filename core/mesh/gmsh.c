@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1), 4.0 and 4.1. First come the types of
-// elements, then the contents of each version's sections, then the loop over the sections. Formats:
-// Gmsh's reference manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2). All failures go
-// to the scan.
+// Reads Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1), 4.0 and 4.1. This file has first the types
+// of elements, then the contents of each version's sections, then the loop over the sections.
+// Formats: Gmsh's reference manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2). All
+// failures go to the scan.
 #include <stdlib.h>
 #include <string.h>
 

@@ -48,7 +48,7 @@ cau_status cau_mesh_report_refuse(const cau_mesh_report *report, cau_error *erro
 bool cau_is_tissue_size(double longest_m);
 // Returns the unit, in m, in which a file with this longest extent is most likely written.
 double cau_guess_unit(double longest);
-const char *cau_unit_name(double unit_m); // such as "millimetres"
+const char *cau_unit_name(double unit_m); // returns for example "millimetres"
 
 // Generators of meshes (used by deploy/scenes). cau_mesh_def describes the sizes.
 cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error);

@@ -13,7 +13,7 @@ typedef enum cau_shape {
 	CAU_SHAPE_PYRAMID,
 	CAU_SHAPE_WEDGE,
 	CAU_SHAPE_HEXAHEDRON,
-	CAU_SHAPE_COUNT, // number of shapes; also means none of them
+	CAU_SHAPE_COUNT, // number of shapes; as a shape it means: no shape
 } cau_shape;
 
 enum { CAU_CORNERS_MAX = 8, CAU_REGION_NAMES_MAX = 4096 };

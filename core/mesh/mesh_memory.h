@@ -11,7 +11,7 @@
 // The largest table has six edges for each tetrahedron.
 enum {
 	CAU_MESH_MAX_VERTICES = 8000000,
-	CAU_MESH_MAX_ELEMENTS = 16000000, // of each kind
+	CAU_MESH_MAX_ELEMENTS = 16000000, // largest number of elements of each kind
 };
 
 // Returns `count` zeroed items, or NULL if memory ran out. If `count` is 0, the result is not NULL.

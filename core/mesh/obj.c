@@ -40,7 +40,7 @@ static void read_vertex(obj *o)
 static void read_texture(obj *o)
 {
 	double u = cau_scan_word_real(o->scan, cau_scan_word_of_line(o->scan), "a texture coordinate");
-	cau_word word = cau_scan_word_of_line(o->scan); // v may be missing
+	cau_word word = cau_scan_word_of_line(o->scan); // the coordinate v may be missing
 	double v = word.length ? cau_scan_word_real(o->scan, word, "a texture coordinate") : 0;
 	if (o->texture_count == o->texture_capacity) {
 		int32_t capacity = o->texture_capacity ? 2 * o->texture_capacity : 64;

@@ -219,7 +219,7 @@ static void read_elements(ply *p)
 {
 	for (int e = 0; e < p->element_count && !p->scan->status; e++) {
 		const element *of = &p->element[e];
-		if (of->property_count) // otherwise the elements take no bytes
+		if (of->property_count) // elements without properties take no bytes
 			cau_scan_check_count(p->scan, of->name, of->count, 1);
 		for (int64_t i = 0; i < of->count && of->property_count && !p->scan->status; i++)
 			read_one(p, of);

@@ -128,7 +128,7 @@ static int32_t count_components(const int32_t *element, int32_t count, int corne
 {
 	int32_t components = 0;
 	for (int32_t v = 0; v < vertex_count; v++)
-		parent[v] = -1; // of no element yet
+		parent[v] = -1; // the vertex belongs to no element yet
 	for (size_t i = 0; i < (size_t)count * (size_t)corners; i++)
 		if (parent[element[i]] < 0) {
 			parent[element[i]] = element[i];

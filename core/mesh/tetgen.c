@@ -37,8 +37,8 @@ static int rest_of_header(cau_scan *scan, int64_t number[2])
 	return 2;
 }
 
-// Reads points, 3, attributes, 0 or 1 (a marker), then for each point: number x y z attributes
-// marker. Returns the number of the first point, 0 or 1.
+// Reads the header: number of points, 3, number of attributes, 0 or 1 marker. Then reads for each
+// point: number x y z attributes marker. Returns the number of the first point, 0 or 1.
 static int64_t read_nodes(cau_mesh_builder *builder)
 {
 	cau_scan *scan = builder->scan;
@@ -100,8 +100,9 @@ static void read_element(cau_mesh_builder *builder, cau_shape shape, int64_t nod
 	                      reduced);
 }
 
-// Reads elements. A .ele file has elements, 4 or 10, attributes. A .face file has faces, 0 or 1 (a
-// marker). The first attribute, or the marker, is the region.
+// Reads elements. The header of a .ele file is: number of elements, 4 or 10 corners, number of
+// attributes. The header of a .face file is: number of faces, 0 or 1 marker. The first attribute,
+// or the marker, is the region.
 static void read_elements(cau_mesh_builder *builder, int64_t first)
 {
 	cau_scan *scan = builder->scan;

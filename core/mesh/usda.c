@@ -106,7 +106,7 @@ static void add_number(usda *u, numbers *to, double number)
 static void read_numbers(usda *u, numbers *to)
 {
 	if (!token_is(next_token(u->scan), '='))
-		return; // declared without a value, or with time samples
+		return; // the attribute has no value, or has time samples
 	if (!token_is(next_token(u->scan), '['))
 		cau_scan_fail(u->scan, CAU_BAD_SYNTAX, "expected [");
 	to->count = 0;

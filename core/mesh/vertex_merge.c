@@ -8,7 +8,7 @@
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
-static const double near = 1e-5; // share of the bounding diagonal
+static const double near = 1e-5; // share of the bounding diagonal within which vertices merge
 
 typedef struct grid {
 	const double *position;
@@ -46,8 +46,8 @@ static bool is_near(const grid *g, int32_t a, int32_t b)
 	return square < g->distance * g->distance;
 }
 
-// Returns the lowest entered vertex that is near `vertex`, or `vertex` itself. Searches its cell
-// and the 26 cells around.
+// Returns the lowest entered vertex that is near `vertex`, or `vertex` itself. Searches the cell of
+// `vertex` and the 26 cells around.
 static int32_t find_near(const grid *g, int32_t vertex, const int64_t cell[3])
 {
 	int32_t lowest = vertex;

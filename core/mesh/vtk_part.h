@@ -13,7 +13,7 @@ typedef struct cau_vtk {
 	int32_t cell_count;
 	// Corners of the cells in CELLS, whose types are not read yet, (corner_count).
 	int64_t *corner;
-	int64_t *first; // (waiting_count + 1): start of each of these cells in `corner`
+	int64_t *first; // (waiting_count + 1): start of each waiting cell in `corner`
 	int64_t waiting_count;
 	int32_t *cell_region; // (region_count), or NULL
 	int64_t region_count;

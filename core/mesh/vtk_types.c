@@ -113,8 +113,7 @@ static void add_known(cau_mesh_builder *builder, int64_t type, const int64_t *co
 	}
 	if (!take_corners(builder, corner, wanted, cell, vertex))
 		return;
-	if (type == VTK_PIXEL ||
-	    type == VTK_VOXEL) // their corners are ordered by rows, not around the cell
+	if (type == VTK_PIXEL || type == VTK_VOXEL) // corners in rows, not around the cell
 		for (int i = 2; i < wanted; i += 4) {
 			int32_t third = vertex[i];
 			vertex[i] = vertex[i + 1];

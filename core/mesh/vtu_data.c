@@ -9,9 +9,9 @@
 #include "mesh/mesh_memory.h"
 
 enum {
-	DEFLATE_RATIO_MAX = 1032,    // no zlib stream grows by a larger factor
+	DEFLATE_RATIO_MAX = 1032,    // largest factor by which a zlib stream grows
 	DATA_BYTES_MAX = 1 << 30,    // most bytes of one array
-	NUMBER_TEXT_BYTES_LEAST = 2, // a digit and a blank
+	NUMBER_TEXT_BYTES_LEAST = 2, // least bytes of a number as text: a digit and a blank
 };
 
 typedef struct bytes {
@@ -181,7 +181,8 @@ static double *read_text(const cau_vtu_coding *coding, const cau_vtu_array *arra
 {
 	size_t capacity = array->text_bytes / NUMBER_TEXT_BYTES_LEAST + 1;
 	double *number = cau_mesh_array(capacity, sizeof *number);
-	cau_scan scan = *coding->scan; // so that messages count lines from the start of the file
+	cau_scan scan = *coding->scan; // a copy of the file's scan, so that messages count lines from
+	                               // the start of the file
 	scan.at = (size_t)(array->text - scan.bytes);
 	scan.count = scan.at + array->text_bytes;
 	if (!number)

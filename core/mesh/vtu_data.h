@@ -11,7 +11,7 @@ typedef struct cau_vtu_coding {
 	int header_bytes; // bytes of each number before the data: 4 or 8
 	bool swap;
 	bool zlib;
-	const unsigned char *appended; // data after the underscore, (appended_bytes); NULL: none
+	const unsigned char *appended; // data after the underscore, (appended_bytes), or NULL
 	size_t appended_bytes;
 	bool appended_base64;
 } cau_vtu_coding;

@@ -15,8 +15,9 @@ static cau_vec3 elastic_gradient(const cau_session *session, int32_t vertex)
 	return cau_vec3_of(g);
 }
 
-// Copies the rotations that elements keep between evaluations, and from which the next step starts,
-// to `kept`, or back from it (`restore`). Returns the copied bytes.
+// Copies the elements' rotations to `kept`, or with `restore` from `kept` to the elements. The
+// elements keep these rotations between evaluations, and the next step starts from them. Returns
+// the number of copied bytes.
 static size_t pass_polars(void *const *polar, int arrays, size_t array_bytes, char *kept,
                           bool restore)
 {

@@ -115,8 +115,8 @@ static cau_status check_shrink(const double *shrink, int count, const char *path
 	return CAU_OK;
 }
 
-// The target T must be symmetric positive definite. Its eigenvalues are squared stretches, from
-// 1e-4 to 100.
+// Checks a target T, which must be symmetric positive definite. The eigenvalues are squared
+// stretches, from 1e-4 to 100.
 static cau_status check_target(const double eigen[3], int count, const char *path, cau_error *error)
 {
 	for (int i = 0; i < count; i++)
@@ -224,9 +224,9 @@ cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *err
 	return status;
 }
 
-// Least heat capacity of a blade: 0.01 J/K is that of 2.5 mm^3 of steel. With a lighter blade the
-// heat step would need more than two substeps: closed jaws of 20 x 4 mm touch cells of 0.25 mm with
-// 0.6 W/K.
+// Least heat capacity of a blade, J/K: that of 2.5 mm^3 of steel. With a lighter blade the heat
+// step would need more than two substeps: closed jaws of 20 x 4 mm touch cells of 0.25 mm with 0.6
+// W/K.
 static const double least_blade_j_k = 0.01;
 
 static cau_status check_blade(const cau_tool_def *tool, const char *path, cau_error *error)

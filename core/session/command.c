@@ -8,7 +8,8 @@
 #include "tissue/regions.h"
 
 // ---- submission
-// Region 0 is always accepted: it means the layer's default if the layer's mesh has no region 0.
+// Checks a SET_MATERIAL. Region 0 is always accepted: it means the layer's default if the layer's
+// mesh has no region 0.
 static cau_status check_material(const cau_session *session, const cau_command *command,
                                  cau_error *error)
 {
@@ -79,8 +80,9 @@ static bool is_added(const cau_session *session, const char *tool)
 	return cau_session_find_tool(session, tool) >= 0;
 }
 
-// An energy-off or a hold that is due acts at once and needs no capacity in the queue (still.c). If
-// its tool does not exist, the command is queued, and the tick refuses it.
+// True for an energy-off or a hold that is due: such a command acts at once and needs no capacity
+// in the queue (still.c). If its tool does not exist, the command is queued, and the tick refuses
+// it.
 static bool acts_at_once(cau_session *session, const cau_command *command)
 {
 	bool off = command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;
@@ -137,8 +139,8 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 }
 
 // ---- application
-// Whether the tool's heat grid and grasp also suit the new definition. They depend on these members
-// only.
+// True if the tool's heat grid and grasp also suit the new definition. They depend only on the
+// members that are compared here.
 static bool has_form(const cau_tool_def *now, const cau_tool_def *def)
 {
 	return now->shape == def->shape && now->hot_radius_m == def->hot_radius_m &&
@@ -294,8 +296,8 @@ static int32_t void_older(cau_session *session, const cau_command *command, int3
 	return kept;
 }
 
-// A command that does not suit the present state is refused and reported. Only a numerical error or
-// lack of memory ends the step.
+// Applies the commands that are due. A command that does not suit the present state is refused and
+// reported. Only a numerical error or lack of memory ends the step.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 {
 	cau_status status = CAU_OK;

@@ -56,8 +56,8 @@ static cau_status allocate_state(cau_session *session, cau_error *error)
 // Approximate memory of a session per vertex and per element, before the factor's size is known.
 // The numbers are those of sheets and slabs of 10,000 to 250,000 vertices.
 enum { BYTES_OF_VERTEX = 1000, BYTES_OF_ELEMENT = 400 };
-// For each entry CHOLMOD keeps a number of 8 bytes and a row index of 4. The packed panels and the
-// other arrays of this size take about as much again.
+// Approximate memory for each entry of the factor. CHOLMOD keeps a number of 8 bytes and a row
+// index of 4. The packed panels and the other arrays of this size take about as much again.
 enum { BYTES_OF_FACTOR_ENTRY = 24 };
 // Memory that Newton's method needs for each entry of the factor: a block and its row index
 // (solve/newton.h).

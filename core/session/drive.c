@@ -6,7 +6,7 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double farthest_m = 1000; // the limit of all positions in the input
+static const double farthest_m = 1000; // m; the limit of all positions in the input
 
 static cau_status check_driven(const cau_session *session, int32_t vertex, const double at[3],
                                cau_error *error)

@@ -10,30 +10,30 @@
 
 enum {
 	CELLS_MOST = 1 << 16,
-	ADDED_A_TICK = 1000, // cells; they take about half a millisecond
-	// New cells follow heat only while there are fewer cells than this. The remaining capacity is
-	// for tools.
+	ADDED_A_TICK = 1000, // most cells that a tick adds; this takes half a millisecond
+	// Number of cells from which on no more cells are added where heat spreads. The remaining
+	// capacity is for cells near tools.
 	FOLLOWED_MOST = CELLS_MOST / 4 * 3,
-	FOLLOW_TURNS = 60, // each element is visited once in this many ticks, because heat is slow
-	ITERATIONS = 60,   // largest number for the potential, which starts from the last tick's
+	FOLLOW_TURNS = 60, // ticks in which each element is visited once; heat is slow
+	ITERATIONS = 60,   // most iterations for the potential, from that of the last tick
 };
 
 static const double filled_m = 3e-3; // elements nearer than this to a hot part get cells
 // Elements nearer than this to a hot part get cells in this tick, beyond ADDED_A_TICK.
 static const double urgent_m = 1e-3;
-// Distance around an electrode within which cells carry its current.
+// Distance, m, around an electrode within which cells carry its current.
 static const double reach_m = 3e-3;
 static const double residual_most = 1e-3; // largest residual of the potential
 static const double spark_v = 200;   // peak voltage above which a metal electrode sparks to tissue
-static const double spark_v_m = 3e6; // breakdown field of air
-// A generator measures no load below this conductance. The largest voltage of any generator, 10 kV,
-// would give 0.1 mW there.
+static const double spark_v_m = 3e6; // breakdown field of air, V/m
+// Least conductance, S, that a generator measures as a load. At this conductance the largest
+// voltage of any generator, 10 kV, would give 0.1 mW.
 static const double least_conductance_s = 1e-12;
-// Radius of the spot through which an arc enters tissue; no measurement was found. Most of the
+// Radius, m, of the spot through which an arc enters tissue. No measurement was found. Most of the
 // resistance and most of the heat are at the spot.
 static const double spot_m = 1e-4;
 static const double cold_k = 0.01; // K: a blade closer to the surroundings counts as cold
-// Temperature above the surroundings; warmer tissue gets cells for its neighbours too.
+// Temperature above the surroundings, K. The neighbours of tissue that is warmer get cells too.
 static const double warm_k = 3;
 // Share of the water that tissue still has when it bursts. No measurement was found. Steam in
 // tissue that holds 1 MPa has 180 degC. When the pressure is released, a sixth of such water boils
@@ -134,14 +134,14 @@ static double hot_distance(const cau_tool *tool, cau_vec3 point)
 	                            CAU_PART_HOT, point, NULL);
 }
 
-// Largest distance of a cell's middle from metal that touches the cell: half a cell, and a fiftieth
-// of that for rounding.
+// Returns the largest distance of a cell's middle from metal that touches the cell: half a cell,
+// and a fiftieth of that for rounding.
 static double reach_of_metal_m(const cau_session *session)
 {
 	return 0.51 * session->scene->cell_m;
 }
 
-// Distance from the hot part within which metal or sparks reach a cell's middle.
+// Returns the distance from the hot part within which metal or sparks reach a cell's middle.
 static double touch_m(const cau_session *session, const cau_tool *tool)
 {
 	double peak_v = tool->state.definition.peak_v;
@@ -319,8 +319,8 @@ static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 			(cau_contact_cell){.blade = index, .cell = cell, .over_length_m = pressed ? over : 0};
 }
 
-// Each tick updates the pull-back of every eighth cell, because deformation changes little from
-// tick to tick.
+// Number of ticks in which the pull-back of every cell is updated once. Each tick updates every
+// eighth cell, because deformation changes little from tick to tick.
 enum { STRETCH_TURNS = 8 };
 
 // Arcs jump to all cells within their reach. Averaged over a tick, the cells share one spot
@@ -340,7 +340,8 @@ static bool may_reach(const cau_session *session, const cau_tool *tool, int32_t 
 	return hot_distance(tool, middle) <= radius + reach;
 }
 
-// Most elements have their cells one after another, so each element is tested only once.
+// Finds the cells that tool `index` touches or reaches by sparks. Most elements have their cells
+// one after another, so each element is tested only once.
 static void find_touched(cau_session *session, int32_t index, const edge_visit *visit)
 {
 	cau_tissue_cells *cells = session->cells;
@@ -373,7 +374,8 @@ static void rub(const cau_session *session, cau_tool *tool)
 }
 
 // Whether an advanced bipolar generator has ended. As tissue dries, its load rises above the least
-// load. At the given rise the generator ends, until energy goes off and on again.
+// load. The generator ends at the rise load_rise_off, and stays off until energy goes off and on
+// again.
 static bool has_ended(const cau_tool *tool)
 {
 	return tool->state.definition.load_rise_off > 0 && tool->least_ohm < 0;

@@ -21,12 +21,13 @@ static void exempt_held(cau_session *session)
 		for (int32_t k = 0; k < session->tool[i].grasp_count; k++) {
 			const cau_grasp *grasp = &session->tool[i].grasp[k];
 			for (int c = 0; c < 3; c++)
-				if (grasp->vertex[c] >= 0) // a vertex, or the corners of a face
+				if (grasp->vertex[c] >= 0) // the held vertex, or the corners of the held face
 					exempt[grasp->vertex[c]] = 1;
 		}
 }
 
-// Excludes the vertices of inverted tetrahedra. Returns true if there are too many of these.
+// Excludes the vertices of inverted tetrahedra. Returns true if more than most_inverted_share of
+// all tetrahedra are inverted.
 static bool exempt_inverted(cau_session *session)
 {
 	const cau_tissue *tissue = &session->tissue;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What jaws grasp: vertices between the jaws (touch.c) or, if there are none, points of faces. Jaws
-// that are smaller than the elements may have no vertex between them. A hold on a point pulls at
-// the corners of its face by their weights, as contact does (solve/contact.h). So the tissue moves
-// with the jaws from its position at closing, and nothing jumps.
+// Jaws grasp vertices between them (touch.c) or, without such vertices, points of faces. Jaws that
+// are smaller than the elements may have no vertex between them. A hold on a point pulls at the
+// corners of its face by their weights, as contact does (solve/contact.h). So the tissue moves with
+// the jaws from its position at closing, and nothing jumps.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"
@@ -87,8 +87,8 @@ static cau_vec3 local_point(const holding *h, const int32_t vertex[3], const dou
 }
 
 // Finds the two points of a face between jaws of this opening that are farthest apart along and
-// across the jaws. Two points keep the face from turning about one. Returns how many points there
-// are.
+// across the jaws. A face that is held at two points cannot turn about one point. Returns how many
+// points there are.
 static int find_points(const holding *h, const int32_t vertex[3], double jaw, double weight[2][3])
 {
 	double least = HUGE_VAL, most = -HUGE_VAL;

@@ -8,7 +8,8 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Inversions of a fast motion last for some ticks. An inversion of half a second has another cause.
+// Time, s, from which on an inversion is counted as long. Inversions of a fast motion last only
+// some ticks. An inversion of half a second has another cause.
 static const double long_s = 0.5;
 
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error)

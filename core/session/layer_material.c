@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets a command's material in a layer's definition, or finds that the layer has it already.
+// Sets a command's material in a layer's definition, or finds that the layer has this material
+// already.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Index of the region's material; 0 (the default) if the region has none.
+// Returns the index of the region's material; 0 (the default) if the region has no material of its
+// own.
 static int32_t find_material(const cau_layer_def *def, bool fat, int32_t region)
 {
 	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",
@@ -36,8 +38,8 @@ bool cau_layer_take_material(cau_layer_def *def, const cau_command *command)
 	return true;
 }
 
-// ---- whether it has the material already
-// Compares field by field, because the padding bytes between fields may differ.
+// ---- whether the layer has the material already Compares field by field, because the padding
+// bytes between fields may differ.
 
 #define SAME(name, ...) &&a->name == b->name
 

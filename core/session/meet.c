@@ -6,7 +6,8 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// Substeps of the first guess. Each continues from the end of the reach of the one before.
+// Largest number of substeps of the first guess. Each substep starts where the substep before it
+// ended.
 enum { MOST_LEGS = 16 };
 
 cau_status cau_session_make_collide(cau_session *session, cau_error *error)
@@ -65,12 +66,12 @@ static void go_in_legs(cau_session *session, const double *guess, double *at)
 	}
 }
 
-// Replaces the first guess by its part that tissue contact permits.
+// Shortens the first guess to the motion that tissue contact permits.
 static void stop_guess(cau_session *session, double *guess)
 {
 	cau_step_solver *solver = &session->solver;
 	cau_collide *collide = solver->collide;
-	double *at = solver->position_before; // free until the solve
+	double *at = solver->position_before; // the solver does not use this array before the solve
 	memcpy(at, session->position_start, 3 * (size_t)session->tissue.vertex_count * sizeof(double));
 	go_in_legs(session, guess, at);
 	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {

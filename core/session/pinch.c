@@ -19,8 +19,8 @@
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"
 
-static const double jaw_per_s = 8;     // a full stroke takes an eighth of a second
-static const double least_share = 0.4; // of the tissue's thickness when jaws grasped it
+static const double jaw_per_s = 8;     // full strokes of the jaws in a second
+static const double least_share = 0.4; // least share of the thickness at grasping
 
 typedef struct extent { // angles of the held points, or of the faces of the jaws
 	double low, high;   // rad
@@ -87,7 +87,7 @@ void cau_session_begin_pinch(const cau_session *session, cau_tool *tool)
 	double thickest = 0;
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		const cau_grasp *grasp = &tool->grasp[k];
-		// at least half the jaw's length, so that the angle stays finite at the hinge
+		// The arm is at least half the jaw's length, so that the angle stays finite at the hinge.
 		double arm = fmax(jaws.hinge_m - grasp->local[2], jaws.hinge_m / 2);
 		thickest = fmax(thickest, thickness_m(session, grasp) / arm);
 	}
@@ -97,8 +97,8 @@ void cau_session_begin_pinch(const cau_session *session, cau_tool *tool)
 
 // ---- pressing
 
-// Motion of a grasped point per angle of the jaws, m/rad. It is 0 for all points until both faces
-// touch the tissue.
+// Returns the motion of a grasped point per angle of the jaws, m/rad. The motion is 0 for all
+// points until both faces touch the tissue.
 static cau_vec3 way_of(const cau_tool_jaws *jaws, extent held, extent faces, const cau_grasp *grasp)
 {
 	double width = held.high - held.low;
@@ -130,7 +130,8 @@ void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index)
 	tool->state.jaw_force_n = fmax(moment, 0) / tool->state.definition.tip_length_m;
 }
 
-// Returns the angle, rad, by which the jaws may still close. It is below 0 if they press too hard.
+// Returns the angle, rad, by which the jaws may still close. The angle is below 0 if the jaws press
+// too hard.
 static double yield_of(const cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;

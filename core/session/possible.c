@@ -21,7 +21,7 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double fastest_m_s = 1540; // sound in soft tissue
+static const double fastest_m_s = 1540; // speed of sound in soft tissue
 static const double most_stretch = 50, most_sizes = 2;
 static const double most_inverted = 0.9;
 enum { EDGES_IN_CHUNK = 4096 };

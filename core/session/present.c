@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Returns a session's definition in its present state. It includes all changes by commands, also by
-// queued ones. So a client that has the answer to a command finds its effect here, even while the
-// session is paused.
+// Returns a session's definition in its present state. The definition includes all changes by
+// commands, also by queued commands. So a client that has the answer to a command finds the
+// command's effect here, even while the session is paused.
 #include <string.h>
 
 #include "cautery/assert.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tool has a commanded pose and an actual pose. A driver leads the commanded pose within the
-// tool's speed limits (tool_motion.c). The actual pose is coupled to it by a spring
+// tool's speed limits (tool_motion.c). The actual pose is coupled to the commanded pose by a spring
 // (solve/coupling.h). A tick begins with a guess of the actual pose, with which contacts are found.
 // The solve then returns the actual pose.
 //
@@ -15,10 +15,13 @@
 #include "session/session_internal.h"
 #include "solve/coupling.h"
 
-static const double most_behind_m = 0.04; // ten times the spring's greatest extension
-// A tool that was stopped tries an eighth of its way, and twice as much after each tick without a
-// stop: three ticks bring it back to full speed. least_pace is an eighth of an eighth of an
-// eighth: a tool that is stopped again and again still tries.
+// Distance, m, to the commanded pose beyond which a tool jumps to that pose: ten times the spring's
+// greatest extension.
+static const double most_behind_m = 0.04;
+// Factors on the share of its motion that a tool tries in a tick. A stop reduces the share to an
+// eighth. Each tick without a stop doubles the share, so three ticks bring a tool back to full
+// speed. The share never falls below least_pace, so a tool that is stopped again and again still
+// moves.
 static const double slower = 1.0 / 8, faster = 2, least_pace = 1.0 / 512;
 
 static cau_vec3 offset_of(const cau_pose *pose, const cau_pose *anchor)

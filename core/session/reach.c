@@ -18,20 +18,21 @@
 #include "tool/face_distance.h"
 
 static const double touch_m = 1e-5; // a face nearer than this touches the tool
-// A face that is deeper in the tool than `dip` gets a contact constraint from the next step on. The
-// constraint still permits a depth of `stand`, because a flat face and a round tip may differ by
-// that. A face held exactly at the surface would be pressed as if the tip were larger. Each is the
-// smaller of a length and a share of the tip's radius.
+// Two depths of a face in a tool. A face deeper than `dip` gets a contact constraint from the next
+// step on. `stand` is the depth that the constraint still permits, because a flat face and a round
+// tip may differ by this depth. A face held exactly at the surface would be pressed as if the tip
+// were larger. Both limits are the smaller of a length and a share of the tip's radius.
 static const double dip_m = 6e-5, dip_share = 0.3;
 static const double stand_m = 8e-5, stand_share = 0.03;
-// A face needs no second constraint nearer than the distance at which a round tip has curved away
-// by this.
+// Height, m, by which a round tip curves away from a face between two constraints of this face. A
+// second constraint nearer than that is not needed.
 static const double beside_m = 2e-5;
-static const double same_m = 1e-5; // points closer together than this count as one
-// A pushed face that is farther away than this is released.
+static const double same_m = 1e-5; // m; points closer together than this count as one
+// Distance, m, from the tool beyond which a pushed face is released.
 static const double most_margin_m = 2e-3;
-// STEPS_ON_WAY bounds a grazing approach, whose steps get ever shorter. After it the face counts as
-// not reached in this tick.
+// CANDIDATES: largest number of faces in the list. STEPS_ON_WAY: largest number of steps along the
+// motion of a face. A grazing approach has ever shorter steps. After this many steps the face
+// counts as not reached in this tick.
 enum { CANDIDATES = 4 * CAU_MAX_POINT_ROWS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {
@@ -47,7 +48,7 @@ typedef struct reach {
 	int32_t index;
 	cau_tool_part part;
 	double most_way; // m, farthest motion of a point of the tissue, relative to the tool
-	double turning;  // m more for each m that a point is farther away than the tool's own size
+	double turning;  // extra motion by turning, m per m of distance beyond the tool's size
 	int32_t count;
 	bool kept_missed;    // the list contains a face whose side was known before
 	cau_candidate *list; // (CANDIDATES)
@@ -57,7 +58,7 @@ typedef struct reach {
 typedef struct passage {
 	cau_vec3 start[3], end[3];
 	double weight[3];
-	double way;      // m, of the corner that moves farthest
+	double way;      // m, motion of the corner that moves farthest
 	cau_vec3 normal; // unit normal at the tick's start; 0 if the face has no area
 } passage;
 
@@ -94,7 +95,7 @@ static const cau_contact_memory *remembered(const reach *r, int32_t face)
 	return cau_contact_recall(&r->session->contact, r->index, face);
 }
 
-// Direction that takes the face out of the tool: away from the tool's side.
+// Returns the direction that takes the face out of the tool: away from the tool's side.
 static cau_vec3 way_back(const passage *p, int32_t above)
 {
 	return cau_scale(-above, p->normal);
@@ -149,7 +150,7 @@ static bool is_missed(reach *r, cau_candidate *c)
 	cau_vec3 gradient;
 	follow(r, &c->row, &p);
 	double start = distance_at(r, &p, 0, p.weight, &gradient);
-	if (!(start <= p.way + touch_m)) // also for a position that is not a number
+	if (!(start <= p.way + touch_m)) // true also if a position is not a number
 		return false;
 	const cau_contact_memory *kept = remembered(r, c->row.face);
 	int32_t above = 0; // 0: no side, as for tissue that was inside when the tool began to push
@@ -197,7 +198,7 @@ static bool describe_corners(const reach *r, cau_contact_row *row)
 	return free_count == 0 || free_count == 3;
 }
 
-// Squared distance, m^2, of two points.
+// Returns the squared distance, m^2, of two points.
 static double apart2(const reach *r, const cau_contact_row *a, const cau_contact_row *b)
 {
 	cau_vec3 off = cau_sub(cau_contact_point(a, r->session->position_start),
@@ -223,8 +224,8 @@ static bool has_row(const reach *r, const cau_contact_row *row)
 
 // Adds the constraints of a face that was pushed in the last step: at the points where it was
 // pushed, and at its present nearest point if that is not close to them. A face that is too far
-// away gets none. The old points are kept, because points that follow the nearest point would make
-// resting tissue tilt to and fro.
+// away gets no constraint. The old points are kept, because points that follow the nearest point
+// would make resting tissue tilt to and fro.
 static void take_up(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
 {
 	passage p;
@@ -317,8 +318,8 @@ static double distance_of(const reach *r, const cau_pose *pose, cau_vec3 point)
 
 // Whether the face can have met the tool in the tick. First test: its distance at the tick's start
 // is within the greatest motion since. When the tool turns, a corner beyond the tool's own size
-// moves farther. Second test: the same from the present position. Faces that fail would be refused
-// by is_missed, after a longer search.
+// moves farther. Second test: the same with the distance at the present position. Faces that fail
+// would be refused by is_missed, after a longer search.
 static bool may_be_met(const reach *r, int32_t face)
 {
 	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;
@@ -341,8 +342,9 @@ static void search_block(reach *r, int32_t block)
 			offer(r, near->face[i]);
 }
 
-// Uses four independent maxima and sums, so that no operation waits for the one before. The sums
-// detect a motion that is not a number.
+// Finds the farthest motion of a vertex in the tick, m. Uses four independent maxima and sums, so
+// that no operation waits for the result of another operation. The sums detect a motion that is not
+// a number.
 double cau_session_farthest(const cau_session *session)
 {
 	const double *position = session->position, *start = session->position_start;

@@ -69,7 +69,7 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 	memcpy(gravity, session->scene->gravity_m_s2, sizeof gravity);
 	if (!is_pinned(session)) // without pins a body would fall
 		memset(session->scene->gravity_m_s2, 0, sizeof gravity);
-	// Exact steps need fewer steps in all than approximate ones.
+	// Relaxation needs fewer steps if each step is exact.
 	session->solver.accuracy.wanted = 0;
 	cau_status status = CAU_OK;
 	for (int step = 0; step < MOST_STEPS && !status; step++) {

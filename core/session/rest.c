@@ -32,7 +32,9 @@ static const double quiet_s = 0.5;
 // last change, in ticks of 1/60 s. With the default force_filter_s this is less than quiet_s.
 static const double filter_constants = 10;
 static const double still_m = 1e-6;
-static const double still_share = 1e-5; // of the tissue's size; the smaller limit holds
+// Largest motion at rest, as a share of the tissue's size; the limit is the smaller of this motion
+// and still_m.
+static const double still_share = 1e-5;
 
 cau_status cau_session_make_rest(cau_session *session, cau_error *error)
 {

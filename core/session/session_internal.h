@@ -41,7 +41,8 @@ typedef struct cau_tool {
 	// The tick's pose_before and jaw_before, kept during its second substep.
 	cau_pose tick_pose;
 	double tick_jaw;
-	// Share of its motion to `led` that the anchor makes in a tick; below 1 when held back.
+	// Share of the motion to `led` that the anchor makes in a tick; below 1 while the tool is held
+	// back.
 	double pace;
 	cau_heat_grid grid;
 	cau_blade blade; // the metal of the hot part, with energy `tissue`: electrosurgery.c
@@ -100,7 +101,8 @@ typedef struct cau_substep {
 	// Used only with two substeps:
 	double *tick_start; // m, (n x 3): x at the tick's start, from the second substep on
 	double *base;       // m, (n x 3): x + q v1
-	// N, (n x 3): force of the tools in the first substep, times its share in the tick's mean.
+	// N, (n x 3): force of the tools in the first substep, times the substep's share in the tick's
+	// mean.
 	double *push;
 	bool disturbed;                 // a substep did not end at its solution
 	double touching_j;              // energy of tissue on tissue at the tick's start
@@ -123,7 +125,7 @@ typedef struct cau_watch {
 struct cau_session {
 	cau_arena arena;
 	cau_arena rebuilt_arena; // system that was built when the pins last changed: pins.c
-	cau_image *image;        // share.c: memory shared with other sessions; NULL: none
+	cau_image *image;        // share.c: memory shared with other sessions, or NULL
 	cau_scene_def *scene;
 	uint64_t definition_hash;
 	cau_tissue tissue;
@@ -134,7 +136,7 @@ struct cau_session {
 	cau_shrink shrink;
 	cau_near near;
 	cau_tissue_cells *cells; // cells of energy `tissue`; NULL: energy `paper`
-	cau_vessels *vessels;    // the scene's vessels; NULL: none
+	cau_vessels *vessels;    // the scene's vessels, or NULL if it has none
 	cau_contact_set contact;
 	cau_collide collide;             // meet.c: solver.collide points here, or is NULL
 	struct cau_candidate *candidate; // reach.c: scratch memory
@@ -190,8 +192,8 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
 // command.c: checks the ranges of a command's values. The kind of the command must be valid.
 cau_status cau_command_check(const cau_session *session, const cau_command *command,
                              cau_error *error);
-// level.c: whether the command repeats the present level, or will be refused. has_definition
-// decides it for a CONFIGURE, has_material for a SET_MATERIAL.
+// level.c: whether the command repeats the present level, or will be refused. For a CONFIGURE
+// has_definition decides this, for a SET_MATERIAL has_material.
 bool cau_session_changes_nothing(cau_session *session, const cau_command *command);
 bool cau_session_has_definition(const cau_tool *tool, const cau_tool_def *def);
 bool cau_session_has_material(const cau_session *session, const cau_command *command);
@@ -200,11 +202,11 @@ bool cau_session_has_material(const cau_session *session, const cau_command *com
 // Returns how many of `count` remain.
 typedef enum cau_void { CAU_VOID_LIMITS, CAU_VOID_ENABLES, CAU_VOID_ALL } cau_void;
 int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, cau_void which);
-// *end gets the command that ends an enable with `ticks` that acts at this tick. Returns false if
-// the enable has no end.
+// Fills *end with the command that ends the enable after its `ticks`. The enable acts at `tick`.
+// Returns false if the enable has no end.
 bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_command *end);
-// cau_session_stay makes the tool's actual pose its target. cau_session_stays: whether it is
-// already.
+// cau_session_stay sets the tool's target to its actual pose. cau_session_stays returns whether the
+// target is the actual pose already.
 void cau_session_stay(cau_tool *tool);
 bool cau_session_stays(const cau_tool *tool);
 // sound.c: checks the invariants of tools, energy and waiting commands as a step begins, in every
@@ -223,14 +225,15 @@ cau_status cau_session_make_substeps(cau_session *session, cau_error *error);
 void cau_session_begin_substeps(cau_session *session);
 void cau_session_next_substep(cau_session *session);
 void cau_session_end_substeps(cau_session *session);
-// Called after end_substeps. Velocities become a mixture: `share` of the tick's mean velocity, as
-// with implicit Euler, and the rest of their present value.
+// Changes the velocities after end_substeps. They become a mixture: `share` of the tick's mean
+// velocity, as with implicit Euler, and the rest of their present value.
 void cau_session_take_mean(cau_session *session, double share);
 // Predicts the second substep.
 void cau_session_predict_on(cau_session *session);
-// Distance, m, that a vertex would move in a tick along axis c at its velocity at the tick's end.
+// Returns the distance, m, that a vertex would move in a tick along axis c at its velocity at the
+// tick's end.
 double cau_session_way(const cau_session *session, int32_t vertex, int c);
-// Share of the last substep's forces in the tick's mean.
+// Returns the share of the last substep's forces in the tick's mean.
 double cau_session_last_share(const cau_session *session);
 // tool_motion.c: tools follow their drivers within their speed limits. lead_tools_on makes the rest
 // of the motion in the second substep. keep_tick_poses then sets pose_before and jaw_before to
@@ -241,12 +244,13 @@ void cau_session_keep_tick_poses(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);
 void cau_session_drop_tool(cau_session *session, int32_t index);
 int32_t cau_session_find_tool(const cau_session *session, const char *name);
-// proxy.c, in this order. cau_session_lead_tool moves a tool's anchor to its commanded pose, and
-// the start of its pose with it. cau_session_couple gives both to the solve. cau_session_take_poses
-// reads the tools' poses from the solve. cau_session_hold_back begins the tick again if tools would
-// pass tissue that is not held. These tools make a part of their motion, on the last attempt none.
-// It returns false if there is no such tool, or no attempt left. cau_session_let_follow speeds up
-// tools that were not held back in a tick.
+// proxy.c, in this order. cau_session_lead_tool moves a tool's anchor to the commanded pose, and
+// shifts the start of the actual pose with the anchor. cau_session_couple gives anchor and pose to
+// the solve. cau_session_take_poses reads the tools' poses from the solve. cau_session_hold_back
+// begins the tick again if tools would pass tissue that is not held. Such tools then make only a
+// part of their motion; on the last attempt they do not move. The function returns false if there
+// is no such tool, or no attempt left. cau_session_let_follow speeds up tools that were not held
+// back in a tick.
 enum { CAU_ATTEMPTS = 2 };
 void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose *asked_before);
 void cau_session_lead_tool_on(cau_session *session, cau_tool *tool);
@@ -256,8 +260,8 @@ bool cau_session_hold_back(cau_session *session, int attempt);
 void cau_session_let_follow(cau_session *session);
 // touch.c: finds contact constraints, attachments and drag before the solve.
 void cau_session_find_contacts(cau_session *session);
-// After the solve: whether tissue is inside a tool at its contact constraints, or met a tool
-// without having a constraint. The missing constraints are added.
+// Returns, after the solve, whether tissue is inside a tool at its contact constraints, or met a
+// tool without having a constraint. Adds the missing constraints.
 bool cau_session_find_missed(cau_session *session);
 // Whether tissue diverged because faces were held: it moved farther than without these constraints,
 // by more than a tip's width and the tip's own motion. Then the faces were not really held, even if
@@ -267,8 +271,8 @@ bool cau_session_find_thrown(cau_session *session);
 // tool passes where tissue cannot be held.
 void cau_session_let_through(cau_session *session);
 
-// touch.c, thin.c: a vertex near a tool, with its signed distance, m. If there are too many, the
-// deepest are listed.
+// touch.c, thin.c: a vertex near a tool, with its signed distance, m. If there are more vertices
+// than CAU_MAX_TOUCHING, the deepest are listed.
 enum { CAU_MAX_TOUCHING = 2048 };
 typedef struct cau_touching {
 	int32_t vertex, place; // place: position along the broad phase's Morton curve
@@ -276,22 +280,23 @@ typedef struct cau_touching {
 } cau_touching;
 // thin.c: the distance, m, from a tool within which tissue may touch it in a tick.
 double cau_session_margin(const cau_tool_def *def);
-// Moves to the front of the list the vertices that get a contact constraint, where `taken` exist
-// already. At most CAU_NEAR_ROWS of all get one, and CAU_MAX_VERTEX_ROWS of those that touch. The
-// deepest come first unless they are spread. Returns their number; *left_out gets the number of
-// touching vertices without one.
+// Moves the vertices that get a contact constraint to the front of the list. `taken` constraints
+// exist already. Touching vertices may fill CAU_MAX_VERTEX_ROWS constraints in all, vertices that
+// are only near CAU_NEAR_ROWS. The deepest come first, unless the choice is spread (thin.c).
+// Returns the number of chosen vertices; *left_out gets the number of touching vertices without a
+// constraint.
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
                          int32_t taken, int32_t *left_out);
 
-// Share of the tip's radius. A face deeper inside the tool than this was missed.
+// Depth inside a tool beyond which a face counts as missed, as a share of the tip's radius.
 static const double cau_missed_share = 0.5;
 // reach.c: contact with faces.
 
 // Returns the greatest distance, m, of a vertex from its position at the tick's start. The result
 // is not a number if a position is not a number.
 double cau_session_farthest(const cau_session *session);
-// Whether a tool has contact with faces as well as with vertices. A grasping tool has not, because
-// tissue is between and inside its jaws.
+// Whether a tool has contact with faces as well as with vertices. A grasping tool has no contact
+// with faces, because tissue is between and inside its jaws.
 bool cau_session_feels_faces(const cau_tool *tool);
 // Whether the part may be within the margin, m, of any point of the box. It uses that the distance
 // changes by at most the motion of the point.
@@ -309,8 +314,8 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 void cau_session_release(cau_tool *tool);
 void cau_session_drop_frozen_grasps(cau_session *session);
 // grasp.c. hold_vertex returns a hold on a vertex. row_of_hold returns the contact constraint of a
-// hold, without its anchor. hold_of_row returns the hold of a constraint, or NULL. hold_is_left:
-// whether the held vertex or face still exists.
+// hold, without its anchor. hold_of_row returns the hold of a constraint, or NULL. hold_is_left
+// returns whether the held vertex or face still exists.
 cau_grasp cau_session_hold_vertex(int32_t vertex);
 cau_contact_row cau_session_row_of_hold(const cau_session *session, const cau_grasp *grasp,
                                         int32_t tool);
@@ -332,16 +337,16 @@ void cau_session_begin_collide(cau_session *session);
 // n x 3) is more than `most_m` away. *told gets whether a diverged or inverted vertex is among
 // them. Returns false if tissue contact is off for the tick.
 bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
-// electrosurgery.c: energy `tissue`. make_cells creates the cells if the scene asks for it.
+// electrosurgery.c: energy `tissue`. make_cells creates the cells if the scene has this energy.
 // blade_of returns the blade of a tool that is added. operate computes power, heat and parting of a
-// tick. has_cooled: whether all tissue and tools have cooled down.
+// tick. has_cooled returns whether all tissue and tools have cooled down.
 cau_status cau_session_make_cells(cau_session *session, cau_error *error);
 cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def);
 void cau_session_operate(cau_session *session);
 bool cau_session_has_cooled(const cau_session *session);
 // bleed.c. make_vessels creates the scene's vessels. look_at_vessels finds their present state, as
-// after a restore. bleed advances seals, bleeding and blood by a tick. bleeds: whether blood leaves
-// a vessel or flows on the tissue.
+// after a restore. bleed advances seals, bleeding and blood by a tick. bleeds returns whether blood
+// leaves a vessel or flows on the tissue.
 cau_status cau_session_make_vessels(cau_session *session, cau_error *error);
 void cau_session_look_at_vessels(cau_session *session);
 void cau_session_bleed(cau_session *session);
@@ -384,11 +389,11 @@ void cau_session_lead_driven(cau_session *session);
 // tissue's box at rest, m.
 void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
-// Greatest allowed distance of a vertex from its rest position, m.
+// Returns the greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
 // inversion.c. make_inversion allocates its array. follow_inversion counts, after a tick's solve,
-// the tetrahedra that stay inverted. is_inverted: whether a tetrahedron's volume is 0 or less;
-// `position` in m, (n x 3).
+// the tetrahedra that stay inverted. is_inverted returns whether a tetrahedron's volume is 0 or
+// less; `position` in m, (n x 3).
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error);
 void cau_session_follow_inversion(cau_session *session);
 void cau_session_forget_inversion(cau_session *session); // called after a restore
@@ -408,9 +413,9 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error);
 void cau_session_begin_energy(cau_session *session);
 void cau_session_end_energy(cau_session *session);
 void cau_session_mark_changed(cau_session *session);
-// rest.c. make_rest allocates its array. rests: whether the coming tick is a tick at rest; commands
-// that are due wake the tissue. rest_tick makes a tick at rest. fall_asleep decides, at the end of
-// any other tick, whether the tissue rests from the next tick on.
+// rest.c. make_rest allocates its array. rests returns whether the coming tick is a tick at rest;
+// commands that are due wake the tissue. rest_tick makes a tick at rest. fall_asleep decides, at
+// the end of any other tick, whether the tissue rests from the next tick on.
 cau_status cau_session_make_rest(cau_session *session, cau_error *error);
 bool cau_session_rests(cau_session *session);
 cau_status cau_session_rest_tick(cau_session *session, cau_error *error);
@@ -419,7 +424,7 @@ void cau_session_fall_asleep(cau_session *session);
 // turn freely, after all vertices are predicted.
 cau_status cau_session_make_spin(cau_session *session, cau_error *error);
 void cau_session_turn_prediction(cau_session *session);
-// After two substeps: restores the angular momentum of freely turning pieces to that at the tick's
+// Restores, after two substeps, the angular momentum of freely turning pieces to that at the tick's
 // start, by changing v2. This is done only if no tool is near and no tissue touches tissue.
 void cau_session_keep_momentum(cau_session *session);
 // motion.c: factor from a tick's displacement to the velocity after it, 1/s (eq. 2 and damping).

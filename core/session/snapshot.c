@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes the whole state at a tick border as bytes, and restores it.
 //
-// A downdated factor differs in its last bits from a factor computed anew. So a snapshot holds the
-// history of the factor: the ordered updates since the last canonical factorisation, and those that
-// still wait. The whole snapshot is read and checked (snapshot_read.c) before the session is
-// changed.
+// A downdated factor differs in its last bits from a factor that is computed again. So a snapshot
+// holds the history of the factor: the ordered updates since the last canonical factorisation, and
+// those that still wait. The whole snapshot is read and checked (snapshot_read.c) before the
+// session is changed.
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,7 +144,8 @@ static void take_reals(void *const *to, void *const *from, int count, int32_t sl
 		memcpy(to[i], from[i], (size_t)slots * cau_real_bytes(single));
 }
 
-// Sets weights and laws from the materials, then what has changed since.
+// Sets the elements' weights and laws from the materials. Then restores what changed during the
+// session.
 static void take_elements(cau_session *session, const snapshot_state *state)
 {
 	cau_elements *to = &session->solver.elements;
@@ -263,8 +264,8 @@ static cau_status make_canonical(cau_session *session, cau_error *error)
 // the first operation of the next update.
 static cau_status replay_group(cau_matrix_update *update, int32_t *k, cau_error *error)
 {
-	cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements with pinned vertices count in a group, but
-	                                         // add no rank
+	// A group also counts elements with pinned vertices, which add no rank.
+	cau_waiting list[CAU_DOWNDATES_AT_MOST];
 	int32_t count = 0, group = update->operation[*k].group;
 	for (; *k < update->operation_count && update->operation[*k].group == group; ++*k) {
 		CAU_ASSERT_INDEX(count, CAU_DOWNDATES_AT_MOST);

@@ -14,7 +14,7 @@ typedef struct snapshot_archive {
 	snapshot_mode mode;
 	unsigned char *bytes; // not changed by READ; NULL for COUNT
 	size_t at, capacity;
-	const char *wrong; // READ: name of the first refused number, where reading ends; NULL: none
+	const char *wrong; // READ: name of the first refused number, where reading ends, or NULL
 } snapshot_archive;
 
 // Limit for any finite number in the state. Its square is far from overflow in double.

@@ -8,11 +8,12 @@
 // Ranges for members without a range in the scene's tables (scene.h). No member of the state
 // exceeds them. Members with a range in the tables are also checked as those of scenes and
 // commands, after reading.
-static const double farthest_m = 1e6;  // of any point from the world's origin
-static const double most_force = 1e12; // N, N m
+static const double farthest_m = 1e6;  // m, distance of any point from the world's origin
+static const double most_force = 1e12; // largest force, N, or torque, N m
 static const double coldest_c = -1e4, warmest_c = 1e5;
-static const double most_cells = 1e10; // cells from the world's origin to a heat grid's origin
-static const double most_turn = 100;   // jaws: rad, or a share
+// Largest distance of a heat grid's origin from the world's origin, in cells.
+static const double most_cells = 1e10;
+static const double most_turn = 100; // widest opening of jaws: rad, or a share
 
 static void pass_any(snapshot_archive *archive, const char *what, double *value, size_t count)
 {

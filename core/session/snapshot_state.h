@@ -16,7 +16,7 @@ enum {
 	// Version 15 has the elements that cells move with, a tool's blade and load_rise_off. No
 	// release wrote earlier versions, and none is read.
 	CAU_SNAPSHOT_VERSION = 15,
-	CAU_SNAPSHOT_HASH_BYTES = 8, // at the end of the snapshot
+	CAU_SNAPSHOT_HASH_BYTES = 8, // bytes of the hash at the end of the snapshot
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };
 
@@ -33,7 +33,8 @@ typedef struct snapshot_head {
 	int32_t refactorisations, inverted, edges_parted, elements_removed, elements_torn, quiet_ticks;
 	bool making, faulted, resting;
 	double gravity_m_s2[3];
-	int32_t shallow_steps; // what the solver learned from steps: solve/accuracy.h
+	// From here on: values that the solver learned from steps (solve/accuracy.h).
+	int32_t shallow_steps;
 	double accuracy, amplification[CAU_ACCURACY_DEPTHS], force_left;
 	double force_before[CAU_ACCURACY_TOOLS][3];
 } snapshot_head;
@@ -70,7 +71,7 @@ typedef struct snapshot_state {
 	double *inverse;
 	// m, (vertex_count x 3): positions when the quiet ticks began.
 	double *quiet_from;
-	// (vertex_count): excluded from contact; with a contact thickness.
+	// (vertex_count): 1 for a vertex that was excluded from contact. Only with a contact thickness.
 	uint8_t *exempt_before;
 	cau_tissue_cells *cells;         // the cells, with energy `tissue`
 	double *fusion;                  // (station_count): seal of each station, with vessels
@@ -99,7 +100,7 @@ cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size
                              snapshot_state *state, cau_error *error);
 void cau_snapshot_drop(snapshot_state *state);
 
-// Hash of `count` bytes, the head and the arrays.
+// Returns the hash of `count` bytes: the head and the arrays.
 uint64_t cau_snapshot_hash(const void *bytes, size_t count);
 
 // Whether a session restored from the snapshot continues with the same bits as the session that

@@ -22,7 +22,7 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double least_turn = 1e-3; // rad in a tick
+static const double least_turn = 1e-3; // rad in a tick; slower pieces are not corrected
 // Least determinant of the inertia, relative to the cube of its trace.
 static const double thinnest = 1e-9;
 
@@ -43,8 +43,8 @@ cau_status cau_session_make_spin(cau_session *session, cau_error *error)
 
 // ---- pieces
 
-// Returns the least vertex known to be connected with this one. It shortens the paths that it
-// follows (union-find with path halving).
+// Returns the least vertex that is known to be connected with `vertex`. The search shortens the
+// paths that it follows (union-find with path halving).
 static int32_t least_of(int32_t *piece, int32_t vertex)
 {
 	while (piece[vertex] != vertex) {
@@ -229,7 +229,7 @@ static bool turn_until(matrix a, cau_vec3 wanted, matrix rotation)
 typedef struct motion {
 	double mass;
 	cau_vec3 centre, velocity; // of the centre of mass
-	matrix spread;             // velocity of the centre of mass
+	matrix spread;             // sum m r r^T, kg m^2
 	matrix flow;               // sum m u r^T, kg m^2/s
 	double kinetic_j;          // sum m u^2 / 2
 } motion;
@@ -302,7 +302,7 @@ static bool find_turn(motion *m, double dt, matrix r, matrix p, matrix q)
 	times(ahead, back, seen);
 	if (!turn_until(seen, (cau_vec3){0, 0, 0}, q))
 		return false;
-	// Otherwise the piece does not turn as a whole.
+	// With a longer correction than the turn itself, the piece does not turn as a whole.
 	return cau_length(axial(q)) / 2 < cau_length(turn);
 }
 
@@ -363,10 +363,11 @@ static void measure_ending(const cau_session *session, int32_t first, int32_t la
 	}
 }
 
-// In both substeps the forces have no torque about the positions where they act. For a turning
-// piece, a1 is half of the acceleration that holds the piece on its circle, because v is along the
-// circle and v1 along a chord. So sum m x2 x v2 differs from the angular momentum L at the tick's
-// start. This function adds to v2 the rotation that restores L.
+// Corrects the angular momentum of a piece. In both substeps the forces have no torque about the
+// positions where they act. For a turning piece, a1 is half of the acceleration that holds the
+// piece on its circle, because v is along the circle and v1 along a chord. So sum m x2 x v2 differs
+// from the angular momentum L at the tick's start. So the function adds to v2 the rotation that
+// restores L.
 static void keep_momentum(cau_session *session, int32_t first, int32_t last)
 {
 	motion m;

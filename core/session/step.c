@@ -95,11 +95,12 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 	return status;
 }
 
-// Tissue that is pushed aside may meet the tool elsewhere. Then the step continues with these
-// contacts too: one more round. If tissue is still not held, the tick is solved again with a
-// shorter motion of the tool. On the last attempt the tool does not move. More rounds are useful
-// there, because a solution exists: the tissue was outside the tool. Tissue that is then still deep
-// in the tool is handled in the next tick. Tissue beyond the tool loses its constraints and passes.
+// Largest number of rounds of a step, and of a step on the last attempt. Tissue that is pushed
+// aside may meet the tool elsewhere. Then the step continues for one more round, with these
+// contacts too. If tissue is still not held, the tick is solved again with a shorter motion of the
+// tool. On the last attempt the tool does not move. More rounds are useful there, because a
+// solution exists: the tissue was outside the tool. Tissue that is then still deep in the tool is
+// handled in the next tick. Tissue beyond the tool loses its constraints and passes.
 enum { MOST_ROUNDS = 2, LAST_ROUNDS = 8 };
 
 static cau_status descend(cau_session *session, cau_error *error)
@@ -234,7 +235,7 @@ static cau_status move(cau_session *session, cau_status status, cau_error *error
 	return status;
 }
 
-// One tick: calls every stage in order.
+// Makes one tick: calls every stage in order.
 cau_status cau_session_step(cau_session *session, cau_error *error)
 {
 	if (session->faulted)

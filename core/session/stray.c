@@ -9,7 +9,8 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-// In tissue sizes; single precision is 1e-5 of a size there, far below an edge.
+// Greatest distance of a vertex, in tissue sizes. There, the rounding of single precision is 1e-5
+// of a size, far below an edge.
 static const double farthest_sizes = 200;
 
 double cau_session_size(const cau_session *session)

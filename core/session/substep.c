@@ -11,8 +11,9 @@
 // the tick's start is needed. After a cut, no force of a removed element remains. TR-BDF2 has the
 // same stability function, but needs such a force (core/EXPERIMENTS.md).
 //
-// Tools and moved supports make their motion in two parts. Each substep begins where the one before
-// ended. The tools' reported forces are those of the second substep, to which their poses belong.
+// Tools and moved supports make their motion in two parts. The second substep begins where the
+// first substep ended. The tools' reported forces are those of the second substep, to which their
+// poses belong.
 //
 // A method of second order makes an impact rebound: a stop within the first substep is continued as
 // a force. A mass that came at 1 m/s leaves at 1.4 m/s. So tissue pushed by a tool may not leave

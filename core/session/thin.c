@@ -3,12 +3,12 @@
 // capacity.
 //
 // Near vertices that do not touch may come to touch within the tick, so they have constraints while
-// there is capacity. Otherwise only drawn vertices that touch have one. If these are still too
-// many, the constraints are spread over all that touch. The deepest alone would be crowded in the
-// middle, and the tissue around them would sink in with the tool. The spread order is van der
-// Corput's: positions along the Morton curve with their bits reversed. Any first part of this order
-// is spread evenly, and most of it stays the same as vertices come and go. The tissue's elasticity
-// holds the vertices between.
+// there is capacity. Otherwise only drawn vertices that touch have a constraint. If these vertices
+// are still too many, the constraints are spread over all of them. The deepest vertices alone would
+// be crowded in the middle, and the tissue around them would sink in with the tool. The spread
+// order is van der Corput's: positions along the Morton curve with their bits reversed. Any first
+// part of this order is spread evenly, and most of it stays the same as vertices come and go. The
+// tissue's elasticity holds the vertices between.
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,8 +17,9 @@
 
 static const double least_margin_m = 5e-4, most_margin_m = 2e-3;
 static const double touching_m = 2e-4; // a vertex nearer than this touches; others are only near
-// Touching vertices per constraint. Up to this ratio the least deep vertices, around the rim, are
-// left out. That is better than gaps between constraints. Above it the constraints are spread.
+// Largest ratio of touching vertices to constraints at which the least deep vertices, around the
+// rim, are left out. Leaving out the rim is better than gaps between constraints. Above this ratio
+// the constraints are spread.
 static const int32_t most_crowded = 2;
 
 double cau_session_margin(const cau_tool_def *def)

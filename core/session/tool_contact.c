@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contact of each tool, linearised about a tick, for clients that render forces between ticks
-// (cautery/channels.h, cau_tool_contact). While it is watched, it is computed after each step from
-// the solved contact constraints. It changes no state.
+// (cautery/channels.h, cau_tool_contact). While a client watches the contact, it is computed after
+// each step from the solved contact constraints. The computation changes no state.
 //
 // Compliance: displacement of a load's own position by a unit load, which is distributed over the
-// contact constraints like their reactions. It is the tissue's answer (solve/tangent.h). The
-// virtual coupling is in series with it.
+// contact constraints like their reactions. The compliance is that of the tissue alone
+// (solve/tangent.h). The virtual coupling is in series with it.
 //
 // Planes: constraints with nearly the same normal form one plane. The plane's offset is where the
 // linear contact would end. With this offset, the plane gives the tick's force at the tick's
@@ -20,7 +20,7 @@
 #include "solve/tangent.h"
 
 enum { MOST_LOADS = 3 * CAU_MAX_CONTACTS };
-static const double alike = 0.9; // cosine between normals that form one plane: 26 degrees
+static const double alike = 0.9; // least cosine between normals of one plane: 26 degrees
 
 struct cau_contact_watch {
 	cau_tangent tangent;
@@ -63,7 +63,7 @@ void cau_session_forget_contact(cau_session *session)
 
 // ---- compliance
 
-// Force along the normal, N; 0 for a constraint that does not push.
+// Returns the force along the normal, N; 0 for a constraint that does not push.
 static double push_of(const cau_contact_row *row)
 {
 	return row->attached ? 0
@@ -77,8 +77,8 @@ typedef struct carried {
 	double along[3];                // unit vector
 } carried;
 
-// Chooses the constraints that carry the load: those that push; if none pushes, the nearest.
-// `held`: those of the grasp.
+// Chooses the constraints that carry the load. With `held` these are all of the grasp's. Otherwise
+// they are the constraints that push; if none pushes, the nearest.
 static void choose(const cau_session *session, int32_t index, bool held, carried *out)
 {
 	const cau_contact_set *set = &session->contact;
@@ -268,7 +268,8 @@ static bool are_finite(const double *numbers, size_t count)
 	return true;
 }
 
-// Whether all numbers of a record are finite. Columns that are far behind cuts may give others.
+// Whether all numbers of a record are finite. Columns that do not include many cuts yet may give
+// numbers that are not finite.
 static bool is_finite(const cau_tool_contact *record)
 {
 	bool finite = are_finite(record->force_n, 3) && are_finite(record->compliance_m_n, 6) &&

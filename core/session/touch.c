@@ -93,7 +93,7 @@ static void list_touching(cau_session *session, cau_touching *list, int32_t *cou
 		list[least] = touching;
 }
 
-static const double in_float_m = 1e-6; // boxes in single precision are off by less than this
+static const double in_float_m = 1e-6; // m, largest error of a box in single precision
 
 // Collects the vertices within the margin of the pushing part. Fixed vertices are included: there
 // the tool yields.
@@ -117,7 +117,7 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 			if (is_left_over(session, v) || is_grasped(tool, v))
 				continue;
 			double gap = least_gap(session, tool, v, margin);
-			if (!(gap <= margin)) // also for a position that is not a number
+			if (!(gap <= margin)) // true also if the position is not a number
 				continue;
 			list_touching(session, list, &count, (cau_touching){v, i, gap});
 		}
@@ -176,7 +176,7 @@ static void describe_tools(cau_session *session)
 	session->contact.tool_count = session->tool_count;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
-		bool held_back = session->contact.tool[i].held_back; // from the attempt before
+		bool held_back = session->contact.tool[i].held_back; // set in the attempt before
 		session->contact.tool[i] = (cau_contact_tool){
 			.held_back = held_back,
 			.def = &tool->state.definition,
@@ -187,8 +187,8 @@ static void describe_tools(cau_session *session)
 	cau_session_couple(session);
 }
 
-// Adds the constraints of the vertices at a tool. They leave capacity for faces, which a tool could
-// otherwise pass.
+// Adds the constraints of the vertices at a tool. These constraints leave capacity for faces, which
+// a tool could otherwise pass.
 static void add_vertices(cau_session *session, int32_t index)
 {
 	cau_touching list[CAU_MAX_TOUCHING];

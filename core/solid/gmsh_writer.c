@@ -6,7 +6,8 @@
 
 #include "cautery/assert.h"
 
-// Gmsh's number of tetrahedra; number of tags: physical group and entity.
+// Gmsh's number for the element type tetrahedron. Number of tags of an element: physical group and
+// entity.
 enum { TETRAHEDRON = 4, TAGS = 2 };
 
 static void put_whole(FILE *out, int32_t value)

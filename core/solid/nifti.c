@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads NIfTI 1 and 2 (nifti.nimh.nih.gov), as one file. The axes of its frame are already right,
-// front, head.
+// Reads NIfTI 1 and 2 (nifti.nimh.nih.gov), as one file. The axes of NIfTI's frame already point to
+// the right, the front and the head.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,7 +56,7 @@ static double real_at(const head *of, int place, int width)
 	return (double)value;
 }
 
-// Finds out which header a file has. Returns false if there is none.
+// Finds out which header a file has. Returns false if there is no known header.
 static bool find_head(const unsigned char *bytes, size_t byte_count, head *of)
 {
 	*of = (head){.bytes = bytes};
@@ -189,7 +189,7 @@ static void read_frame(const head *of, cau_volume *volume)
 			volume->axis[i][i] = real_at(of, of->at->pixdim + width * (i + 1), width);
 	}
 	int64_t unit = whole_at(of, of->at->units, of->at->units_bytes) & 7;
-	double unit_mm = unit == 1 ? 1000 : unit == 3 ? 1e-3 : 1; // metres, micrometres, millimetres
+	double unit_mm = unit == 1 ? 1000 : unit == 3 ? 1e-3 : 1; // unit 1: metres, 3: micrometres
 	for (int i = 0; i < 3; i++) {
 		volume->origin[i] *= unit_mm;
 		for (int c = 0; c < 3; c++)

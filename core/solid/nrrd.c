@@ -37,7 +37,7 @@ static cau_status fail(header *of, const char *format, const char *word)
 static cau_status read_type(header *of, const char *text)
 {
 	static const struct {
-		const char *words; // all names of a type, each between bars
+		const char *words; // all names of a type, each name between two bars
 		cau_voxels is;
 	} types[] = {
 		{"|signed char|int8|int8_t|", {.kind = CAU_VOXEL_SIGNED, .bytes = 1}},
@@ -274,7 +274,8 @@ static cau_status read_lines(header *of, const unsigned char *bytes, size_t byte
 			*data = at;
 			return CAU_OK;
 		}
-		// Longer lines describe pictures.
+		// A line that is longer than the buffer is cut, because only descriptions of pictures are
+		// so long.
 		length = length < LINE_BYTES - 1 ? length : LINE_BYTES - 1;
 		memcpy(line, from, length);
 		line[length] = 0;

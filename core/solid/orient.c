@@ -112,7 +112,8 @@ static bool is_inside_another(const work *of, int32_t number)
 // the outward orientation.
 static bool turns_over(const work *of, int32_t number)
 {
-	// With more pieces, a search for cavities is not worth the time.
+	// Largest number of pieces with which cavities are searched. With more pieces the search is not
+	// worth the time.
 	enum { PIECES_COMPARED = 2048 };
 	const piece *own = &of->of[number];
 	if (of->piece_count <= PIECES_COMPARED && is_inside_another(of, number))

@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.h"
 
-// Triangles that share an edge of two get the same orientation. Each piece then encloses a positive
-// volume, unless the piece is inside another piece. Such a cavity keeps its own orientation.
-// *turned is the number of turned triangles.
+// Turns triangles so that two triangles that alone share an edge have the same orientation. Each
+// piece then encloses a positive volume, unless the piece is inside another piece. Such a cavity
+// keeps its own orientation. *turned is the number of turned triangles.
 cau_status cau_orient(cau_mesh *surface, int32_t *turned, cau_error *error);

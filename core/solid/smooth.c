@@ -14,7 +14,7 @@
 enum { ROUNDS = 8, HALVINGS = 10 };
 static const double good = 0.8;    // quality above which a vertex is not moved
 static const double better = 1e-3; // least gain in quality of a move
-// Share of the lattice's spacing within which the interface is searched.
+// Distance within which the interface is searched, as a share of the lattice's spacing.
 static const double reach_share = 0.25;
 static const double steps[] = {1, 0.5, 0.25, 0.1};
 static const double nudges[] = {0.2, 0.08, 0.03, -0.05}; // trial moves, as shares of the spacing
@@ -87,7 +87,7 @@ static bool labels_at(const smoother *of, int32_t vertex, wall *at)
 }
 
 // Computes the interface's normal at a vertex, from at.label to at.other. Returns false if there is
-// none.
+// no normal.
 static bool normal_at(const smoother *of, int32_t vertex, wall at, double normal[3])
 {
 	memset(normal, 0, 3 * sizeof *normal);

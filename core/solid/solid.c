@@ -13,13 +13,14 @@
 #include "solid/gmsh_writer.h"
 #include "solid/tets.h"
 
-// TETRAHEDRA_CHOSEN is what a session steps in real time on one core, with time left for a cut.
+// TETRAHEDRA_CHOSEN: default target number of tetrahedra. On one core, a session steps this number
+// in real time, with time left for a cut.
 enum { TETRAHEDRA_CHOSEN = 8000, MORE_MOST = 16, SAMPLES = 24, SAMPLES_LEAST = 200, TRIES = 5 };
-// Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of the spacing (4 of 6).
-// Their mean is 0.911 of the spacing.
+// Spacing of the lattice for edges of mean length 1. Edges of the lattice are as long as its
+// spacing (2 of 6) or sqrt(3)/2 of the spacing (4 of 6). Their mean is 0.911 of the spacing.
 static const double spacing_of_edge = 1.0 / 0.911;
 static const double tetrahedra_of_cell = 12;
-// Share of the longest side: a shorter spacing comes only from rounding.
+// Least spacing, as a share of the longest side. A shorter spacing comes only from rounding.
 static const double spacing_least = 1e-4;
 
 typedef struct work {
@@ -167,7 +168,7 @@ static cau_status read_domain(work *of, cau_error *error)
 
 // ---- meshing
 // Returns the volume inside the domain. Samples the middles of SAMPLES^3 cells of the box. If few
-// samples are inside, the tissue is thin. Then the domain's own value is better, if the domain is
+// samples are inside, the tissue is thin. Then the domain's own volume is better, if the domain is
 // closed.
 static double volume_inside(const cau_domain *domain, bool closed)
 {
@@ -231,7 +232,8 @@ static cau_status mesh_with(work *of, double spacing, cau_error *error)
 	tell(of, "lattice", 0.1);
 	cau_status status = cau_lattice(&of->domain, spacing, &of->tets, error);
 	int64_t most = MORE_MOST * (int64_t)aim_of(of);
-	if (!status && !(of->wish->edge > 0) && of->tets.count > most) // checked before cutting
+	// The number of tetrahedra is checked before the lattice is cut.
+	if (!status && !(of->wish->edge > 0) && of->tets.count > most)
 		return cau_fail(error, CAU_BAD_VALUE, "edge",
 		                "the tissue is so thin that its solid needs more than %lld tetrahedra: "
 		                "make a sheet of it (as "

@@ -16,10 +16,11 @@
 #include "solid/tets.h"
 
 enum { HALVINGS = 12 };
-// Share of an edge's length: a vertex this near to the cut moves there.
+// Distance, as a share of an edge's length, within which a vertex moves to the cut.
 static const double snap_share = 0.35;
-static const double cut_least = 0.06; // share of an edge's length: cuts are no nearer to its ends
-static const double still_good = 0.2; // quality that a move may leave
+// Least distance of a cut from an edge's ends, as a share of the edge's length.
+static const double cut_least = 0.06;
+static const double still_good = 0.2; // least quality that a move may leave
 
 // A cut of an edge from inside to outside.
 typedef struct cut {
@@ -340,7 +341,7 @@ static void divide_middle(pass *of, const sides *at, int32_t inside, int32_t out
 }
 
 // Divides one tetrahedron. Returns true if the parts replace it. A tetrahedron of an earlier label
-// is divided because its neighbours are, and keeps its label.
+// is divided because its neighbours are divided, and keeps its label.
 static bool divide(pass *of, const int32_t vertex[4], int32_t own)
 {
 	sides at = sides_of(of, vertex);

@@ -11,7 +11,7 @@
 #include "solid/orient.h"
 
 enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // UNEVEN = 8 keeps the depth of the tree below 125
-// A node that is this many radii away counts as one dipole.
+// Distance, in radii of a node, from which on the node counts as one dipole.
 static const double far_radii = 2.5;
 // Margin for rounding of lengths and winding numbers; sums have errors of about 1e-10.
 static const double rounding = 1e-6;
@@ -187,7 +187,7 @@ static interval around(box *in, double value, double change)
 	return (interval){value - change, value + change};
 }
 
-// Returns the least distance of the edge from a to b to the origin.
+// Returns the least distance between the origin and the edge a b.
 static double edge_distance(const double a[3], const double b[3])
 {
 	double along[3], nearest[3];

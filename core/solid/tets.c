@@ -110,8 +110,8 @@ static void face_sizes(const double *position, const int32_t vertex[4], double s
 	}
 }
 
-// The sine of the angle at the edge ij is 6 V |ij| / (|n_k| |n_l|). The faces opposite k and l meet
-// at this edge.
+// Uses that the sine of the angle at the edge ij is 6 V |ij| / (|n_k| |n_l|). The faces opposite k
+// and l meet at this edge.
 double cau_tet_quality(const double *position, const int32_t vertex[4])
 {
 	double size[4], least = 1, volume6 = cau_tetrahedron_volume6(position, vertex);
@@ -144,7 +144,7 @@ double cau_least_angle_deg(const cau_tets *tets)
 	for (int32_t i = 0; i < tets->count; i++) {
 		const int32_t *vertex = tets->vertex + 4 * (size_t)i;
 		double normal[4][3];
-		for (int k = 0; k < 4; k++) { // all outward or all inward
+		for (int k = 0; k < 4; k++) { // the normals are all outward or all inward
 			static const int face_of[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 			int32_t face[3] = {vertex[face_of[k][0]], vertex[face_of[k][1]], vertex[face_of[k][2]]};
 			cau_triangle_normal(tets->position, face, normal[k]);

@@ -198,7 +198,7 @@ static void order_labels(cau_volume *volume)
 				memcpy(volume->label[k].name, volume->segment[s].name, CAU_LABEL_NAME_BYTES);
 }
 
-// Marks the values that count as labels.
+// Marks the values of the file that become labels.
 static cau_status mark_values(const char *labels, uint8_t *of_value, cau_error *error)
 {
 	if (!labels || !labels[0]) {

@@ -8,9 +8,9 @@
 #include "solid/domain.h"
 
 enum { REACH = 4 }; // voxels along each axis that vote
-// A box with more voxels is never called uniform. A block of the lattice has 64 corners and 64
-// centres. label_at() reads eight or all 64 voxels for each. So 512 is half of the least number of
-// reads for a block.
+// Largest number of voxels that is_uniform() reads for a box; it returns false for larger boxes. A
+// block of the lattice has 64 corners and 64 centres, and label_at() reads eight or all 64 voxels
+// for each. So 512 is half of the least number of reads for a block.
 enum { READ_MOST = 512 };
 // Margin for rounding of an index, in voxels, and of votes; both have errors of about 1e-10.
 static const double rounding = 1e-6;
@@ -100,7 +100,7 @@ typedef struct voters {
 	double least[READ_MOST], most[READ_MOST];
 } voters;
 
-// The cubic B-spline.
+// Returns the cubic B-spline at a distance.
 static double weight_at(double distance)
 {
 	double t = fabs(distance);
@@ -131,7 +131,7 @@ static bool find_voters(const cau_volume *volume, int i, const double least[3],
 
 // Whether the winner has more votes than any other label everywhere in the box. The vote of each
 // label is bounded by the limits of its voxels' weights. The winner also has at least the votes
-// that others leave.
+// that the other labels leave.
 static bool wins(const cau_volume *volume, const voters axis[3], int32_t winner)
 {
 	double most[CAU_SOLID_LABEL_MAX + 1] = {0}, least = 0, others = 0;

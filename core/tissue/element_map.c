@@ -6,8 +6,8 @@
 #include "cautery/assert.h"
 #include "tissue/tissue.h"
 
-// Share of a link's reach. A link between vertices that (nearly) coincide is as stiff as one of
-// this length.
+// Least length of a link for its stiffness, as a share of its reach. A link between vertices that
+// (nearly) coincide is as stiff as a link of this length.
 static const double shortest_truss = 0.01;
 
 int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind)

@@ -26,8 +26,8 @@ static void mark_layer(const cau_tissue *tissue, int32_t layer_index, uint8_t *m
 		mark[tissue->tetrahedron[i]] = 1;
 }
 
-// A vertex of the lower layer. Candidates are sorted by x. A search starts at its own x, goes
-// outwards, and ends where the distance in x alone is too large.
+// A vertex of the lower layer. Candidates are sorted by x. A search starts at the x of the upper
+// layer's vertex and goes outwards. The search ends where the distance in x alone is too large.
 typedef struct candidate {
 	double x;
 	int32_t vertex;

@@ -12,8 +12,9 @@ static cau_vec3 rest_edge(const cau_tissue *tissue, int32_t from, int32_t to)
 	               cau_vec3_of(tissue->rest + 3 * (size_t)from));
 }
 
-// Relative bound for flat elements, against a division by 0. Cleaning has already refused elements
-// flatter than 1e-6 (mesh/clean.c), so this second check is far below the first.
+// Relative bound below which an element counts as flat. The check prevents a division by 0.
+// Cleaning has already refused elements flatter than 1e-6 (mesh/clean.c), so this second check is
+// far below the first.
 static const double flat = 1e-9;
 
 static cau_status shape_triangle(cau_tissue *tissue, int32_t t, cau_error *error)

@@ -89,7 +89,7 @@ int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selecti
                           uint8_t *chosen);
 
 // materials.c
-int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1: none
+int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1: no such layer
 
 // Return the material of an element.
 const cau_sheet_material *cau_triangle_material(const cau_tissue *tissue, int32_t triangle);

@@ -54,7 +54,8 @@ typedef struct cau_mesh_region {
 	char name[CAU_MESH_NAME_BYTES]; // name in the file, or ""
 } cau_mesh_region;
 
-// What mending changed: the field, whether `strict` refuses the change, and its text in the report.
+// The changes that mending counts. The columns are: member of cau_mesh_report; whether `strict`
+// refuses the change; its text in the report.
 #define CAU_MESH_MEND_TABLE(X)                                                                     \
 	X(duplicate_vertices, 1, "duplicate vertices merged")                                          \
 	X(inverted_tetrahedra, 1, "inverted elements turned")                                          \
@@ -70,7 +71,7 @@ typedef struct cau_mesh_region {
 	X(reduced_elements, 1, "higher-order elements reduced to their corners")                       \
 	X(unused_vertices, 0, "unused vertices left out")
 
-// What a file contained, and what was done with it.
+// The report: what the file contained, what was skipped and mended, and what the mesh contains.
 typedef struct cau_mesh_report {
 	char format[32];                       // for example "Gmsh 4.1"; "" for a generated mesh
 	int64_t vertices_read;                 // vertices in the file
@@ -114,8 +115,8 @@ typedef struct cau_mesh_wish {
 	const char *pins;
 } cau_mesh_wish;
 
-// A surface is nearly closed, and so has an inside, if the area of its holes is at most this share
-// of its area.
+// Largest area of the holes of a nearly closed surface, as a share of its area. A nearly closed
+// surface has an inside.
 #define CAU_NEARLY_CLOSED 0.1
 
 // Reads the mesh and makes a scene around it. The scene has:

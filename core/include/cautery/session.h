@@ -50,7 +50,7 @@ extern "C" {
 typedef struct cau_session cau_session; // one simulated tissue with its tools; opaque
 
 // ---- definition -------------------------------------------------------------------------------
-// The stages of creating a session, in this order. A stage cannot be interrupted. Before each one
+// The stages of creating a session, in this order. A stage cannot be interrupted. Before each stage
 // the session calls `border`.
 #define CAU_BUILD_STAGE_TABLE(X)                                                                   \
 	X(MESH, "meshing")     /* meshes, layers, edges */                                             \
@@ -110,8 +110,8 @@ void cau_session_destroy(cau_session *session); // session may be NULL
 // Whether the session's scene has built-in tension. Creation brings the tissue to rest, unless the
 // session was created `unsettled`.
 bool cau_session_has_tension(const cau_session *session);
-// Hash of the built meshes and of each element's material. Two sessions of equal scenes with an
-// equal hash come to rest with the same bits.
+// Returns a hash of the built meshes and of each element's material. Two sessions of equal scenes
+// with an equal hash come to rest with the same bits.
 uint64_t cau_session_tissue_hash(const cau_session *session);
 
 // Shares memory with other sessions of equal tissue in this program that also called this function.
@@ -172,7 +172,8 @@ cau_status cau_session_step(cau_session *session, cau_error *error);
 typedef struct cau_session_layer {
 	char name[CAU_NAME_BYTES]; // the layer's name in the scene
 	int32_t kind;              // a CAU_LAYER_* kind
-	// Range of its faces in the face list. FAT: each face of its tetrahedra once. LINKS: none.
+	// Range of the layer's faces in the face list. FAT: each face of the tetrahedra once. LINKS
+	// have no faces.
 	int32_t first_face, face_count;
 	int32_t element_count; // number of triangles, tetrahedra or links
 } cau_session_layer;
@@ -360,7 +361,7 @@ void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
 typedef struct cau_damage {
 	int32_t removed_count; // number of removed tetrahedra and triangles
 	double removed_m3;     // their volume at rest; of a triangle: area times thickness
-	// Volume at rest of the other elements, each times the mean exposure of its vertices.
+	// Sum over the elements that are left: volume at rest times mean exposure of the vertices, m^3.
 	double damaged_m3;
 } cau_damage;
 // Measures the damage inside and outside a region (CAU_SELECT_BOX or CAU_SELECT_SPHERE; its `layer`
@@ -370,9 +371,9 @@ void cau_session_damage(const cau_session *session, const cau_selection *region,
 
 // ---- snapshots
 
-// A snapshot is the whole state at a tick border with the queued commands. It is tagged with
-// version, instruction set and a hash of the definition. Steps after a restore give the same bits
-// as steps without it.
+// A snapshot is the whole state at a tick border with the queued commands. A snapshot contains its
+// version, the instruction set and a hash of the definition. Steps after a restore give the same
+// bits as steps without it.
 size_t cau_session_snapshot_bytes(const cau_session *session); // upper bound of a snapshot's size
 // Writes a snapshot into the caller's bytes. Errors: CAU_LIMIT (capacity).
 cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
@@ -384,12 +385,13 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
                                bool *exact, cau_error *error);
 
-// Hash of the whole state (positions, velocities, heat, exposure, removed elements, tools).
+// Returns a hash of the whole state (positions, velocities, heat, exposure, removed elements,
+// tools).
 uint64_t cau_session_hash(const cau_session *session);
 
 // The energy ledger: where the energy of instruments went since creation, J
-// (core/bioheat/README.md). delivered_j + blade_j equals the sum of the others, except far_j. All
-// are 0 with energy `paper`.
+// (core/bioheat/README.md). delivered_j + blade_j equals stored_j + boiled_j + perfused_j +
+// ambient_j + shed_j. All members are 0 with energy `paper`.
 typedef struct cau_energy_ledger {
 	double delivered_j; // heat of currents in tissue
 	double far_j;       // heat of currents beyond the cells; not part of the sum

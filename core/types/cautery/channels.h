@@ -131,14 +131,14 @@ enum {
 
 // One point of a vessel's middle line, in the order of the line.
 typedef struct cau_vessel_point {
-	float position_m[3]; // in the world
+	float position_m[3]; // position in the world
 	// open share of the lumen's area; 0: a seal holds here; negative: the vessel is parted here
 	float open;
 } cau_vessel_point;
 
 // A vessel after a step.
 typedef struct cau_vessel_state {
-	char name[CAU_NAME_BYTES]; // of the vessel
+	char name[CAU_NAME_BYTES]; // name of the vessel
 	uint32_t flags;            // CAU_VESSEL_*
 	double radius_m;           // outer radius of the undeformed tube
 	double bleeding_m3_s; // blood that left the vessel in the last step, divided by the step's time
@@ -173,7 +173,7 @@ typedef struct cau_contact_plane {
 
 // The contact of a tool after a step.
 typedef struct cau_tool_contact {
-	char name[CAU_NAME_BYTES]; // of the tool
+	char name[CAU_NAME_BYTES]; // name of the tool
 	bool valid;                // false: the tick has no contact data, for example after a restore
 	double time_s;             // simulated time of the tick
 	cau_pose asked_pose;       // commanded pose of the tick

@@ -43,10 +43,10 @@ typedef enum cau_command_kind {
 
 // One command. Only the members named beside a kind are read.
 typedef struct cau_command {
-	int kind;          // CAU_COMMAND_*
-	uint64_t tick;     // applied at the first tick border at or after this; 0: the next one
+	int kind;      // CAU_COMMAND_*
+	uint64_t tick; // applied at the first tick border at or after this tick; 0: at the next border
 	uint64_t sequence; // the driver's own number of the command; reported back once it is applied
-	char tool[CAU_NAME_BYTES]; // for all TOOL_* except TOOL_ADD
+	char tool[CAU_NAME_BYTES]; // name of the tool, for all TOOL_* except TOOL_ADD
 	union {
 		cau_tool_def definition; // TOOL_ADD, TOOL_CONFIGURE (its pose is ignored)
 		struct {

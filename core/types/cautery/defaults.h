@@ -41,8 +41,8 @@ static inline void cau_default_pose(cau_pose *def)
 	*def = (cau_pose){.position_m = {0.0, 0.0, 0.05}, .rotation = {1.0, 0.0, 0.0, 0.0}};
 }
 
-// Sets a selection of this kind in any layer. The caller must set the position and size of a box, a
-// sphere or a point.
+// Sets every member to its default for a selection of this kind, in any layer. The caller must set
+// the position and size of a box, a sphere or a point.
 static inline void cau_default_selection(cau_selection *def, int kind)
 {
 	memset(def, 0, sizeof *def);
@@ -71,7 +71,8 @@ static inline void cau_default_heat_material(cau_heat_material *def, int layer_k
 	def->ignition_c = cau_default_ignition_c(layer_kind);
 }
 
-// Sets a target at the rest shape, without shrinkage. `layer_kind`: CAU_LAYER_FASCIA or MEMBRANE.
+// Sets every member to its default. The strain limit is a target, equal to the rest shape, and heat
+// does not shrink the sheet. `layer_kind`: CAU_LAYER_FASCIA or CAU_LAYER_MEMBRANE.
 static inline void cau_default_sheet_material(cau_sheet_material *def, int layer_kind)
 {
 	memset(def, 0, sizeof *def);
@@ -87,7 +88,8 @@ static inline void cau_default_sheet_material(cau_sheet_material *def, int layer
 	cau_default_heat_material(&def->heat, layer_kind);
 }
 
-// Sets stable neo-Hookean fat without limits, shrinkage and plasticity.
+// Sets every member to its default: stable neo-Hookean fat without limits, shrinkage and
+// plasticity.
 static inline void cau_default_fat_material(cau_fat_material *def)
 {
 	memset(def, 0, sizeof *def);
@@ -112,7 +114,8 @@ static inline void cau_default_link_material(cau_link_material *def)
 	cau_default_heat_material(&def->heat, CAU_LAYER_LINKS);
 }
 
-// Sets a layer with one material of its kind of tissue, and empty names.
+// Sets every member to its default for a layer of this kind. The layer has one material, and its
+// names are empty.
 static inline void cau_default_layer_def(cau_layer_def *def, int kind)
 {
 	memset(def, 0, sizeof *def);
@@ -129,7 +132,8 @@ static inline void cau_default_layer_def(cau_layer_def *def, int kind)
 		cau_default_sheet_material(&def->sheet[0], kind);
 }
 
-// Sets a generated sheet of 100 x 100 mm. The third extent, for a slab, is 10 mm.
+// Sets every member to its default: a generated sheet of 100 x 100 mm. The third extent, which a
+// slab uses, is 10 mm.
 static inline void cau_default_mesh_def(cau_mesh_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -159,7 +163,8 @@ static inline void cau_default_vessel_def(cau_vessel_def *def)
 	CAU_VESSEL_TABLE(CAU_SET_DEFAULT)
 }
 
-// Sets an absent pull. If the caller makes it present, it moves 25 mm up in half a second.
+// Sets every member to its default. The pull is absent. If the caller sets `present`, the pull
+// moves the vertices 25 mm up in half a second.
 static inline void cau_default_pull_def(cau_pull_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -167,7 +172,8 @@ static inline void cau_default_pull_def(cau_pull_def *def)
 	def->duration_s = 0.5;
 }
 
-// Sets an absent cut. If the caller makes it present, it dwells for 3 s and moves at 2 mm/s.
+// Sets every member to its default. The cut is absent. If the caller sets `present`, the tool
+// dwells for 3 s and moves at 2 mm/s.
 static inline void cau_default_cut_def(cau_cut_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -176,7 +182,8 @@ static inline void cau_default_cut_def(cau_cut_def *def)
 	def->speed_m_s = 0.002;
 }
 
-// Sets a scene without meshes, layers, pins or tools. Pull and cut are absent.
+// Sets every member to its default. The scene has no meshes, layers, pins, tools or vessels, and
+// pull and cut are absent.
 static inline void cau_default_scene_def(cau_scene_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -189,8 +196,9 @@ static inline void cau_default_scene_def(cau_scene_def *def)
 	cau_default_cut_def(&def->cut);
 }
 
-// Sets a command for the next tick. SET_MATERIAL starts with the kind of a fascia. The right kind
-// is that of the layer, so the caller must set `kind` and the material of that kind.
+// Sets every member to its default for a command of this kind, at the next tick. For SET_MATERIAL,
+// `material.kind` is CAU_LAYER_FASCIA. The caller must set `material.kind` to the layer's kind, and
+// fill the material of that kind.
 static inline void cau_default_command(cau_command *def, int kind)
 {
 	memset(def, 0, sizeof *def);

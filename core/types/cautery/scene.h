@@ -41,9 +41,9 @@ enum {
 
 #define CAU_FIELD(field, default_, least, most, unit, meaning) double field;
 
-// ---- ranges of vectors, scripts and forces; the tables below have the ranges of scalars
-// ---------- The parameter tables of protocol/json document these ranges, and the core enforces
-// them.
+// ---- ranges of vectors, scripts and forces ----------------------------------------------------
+// The tables below have the ranges of scalars. The parameter tables of protocol/json document these
+// ranges, and the core enforces them.
 #define CAU_UNIT_TOLERANCE 1e-3 // largest error of the length of a unit quaternion, for every input
 // largest absolute value of each coordinate of a position or a displacement
 #define CAU_PLACE_MOST_M 100.0
@@ -54,7 +54,7 @@ enum {
 #define CAU_TARGET_MOST 100.0 // largest absolute value of each entry of a target
 #define CAU_STRAIN_LEAST (-0.99)
 #define CAU_STRAIN_MOST 100.0
-#define CAU_SHRINK_LEAST 0.01 // a squared stretch, as is CAU_SHRINK_MOST
+#define CAU_SHRINK_LEAST 0.01 // least squared stretch by shrinkage
 #define CAU_SHRINK_MOST 4.0
 #define CAU_MESH_UNIT_LEAST_M 1e-9
 #define CAU_MESH_UNIT_MOST_M 1000.0

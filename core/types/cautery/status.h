@@ -92,7 +92,7 @@ cau_fail(cau_error *error, cau_status status, const char *path, const char *form
 }
 
 #ifdef __clang_analyzer__
-// The analyzer does not look into functions with variable arguments. This macro shows it the
-// result.
+// The analyzer does not look into functions with variable arguments. This macro shows the result to
+// the analyzer.
 #define cau_fail(error, status, ...) ((void)(cau_fail)((error), (status), __VA_ARGS__), (status))
 #endif

@@ -5,8 +5,9 @@
 
 #include <stdlib.h>
 
-static const double STEP_M = 1e-9; // difference of positions, m
-// Relative error. The gradient has a kink where two nearest points are equally near.
+static const double STEP_M = 1e-9; // displacement for the finite differences, m
+// Largest relative error of the gradient. The gradient has a kink where two nearest points are
+// equally near.
 static const double DIFFERENCE = 1e-4;
 static const double ROUNDING = 1e-12;
 
@@ -176,7 +177,8 @@ static void a_slide_rubs(void **state)
 		pressed += collide->grip[k].most_n;
 	memcpy(x, s.x, 3 * (size_t)n * sizeof *x);
 	double energy[2];
-	for (int k = 0; k < 2; k++) { // far beyond sticking; the pairs keep their distances
+	// The slide is far beyond sticking; the pairs keep their distances.
+	for (int k = 0; k < 2; k++) {
 		for (int32_t v = upper; v < n; v++)
 			x[3 * (size_t)v] = s.x[3 * (size_t)v] + 2e-3 * (k + 1);
 		energy[k] = cau_collide_evaluate(collide, s.pool, x) - collide->energy_j;

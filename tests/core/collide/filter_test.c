@@ -124,8 +124,8 @@ static void what_is_fixed_is_not_moved(void **state)
 	rig_finish(&s.r);
 }
 
-// If the list of pairs is full, the search keeps only pairs that this step needs. These hold the
-// step back exactly as all pairs do.
+// If the list of pairs is full, the search keeps only pairs that this step needs. These pairs hold
+// the step back exactly as all pairs would.
 static void scant_room_changes_nothing(void **state)
 {
 	(void)state;
@@ -184,7 +184,7 @@ static void what_passes_is_what_is_let_be(void **state)
 		cau_collide_see(&s.collide, s.pool, s.x);
 		bool passes = cau_collide_foresee(&s.collide, longest);
 		for (int32_t i = 0; i < 3 * n; i++)
-			s.collide.step[i] = NAN; // all other vertices, which may not be read
+			s.collide.step[i] = NAN; // steps of all other vertices, which must not be read
 		for (int32_t i = 0; i < 4 * s.collide.unclear_count; i++) {
 			size_t v = (size_t)s.collide.pair[s.collide.unclear[i / 4]].vertex[i % 4];
 			memcpy(s.collide.step + 3 * v, wanted + 3 * v, 3 * sizeof *wanted);

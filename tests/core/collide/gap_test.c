@@ -6,8 +6,8 @@
 
 enum { CASES = 300, GRID = 60 };
 static const double ROUNDING = 1e-12;
-static const double GRID_STEP =
-	2.0 / GRID; // largest error of the grid's least distance, for parts of size 1
+// Largest error of the grid's least distance, for parts of size 1.
+static const double GRID_STEP = 2.0 / GRID;
 
 static double draw(uint64_t *random)
 {

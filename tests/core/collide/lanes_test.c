@@ -6,7 +6,7 @@
 
 enum { CASES = 20000 };
 static const double THICKNESS_M = 5e-4;
-// Rounding of `least` and `most` to float, for positions within a metre.
+// Largest error of `least` and `most`, which are rounded to float, for positions within a metre.
 static const double ROUNDING_M = 2e-7;
 
 static double draw(uint64_t *random)

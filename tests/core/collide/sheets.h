@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two sheets, one above the other. Random noise moves vertices of both near each other.
+// Two sheets, one above the other. Random noise moves vertices of both sheets near each other.
 #pragma once
 
 #include "collide/collide.h"

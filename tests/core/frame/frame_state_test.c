@@ -86,8 +86,8 @@ static void test_mask_and_visible_vertices_after_cuts(void **state)
 	rig_finish(&f.r);
 }
 
-// Exposure of a vertex is the largest exposure over ignition of its edges. A rebuild finds the
-// same.
+// Exposure of a vertex is the largest exposure over ignition of its edges. cau_frame_rebuild finds
+// the same exposures.
 static void test_exposure_of_vertices(void **state)
 {
 	(void)state;

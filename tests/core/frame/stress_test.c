@@ -5,7 +5,8 @@
 #include "core/rig/rig.h"
 #include "frame/frame_state.h"
 
-static const double STRESS_TOLERANCE = 1e-5; // rounding of float sums over two dozen tetrahedra
+// Largest relative error of a stress: rounding of float sums over two dozen tetrahedra.
+static const double STRESS_TOLERANCE = 1e-5;
 
 typedef struct framed {
 	rig r;

@@ -9,7 +9,8 @@
 
 static const double AMBIENT_C = 37;
 static const double TICK_S = 1.0 / 60;
-static const double FLOAT_C = 1e-4; // rounding of sums of eight floats around 200 degC
+// Largest error of a temperature, degC: rounding of sums of eight floats near 200 degC.
+static const double FLOAT_C = 1e-4;
 
 typedef struct heated {
 	rig r;

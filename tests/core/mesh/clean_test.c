@@ -89,7 +89,8 @@ static void vertices_merge_across_cells(void **state)
 		cau_mesh mesh = copy_of(5, position, 2, (int32_t[]){0, 1, 2, 3, 4, 0}, 0, NULL);
 		cau_mesh_report report = {0};
 		assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
-		assert_int_equal(report.duplicate_vertices, 1); // 1.39e-5 apart, the limit is 1.73e-5
+		// The two vertices are 1.39e-5 apart; the limit is 1.73e-5.
+		assert_int_equal(report.duplicate_vertices, 1);
 		cau_mesh_finish(&mesh);
 	}
 }
@@ -188,7 +189,7 @@ static void degenerate_tetrahedra_are_left_out(void **state)
 	cau_mesh_report report = {0};
 	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
 	assert_int_equal(report.degenerate_tetrahedra, 2);
-	assert_int_equal(report.unused_vertices, 1); // a vertex of the removed elements
+	assert_int_equal(report.unused_vertices, 1); // only removed elements had this vertex
 	assert_int_equal(mesh.tetrahedron_count, 1);
 	assert_int_equal(mesh.tetrahedron_region[0], 21);
 	assert_int_equal(mesh.vertex_count, 4);

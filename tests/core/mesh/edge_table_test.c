@@ -60,8 +60,9 @@ static void sheet_keeps_eulers_characteristic(void **state)
 	cau_edge_table table;
 	assert_int_equal(cau_edge_table_make(&primitives, layer, &table, NULL), CAU_OK);
 	check_table(&primitives, &table);
-	assert_int_equal(mesh.vertex_count - table.edge_count + mesh.triangle_count, 1); // of a disc
-	// All edges except the rim.
+	// Euler's characteristic of a disc is 1.
+	assert_int_equal(mesh.vertex_count - table.edge_count + mesh.triangle_count, 1);
+	// All edges except those of the rim have a hinge.
 	assert_int_equal(table.hinge_count, table.edge_count - 2 * (60 + 50));
 	cau_edge_table_finish(&table);
 	cau_mesh_finish(&mesh);
@@ -80,9 +81,9 @@ static void slab_keeps_eulers_characteristic(void **state)
 	assert_int_equal(cau_edge_table_make(&primitives, NULL, &table, NULL), CAU_OK);
 	assert_int_equal(cau_face_table_make(&primitives, &faces, NULL), CAU_OK);
 	check_table(&primitives, &table);
-	assert_int_equal(mesh.vertex_count - table.edge_count + faces.face_count -
-	                     mesh.tetrahedron_count,
-	                 1); // of a ball
+	// Euler's characteristic of a ball is 1.
+	assert_int_equal(
+		mesh.vertex_count - table.edge_count + faces.face_count - mesh.tetrahedron_count, 1);
 	assert_int_equal(table.hinge_count, 0);
 	cau_face_table_finish(&faces);
 	cau_edge_table_finish(&table);

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Relative rounding of a sum of 30,000 terms.
+// Largest relative error of a sum: rounding of 30,000 terms.
 static const double sum_tolerance = 1e-12;
 
 static void sheet_of_the_fascia_scene_has_its_counts(void **state)
@@ -84,7 +84,7 @@ static void slab_of_the_fat_scene_has_its_counts(void **state)
 	int boundary = 0;
 	for (int f = 0; f < faces.face_count; f++)
 		boundary += faces.owner[2 * f + 1] < 0;
-	assert_int_equal(boundary, 6200); // conforming: no face inside has only one owner
+	assert_int_equal(boundary, 6200); // the mesh is conforming: no inner face has only one owner
 	cau_face_table_finish(&faces);
 	cau_mesh_finish(&mesh);
 }

@@ -3,7 +3,7 @@
 
 #include "mesh/index_sort.h"
 
-enum { ROWS = 2000, WIDTH = 3, BOUND = 11 }; // few values, so that many tuples are equal
+enum { ROWS = 2000, WIDTH = 3, BOUND = 11 }; // with a small BOUND many tuples are equal
 
 static void rows_come_in_order_and_equal_ones_in_their_own(void **state)
 {

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Rounding of one product and one sum, for numbers near 1.
+// Largest error of a coordinate: rounding of one product and one sum, for numbers near 1.
 static const double place_tolerance = 1e-15;
 
 static const char triangle_file[] = "v 0 0 0\nv 10 0 0\nv 0 20 0\nv 5 5 5\nf 1 2 3\n";

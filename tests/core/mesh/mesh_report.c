@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prints the report of mesh files, or why they are refused, one block for each file. The set of
-// small files (file_set.py) is tested with it.
+// small files (file_set.py) is tested with this program.
 //
 //     mesh_report [--strict] [--unit-m U] FILE ...
 #include <stdlib.h>

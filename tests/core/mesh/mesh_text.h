@@ -24,8 +24,9 @@ static inline void refuse_text(const char *name, const char *text, cau_status st
 	cau_mesh_finish(&mesh);
 }
 
-// Reads every beginning of the file. Expects that each one shorter than `least` bytes is refused,
-// and that none crashes. The bytes are copied so that a sanitizer finds a read past their end.
+// Reads every beginning of the file. Expects that each beginning shorter than `least` bytes is
+// refused, and that no beginning crashes the reader. The bytes are copied so that a sanitizer finds
+// a read past their end.
 static inline void refuse_beginnings(const char *name, const void *bytes, size_t byte_count,
                                      size_t least)
 {

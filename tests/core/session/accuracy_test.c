@@ -8,12 +8,12 @@
 #include "session/session_internal.h"
 
 enum { CONVERGED = 300, MOST = 60, MOST_SAMPLES = 400 };
-// Relative residual, in the norm in which steps are measured.
+// Relative residual at which a step is taken as converged, in the norm in which steps are measured.
 static const double converged_residual = 1e-7;
 
 // ---- scenes
 
-// A taut sheet, pinned at its rim, with a hook that is pressed in and drawn.
+// Returns a scene: a taut sheet, pinned at its rim, with a hook that is pressed in and drawn.
 static cau_scene_def *make_taut(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
@@ -23,7 +23,7 @@ static cau_scene_def *make_taut(void)
 	return scene;
 }
 
-// A block of fat on a pinned floor, with a hook that is pressed in and drawn.
+// Returns a scene: a block of fat on a pinned floor, with a hook that is pressed in and drawn.
 static cau_scene_def *make_block(void)
 {
 	const double size[3] = {0.06, 0.04, 0.01}, least[3] = {-1, -1, -0.0101},
@@ -38,7 +38,7 @@ static cau_scene_def *make_block(void)
 	return scene;
 }
 
-// A sheet that hangs free from one edge. Its slow modes hardly converge.
+// Returns a scene: a sheet that hangs free from one edge. Its slow modes hardly converge.
 static cau_scene_def *make_free(void)
 {
 	const double least[3] = {-1, 0.0249, -1}, most[3] = {1, 1, 1};
@@ -51,7 +51,7 @@ static cau_scene_def *make_free(void)
 
 // ---- errors
 
-// Error of the force on the first tool, relative to the exact force.
+// Returns the error of the force on the first tool, relative to the exact force.
 static double force_error(const cau_session *session, const cau_session *exact)
 {
 	double off = 0, force = 0;
@@ -169,7 +169,7 @@ static void a_taut_sheet_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 40 : 120, CAU_TEST_SANITIZED ? 8 : 2);
 		expect_right("taut", &of);
-		// 3 for vertices alone: contact points of faces move with the tool
+		// It would be 3 with contact of vertices alone: contact points of faces move with the tool.
 		assert_true(of.iterations <= 10 * of.count);
 	}
 }
@@ -182,13 +182,15 @@ static void fat_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 36 : 100, CAU_TEST_SANITIZED ? 12 : 3);
 		expect_right("fat", &of);
-		// 14 for vertices alone: contact points of faces move with the tool.
+		// The bound would be 14 with contact of vertices alone: contact points of faces move with
+		// the tool.
 		assert_true(of.iterations <= 17 * of.count);
 	}
 }
 
-// A steady push needs no second increment to report its force. A push that jumps needs one in the
-// same tick, because a blow differs from the steady steps from which the solver learned.
+// A steady push needs no second increment to report its force. A push that jumps needs a second
+// increment in the same tick, because a blow differs from the steady steps from which the solver
+// learned.
 static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 {
 	(void)state;
@@ -226,8 +228,8 @@ static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 	free(scene);
 }
 
-// A free sheet does not reach 1 % in so few iterations. It uses all iterations, and reports its
-// error.
+// A free sheet does not reach 1 % in so few iterations. Its steps use all iterations, and report
+// their error.
 static void what_is_not_reached_is_told(void **state)
 {
 	(void)state;

@@ -5,11 +5,12 @@
 
 #include <stdio.h>
 
-static const double balance_tolerance = 1e-6; // times the sum of |f_i|
-// Rounding of sums over a few hundred vertices and ticks, relative to the momentum.
+static const double balance_tolerance = 1e-6; // largest sum of forces, times the sum of |f_i|
+// Largest change of momentum: rounding of sums over a few hundred vertices and ticks, relative to
+// the momentum.
 static const double momentum_tolerance_double = 1e-9, momentum_tolerance_single = 1e-4;
-static const double rest_tolerance = 1e-9; // times an edge length
-// Rounding of a step's increment, relative to the fallen height.
+static const double rest_tolerance = 1e-9; // largest motion at rest, times an edge length
+// Largest error of a fall: rounding of a step's increment, relative to the fallen height.
 static const double fall_tolerance_double = 1e-9, fall_tolerance_single = 1e-5;
 
 enum { CONVERGED = 300 };
@@ -185,7 +186,7 @@ static void rest_stays_at_rest(void **state)
 	check_rest(CAU_PRECISION_SINGLE);
 }
 
-// With implicit Euler a body falls g dt^2 (1 + 2 + ... + n) in n ticks.
+// Checks a fall. With implicit Euler a body falls g dt^2 (1 + 2 + ... + n) in n ticks.
 static void check_fall(int precision, double tolerance)
 {
 	enum { TICKS = 60 };

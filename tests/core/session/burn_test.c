@@ -8,10 +8,11 @@
 #include "session/session_internal.h"
 
 enum { MOST_TICKS = 400 };
-// Duration and length of the cut, at the scenes' 2 mm/s.
+// Duration, s, and length, m, of the cut, at the scenes' 2 mm/s.
 static const double drawn_s = 6, drawn_m = 0.012;
-// Under sanitizers a step takes thirty times as long. There fascia is cut just far enough to
-// measure its lips. The lips of fat need a long trench, so only other builds test them.
+// Duration, s, of the cut under sanitizers, where a step takes thirty times as long. There fascia
+// is cut just far enough to measure its lips. The lips of fat need a long trench, so only other
+// builds test them.
 static const double drawn_under_sanitizers_s = 0.5;
 enum { COLD_TICKS = CAU_TEST_SANITIZED ? 60 : 600 };
 // Least mean displacement of the lips beyond that of the same tissue without tension, in edge
@@ -121,9 +122,9 @@ static element_list tetrahedra(const cut_run *run)
 	                      run->session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON]};
 }
 
-// Mean displacement along `axis`, away from the middle of the cut, in edge lengths. It is taken
-// over the vertices that lost an element and still have another. Vertices nearer to the middle than
-// `beyond_m` do not count.
+// Returns the mean displacement along `axis`, away from the middle of the cut, in edge lengths. The
+// mean is over the vertices that lost an element and still have an element. Vertices nearer to the
+// middle than `beyond_m` do not count.
 static double drawn_back_edges(const cut_run *run, element_list list, size_t axis, double beyond_m)
 {
 	cau_frame frame = stage_frame(run->session);

@@ -47,8 +47,8 @@ static inline cau_scene_def *busy_scene(void)
 	return scene;
 }
 
-// Makes all tissue able to tear. Tissue then tears also after the commands have ended, so not every
-// test wants it.
+// Makes all tissue able to tear. Tissue then tears also after the commands have ended, so only some
+// tests call this function.
 static inline void busy_tear(cau_scene_def *scene)
 {
 	const double tear_j_m2 = 50;

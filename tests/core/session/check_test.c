@@ -157,7 +157,7 @@ static void materials_outside_their_theory(void **state)
 	stage_refuse(scene, CAU_BAD_VALUE, &error);
 	assert_string_equal(error.path, "layers[1].poisson_ratio");
 	scene->layers[1].fat[0].poisson_ratio = 0.3;
-	const double indefinite[6] = {1, 1, 1, 1.01, 0, 0}; // its least eigenvalue is -0.01
+	const double indefinite[6] = {1, 1, 1, 1.01, 0, 0}; // the least eigenvalue is -0.01
 	memcpy(scene->layers[1].fat[0].target, indefinite, sizeof indefinite);
 	stage_refuse(scene, CAU_BAD_VALUE, &error);
 	assert_string_equal(error.path, "layers[1].target");
@@ -262,7 +262,7 @@ static void bad_meshes(void **state)
 							   "3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n";
 	char text[512];
 	cau_error error;
-	// Inverted: mending turns it.
+	// This tetrahedron is inverted; cleaning turns it.
 	snprintf(text, sizeof text, "%s1 4 0 1 3 2 4\n$EndElements\n", head);
 	open_mesh("t.msh", text, CAU_LAYER_FAT, CAU_OK, &error);
 	snprintf(text, sizeof text, "%s1 4 0 1 2 3 3\n$EndElements\n", head);
@@ -270,8 +270,8 @@ static void bad_meshes(void **state)
 	assert_true(strstr(error.reason, "0") != NULL); // the error names the element
 	snprintf(text, sizeof text, "%s1 4 0 1 2 3 9\n$EndElements\n", head);
 	open_mesh("t.msh", text, CAU_LAYER_FAT, CAU_BAD_MESH, &error);
-	// A triangle without area, a fat without tetrahedra, a number that is none, and files without a
-	// mesh are refused.
+	// A triangle without area, a fat without tetrahedra, a word in place of a number, and files
+	// without a mesh are refused.
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", CAU_LAYER_FASCIA, CAU_BAD_MESH,
 	          &error);
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", CAU_LAYER_FAT, CAU_BAD_MESH, &error);

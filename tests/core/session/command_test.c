@@ -7,8 +7,8 @@
 
 #include "session/session_internal.h"
 
-// Largest distance of a vertex. Strays are stopped at 200 times the size of all tissue, which is 5
-// to 8 cm here.
+// Largest allowed distance of a vertex, m. Strays are stopped at 200 times the size of all tissue,
+// which is 5 to 8 cm here.
 static const double bounded_m = 16;
 
 static void expect_refused(cau_session *session, cau_command *command, double *field,
@@ -225,7 +225,7 @@ static void what_falls_for_ever_is_stopped(void **state)
 	const double size[3] = {0.04, 0.03, 0.01}, least[3] = {-1, -1, -0.0101},
 				 most[3] = {1, 1, -0.0099};
 	const int32_t cells[3] = {6, 5, 2}, few[3] = {2, 2, 1};
-	const double at_rest_m_s = 1e-4; // half a micrometre a tick is at rest
+	const double at_rest_m_s = 1e-4; // largest speed of vertices at rest
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	cau_default_gravity(scene->gravity_m_s2);
 	scene->damping_per_s = 1;
@@ -275,7 +275,7 @@ static void pins_take_frozen_vertices_over(void **state)
 		alone++;
 	int32_t strayed = alone + 1;
 	assert_false(session->fixed[strayed]);
-	session->dissection.live_elements[alone] = 0; // as if its last element had parted
+	session->dissection.live_elements[alone] = 0; // as if the vertex's last element had parted
 	session->fixed[alone] = session->fixed[strayed] = 1;
 	session->frozen_count = 2;
 	cau_command command = stage_command(CAU_COMMAND_PIN);
@@ -314,7 +314,8 @@ static void a_tool_that_leaps(void **state)
 			stage_step(session, 1);
 			cau_vec3 after = cau_vec3_of(stage_tool(session, "hook")->pose.position_m);
 			double most = scene->tools[0].max_speed_m_s * info.step_s;
-			assert_true(cau_length(cau_sub(after, before)) <= most * (1 + 1e-9)); // rounding
+			// The bound allows 1e-9 for rounding.
+			assert_true(cau_length(cau_sub(after, before)) <= most * (1 + 1e-9));
 			assert_true(farthest(session) < 0.5);
 		}
 	}
@@ -390,7 +391,7 @@ static void only_pinned_vertices_are_driven(void **state)
 	for (int32_t k = 0; k < frame.moved_count; k++)
 		told |= frame.moved[k] == pinned;
 	assert_true(told);
-	stage_step(session, 1); // the vertex stays there
+	stage_step(session, 1); // the vertex stays where it was led
 	assert_memory_equal(stage_frame(session).position + 3 * (size_t)pinned, at, sizeof at);
 	cau_session_destroy(session);
 	free(scene);

@@ -31,7 +31,7 @@ static const press presses[] = {
 	{"80 mm ball, slab of 1.25 mm cells, 0.1 m/s", true, 40e-3, 1.25e-3, 0.1, 4e-3},
 };
 
-static const double most_m = 1e-4; // greatest depth of a face in a ball at rest
+static const double most_m = 1e-4; // m, greatest depth of a face in a ball at rest
 static const double wide_ball_m = 0.04;
 
 static cau_scene_def *press_scene(const press *p)
@@ -162,12 +162,13 @@ static void nothing_crosses(void **state)
 		if (presses[i].radius_m < wide_ball_m)
 			continue;
 		wide_n = wide_n > 0 ? wide_n : end.force_n;
-		assert_true(fabs(end.force_n / wide_n - 1) < 0.1); // the same law, in finer cells
+		// The same material gives the same force in finer cells.
+		assert_true(fabs(end.force_n / wide_n - 1) < 0.1);
 		assert_int_equal(end.left_out, 0);
 	}
 	assert_int_equal(failed, 0);
 	assert_true(wide_n > 0.5);
-	// In the last case: constraints without a whole column work too.
+	// The last case has more constraints than whole columns, and these constraints work too.
 	assert_true(end.rows > CAU_WHOLE_COLUMNS);
 }
 

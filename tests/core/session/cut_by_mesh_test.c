@@ -3,7 +3,7 @@
 // sessions cut a slab of `fat-neohookean` with its membrane, which the tool presses in, drags and
 // burns, for 40 mm at the scene's speed. The result is the mean of eight cuts at different
 // positions in the cells. Compared with the shipped cells it must agree within 15 % for 1 to 2
-// times as many cells along an edge, and within 30 % for half as many.
+// times as many cells along an edge, and within 30 % for half as many cells.
 //
 // The slab is as wide as the tool's effect, and steps are 1/30 s long, which removes the same
 // volume (tests/paper/validation.md). Without options: the shipped cells and half of them. With
@@ -13,11 +13,13 @@
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// Under sanitizers steps take long, and all cuts run the same code.
+// Number of cuts whose mean is taken. Under sanitizers one cut suffices, because steps take long
+// and all cuts run the same code.
 enum { WAYS = CAU_TEST_SANITIZED ? 1 : 8 };
 static const double half_cut_m = 0.02, cell_m = 0.002, near_m = 1e-4;
 
-static const int32_t shipped_cells[3] = {26, 10, 4}; // cells of 2 mm; the ball's radius is 3 mm
+// Numbers of cells of 2 mm in the shipped scene. The ball's radius is 3 mm.
+static const int32_t shipped_cells[3] = {26, 10, 4};
 static const double step_s = 1.0 / 30;
 
 // Pins the bottom and both short ends, as in the shipped slab.
@@ -94,7 +96,7 @@ static void assert_alike(double volume_m3, double shipped_m3, double fineness)
 		         100 * most);
 }
 
-// The paper's rule also removes half a cell all round. The test can detect that.
+// The paper's rule also removes half a cell all round. The test would detect such a difference.
 static void half_the_cells_take_as_much(void **state)
 {
 	(void)state;
@@ -112,7 +114,8 @@ static void half_the_cells_take_as_much(void **state)
 static void steps_and_iterations_take_as_much(void **state)
 {
 	(void)state;
-	static const double fineness = 0.5, alike = 0.1; // a cell is a fiftieth of the cut
+	// `alike` is the largest relative difference; a cell is a fiftieth of the cut.
+	static const double fineness = 0.5, alike = 0.1;
 	static const struct {
 		double step_s;
 		int32_t iterations; // 0: the scene's number

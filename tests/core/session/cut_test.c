@@ -8,10 +8,10 @@
 
 #include "session/session_internal.h"
 
-// Relative error of the system's solution (core/README.md, "What must hold, whatever the speed").
-// The larger of the two bounds holds.
+// Largest relative error of the system's solution (core/README.md, "What must hold, whatever the
+// speed"). The larger of the two bounds holds.
 static const double system_tolerance = 1e-10;
-static const double condition_tolerance = 1e-13; // times the condition number
+static const double condition_tolerance = 1e-13; // largest error, times the condition number
 // Greatest delay of a falling strip by waiting downdates, as a share of the fallen height.
 static const double fall_tolerance = 0.02;
 
@@ -186,7 +186,7 @@ static cau_scene_def *strip_scene(int fineness)
 	scene->damping_per_s = 2;
 	cau_layer_def *fascia =
 		stage_add_sheet(scene, "fascia", 0.06, 0.01, 48 * fineness, 8 * fineness);
-	fascia->sheet[0].heat.absorption_per_s = 1000; // parts at once
+	fascia->sheet[0].heat.absorption_per_s = 1000; // the strip parts at once
 	fascia->sheet[0].limit_stiffness_pa = 1e5;
 	stage_pin_box(scene, least, most);
 	// The needle is above the strip's middle, over its whole width.

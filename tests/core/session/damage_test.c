@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static const double rounding = 1e-12; // relative rounding of a volume
+static const double rounding = 1e-12; // largest relative error of a volume
 
 static cau_session *burning(void)
 {

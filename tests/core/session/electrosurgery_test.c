@@ -225,8 +225,8 @@ static void coagulated_tissue_shrinks(void **state)
 	cau_session *session = stage_open(scene, 1);
 	go(session, 0, DWELL_TICKS);
 	stage_energize(session, "hook", 0);
-	stage_step(session,
-	           60 + 12); // each element is visited within a second, and shrinks for 0.2 s
+	// Each element is visited within 60 ticks, and shrinks for 12 ticks (0.2 s).
+	stage_step(session, 60 + 12);
 	int32_t shrunk = 0;
 	for (int32_t t = 0; t < session->tissue.triangle_count; t++) {
 		double root[6], share = cau_dissection_coagulated(&session->dissection, 0, t);
@@ -241,8 +241,8 @@ static void coagulated_tissue_shrinks(void **state)
 	cau_session_destroy(session);
 }
 
-// Cells have the thickness with which the sheet was created, even if the thickness has changed
-// since.
+// The cells of a sheet keep the thickness with which the sheet was created, even if a command
+// changes the thickness later.
 static void a_changed_thickness_is_restored(void **state)
 {
 	(void)state;
@@ -316,7 +316,8 @@ static int32_t living_links(const cau_session *session)
 	return count;
 }
 
-// The links of the middle row lead to vertices 3 mm beside it.
+// y of the ball's path, m. The links of the fascia's middle row (y = 0) lead to vertices of the fat
+// at y = -3 mm. The ball passes half way between.
 static const double half_way_m = -1.5e-3;
 
 static void draw_between_layers(cau_session *session, int first, int end)
@@ -411,7 +412,8 @@ static void edges_cannot_part_by_power(void **state)
 	free(scene);
 }
 
-// If the definition has no numbers for the blade, the blade is that of its shape, to the bit.
+// If the definition has no numbers for the blade, the blade has the numbers of the tool's shape, to
+// the bit.
 static void the_same_blade_by_numbers_changes_no_bit(void **state)
 {
 	(void)state;
@@ -526,7 +528,7 @@ static void power_ends_when_the_load_has_risen(void **state)
 	assert_true(cau_session_hash(session) == cau_session_hash(other));
 	stage_step(session, 30);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);
-	// Energy is on already, so this does not count as off and on.
+	// Energy is on already, so this command does not end and restart it.
 	stage_energize(session, "hook", 1);
 	stage_step(session, 1);
 	assert_true(stage_tool(session, "hook")->delivered_w == 0);

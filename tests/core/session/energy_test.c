@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy gain of a step. It is 0 at rest, and in converged steps, for any kind of work on the
-// tissue. It is not 0 if ten iterations leave a hanging sheet far from its step's solution.
+// The energy gain of a step. The gain is 0 at rest, and in converged steps, for any kind of work on
+// the tissue. The gain is not 0 if ten iterations leave a hanging sheet far from its step's
+// solution.
 #include "core/session/stage.h"
 
 #include <stdio.h>
 
 enum { FEW = 10, CONVERGED = 1000 };
 
-// Rounding of energies in double, relative to the largest of them.
+// Largest error of an energy: rounding in double, relative to the largest energy.
 static const double ROUNDING = 1e-9;
 
 typedef struct tally {
@@ -26,7 +27,7 @@ static void run(cau_session *session, int ticks, tally *t)
 	}
 }
 
-// A block of fat on a pinned floor.
+// Returns a scene: a block of fat on a pinned floor.
 static cau_scene_def *make_block(void)
 {
 	const double size[3] = {0.04, 0.03, 0.02};
@@ -91,7 +92,7 @@ static void a_hanging_sheet_gains_nothing(void **state)
 // Euler applies the force at a step's end during the whole step. So of the work of n steps a share
 // of 1 / n is lost, and no step gains energy.
 enum { PULL_TICKS = 40 };
-static const double LOSS_MOST = 0.1; // twice 2 / PULL_TICKS
+static const double LOSS_MOST = 0.1; // largest share of lost work: twice 2 / PULL_TICKS
 
 static void assert_brought_in(cau_session *session, const tally *t, const char *by)
 {
@@ -210,7 +211,8 @@ static void what_shrinks_does_not_count(void **state)
 	print_message("%d elements removed: holds %.3g J, gained %.3g J, lost %.3g J\n", removed,
 	              balance.elastic_j, t.gained_j, t.gained_j - t.sum_j);
 	assert_true(removed > 10);
-	assert_true(t.gained_j < 1e-6 * balance.elastic_j); // error left by the tolerance of the steps
+	// The bound allows for the error that the steps' tolerance leaves.
+	assert_true(t.gained_j < 1e-6 * balance.elastic_j);
 	cau_session_destroy(session);
 	free(scene);
 }

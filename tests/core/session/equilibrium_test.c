@@ -10,15 +10,15 @@
 #include "reference/case.h"
 #include "session/session_internal.h"
 
-// Share of the largest displacement, and of the largest force component of the case.
+// Largest error, as a share of the case's largest displacement or largest force component.
 static const double tolerance = 1e-3;
 
 enum { MOVING_TICKS = 40, SETTLING_TICKS = 80, ITERATIONS = 100 };
 // Relative residual of each step, far below the tolerances.
 static const double residual = 1e-7;
-// Near critical damping for the cantilever, the softest case.
+// Damping of motion, 1/s: near critical damping for the cantilever, the softest case.
 static const double damping_per_s = 26;
-static const double longest_step = 1.0 / 30; // the least inertia that a scene may have
+static const double longest_step = 1.0 / 30; // s; with a long step, inertia is least
 
 static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
 {
@@ -45,7 +45,7 @@ static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
 static void pin_face(cau_scene_def *scene, const cau_reference_case *reference, int32_t count,
                      const int32_t *vertex)
 {
-	const double slack = 1e-9; // m, far below an edge
+	const double slack = 1e-9; // m, margin of the box, far below the length of an edge
 	double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
 	for (int32_t k = 0; k < count; k++)
 		for (size_t c = 0; c < 3; c++) {
@@ -200,7 +200,7 @@ static void *room(size_t count, size_t bytes)
 }
 
 // Replaces the solution for contact with vertices by that for contact with faces. The solver starts
-// from the former.
+// from the solution for contact with vertices.
 static void let_faces_bear(cau_reference_case *reference)
 {
 	size_t n = (size_t)reference->vertex_count, faces = 4 * (size_t)reference->tetrahedron_count;

@@ -9,7 +9,7 @@
 
 static const double asked_of_solution = 0.01, asked_over_meshes = 0.1, asked_of_hertz = 0.1;
 static const double asked_at_four_cells = 0.03,
-					asked_at_two = 0.1; // difference of largest and least force, over the mean
+					asked_at_two = 0.1; // largest force less least force, over the mean
 
 // Presses a ball in beside the lines of the mesh, so that no vertex is below the ball.
 static double press(indent_stand *stand)
@@ -95,7 +95,7 @@ static void nor_on_finer_meshes(void **state)
 	over_meshes(&wide, (double[]){3.2e-3, 1.6e-3, 1.3e-3}, 3);
 }
 
-// Returns the difference of largest and least force over their mean, at eight positions along a
+// Returns the largest force less the least force, over the mean force, at eight positions along a
 // cell.
 static double change(double cell_m)
 {

@@ -22,8 +22,8 @@ typedef struct forgery {
 forgery *forgery_create(int kind);
 void forgery_destroy(forgery *f);
 
-// Copies a snapshot into f->bytes and makes the changes in `data`, at most one for each nine bytes
-// of it. The hash is right afterwards. Returns the number of bytes.
+// Copies a snapshot into f->bytes and makes the changes in `data`, at most one change for each nine
+// bytes of `data`. The hash is right afterwards. Returns the number of bytes.
 size_t forgery_make(forgery *f, const uint8_t *data, size_t count);
 
 // Restores f->bytes. Returns CAU_OK or CAU_CORRUPT. Any other status fails the program. So does a

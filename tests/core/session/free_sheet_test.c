@@ -7,15 +7,16 @@
 #include "session/session_internal.h"
 
 enum { MOST = 60, CONVERGED = 300, TICKS = CAU_TEST_SANITIZED ? 40 : 60, EVERY = 2 };
-static const double converged_residual = 1e-7; // relative residual, in the norm of H
-// Force that a converged step leaves in double, as a share of the sheet's weight.
+// Largest relative residual of a converged step, in the norm of H.
+static const double converged_residual = 1e-7;
+// Largest force that a converged step leaves in double, as a share of the sheet's weight.
 static const double force_rounding = 1e-3, weight_n = 0.02;
-// Errors below a tenth of the wanted accuracy do not matter. In single precision, the rounding of a
-// stiff sheet's stresses moves the sheet by tens of micrometres in a step, and the converged sheet
-// as well.
+// Errors, by precision, that are too small to matter: below a tenth of the wanted accuracy. In
+// single precision, the rounding of a stiff sheet's stresses moves the sheet by tens of micrometres
+// in a step, and the converged sheet as well.
 static const double nothing[CAU_PRECISION_COUNT] = {
 	[CAU_PRECISION_SINGLE] = 0.01, [CAU_PRECISION_DOUBLE] = 1e-3};
-// Rounding of energies in double, relative to the energy of a fall by a centimetre.
+// Largest error of an energy: rounding in double, relative to the energy of a fall by a centimetre.
 static const double energy_rounding = 1e-9, fall_j = 2e-4;
 
 // Returns a level sheet of 6 cm, pinned along an edge, which begins to fall.

@@ -15,8 +15,8 @@
 enum { SCENES = CAU_TEST_SANITIZED ? 2 : 16, FIRST_SEED = 1000 };
 enum { TICKS = 150, SAMPLE_EVERY = 10, SAMPLES = TICKS / SAMPLE_EVERY, CONVERGED = 400 };
 static const double converged_residual = 1e-8, wanted = 0.01;
-// A scene gains energy if the sum of its steps' gains exceeds this share of the largest
-// energy_scale_j of a step.
+// Largest sum of the gains of a scene's steps, as a share of the largest energy_scale_j of a step.
+// Above this sum the scene is counted as one that gains energy.
 static const double gain_most = 0.01;
 static const double steps_right = 0.95; // share of a scene's steps that must be right
 // Largest share of steps with a true error above three times the reported error. One more such step

@@ -4,7 +4,7 @@
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
-// Jaws 2 mm wide and 4 mm long on cells of 10 mm, half way between vertices.
+// Returns a scene: jaws 2 mm wide and 4 mm long on cells of 10 mm, half way between vertices.
 static cau_scene_def *coarse_scene(double x, double y, double z)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
@@ -41,7 +41,7 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 	double *before = malloc(bytes);
 	assert_non_null(before);
 	memcpy(before, stage_frame(session).position, bytes);
-	for (int tick = 0; tick < 20; tick++) { // while the jaws close
+	for (int tick = 0; tick < 20; tick++) { // the jaws close meanwhile
 		stage_step(session, 1);
 		cau_frame frame = stage_frame(session);
 		assert_true(stage_farthest(&frame, before, stage_info(session).vertex_count) < 1e-4);
@@ -56,7 +56,7 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 	for (int tick = 1; tick <= 40; tick++) {
 		stage_move(session, "jaws", 0.004, 0.003, -0.002 + fmin(speed_m * tick, way_m));
 		stage_step(session, 1);
-		if (tick == 20) { // holds on faces are part of snapshots
+		if (tick == 20) { // a snapshot must contain the holds on faces
 			stage_bytes shot = stage_snapshot(session);
 			bool exact = false;
 			cau_error error = {0};
@@ -100,7 +100,7 @@ static void empty_jaws_close_whole_and_say_so(void **state)
 
 // ---- jaws that stop at the tissue between them
 
-// A block on a pinned floor, 3 mm wide in x. Open jaws reach around it.
+// Returns a scene: a block on a pinned floor, 3 mm wide in x. Open jaws reach around it.
 static cau_scene_def *block_scene(int shape, double young_pa)
 {
 	const double size[3] = {0.003, 0.012, 0.012},

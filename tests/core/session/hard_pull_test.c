@@ -12,8 +12,8 @@
 static const double SIZE_M[3] = {0.06, 0.04, 0.02};
 static const int32_t CELLS[3] = {9, 6, 3};
 static const double FORCE_N = 80, LEAP_M = 0.025;
-// Greatest distance in a state without a fault: twice the size of the slab, and half of that again
-// for the motion of a step before it is checked.
+// Greatest distance of a vertex, m, in a state without a fault: twice the size of the slab, and
+// half of that again for the motion of a step before it is checked.
 static const double FARTHEST_M = 3 * 0.0748;
 enum { TICKS = 20, LIMITS = 4 };
 
@@ -107,7 +107,7 @@ static void lead_patch(cau_session *session)
 typedef struct pull {
 	const char *name;
 	void (*begin)(cau_session *session);
-	int beyond_tissue; // the pull, 80 N on a vertex, tears fat of 5 kPa
+	int beyond_tissue; // 1: the pull (80 N on a vertex) would tear fat of 5 kPa
 } pull;
 enum { PULLS = 4 };
 static const pull pulls[PULLS] = {{"patch", push_patch, 1},
@@ -134,8 +134,8 @@ static void assert_possible(const cau_session *session, const char *what)
 		fail_msg("%s: %g m away, %d inverted", what, far, frame.statistics.inverted);
 }
 
-// The refusal names the tick and the layer. The frame shows the state before. A snapshot restores
-// the session.
+// Asserts that the refusal names the tick and the layer, that the frame shows the state before the
+// step, and that a snapshot restores the session.
 static void assert_faulted(cau_session *session, const stage_bytes *shot, const cau_error *refusal,
                            const char *what)
 {
@@ -185,7 +185,7 @@ static void no_pull_ends_in_a_silent_disaster(void **state)
 	for (int model = 0; model < CAU_MODEL_COUNT; model++)
 		for (int fat = 0; fat < LIMITS; fat++)
 			for (int membrane = 0; membrane < LIMITS; membrane++) {
-				if (fat && membrane) // one limit at a time
+				if (fat && membrane) // only one of the two layers has a limit
 					continue;
 				tries++;
 				for (int k = 0; k < PULLS; k++)

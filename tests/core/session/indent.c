@@ -12,14 +12,14 @@ enum { MOST_LINES = 400, ITERATIONS = 100 };
 // Ratio of a cell outside the even part to its inner neighbour.
 static const double growth = 1.35;
 static const double accuracy = 1e-4;    // accuracy of each step
-static const double damping_per_s = 26; // tissue comes to rest within a second
-static const double above_m = 2e-4;     // height at which the ball waits
+static const double damping_per_s = 26; // 1/s; tissue comes to rest within a second
+static const double above_m = 2e-4;     // m, height at which the ball waits
 static const double speed_m_s = 0.05;
 enum { SETTLING_TICKS = 60 };
 
 double indent_dip_m(double radius_m)
 {
-	return fmin(8e-5, 0.03 * radius_m); // core's limits, see core/DECISIONS.md
+	return fmin(8e-5, 0.03 * radius_m); // the limits of core: see core/DECISIONS.md
 }
 
 double indent_cells(const indent *of)
@@ -68,7 +68,8 @@ static int32_t vertex_of(const grid *g, int32_t i, int32_t j, int32_t k)
 	return (i * g->wide + j) * g->deep + k;
 }
 
-// Adds Kuhn's six tetrahedra of a cell. Each follows the three axes in one of their orders.
+// Adds Kuhn's six tetrahedra of a cell. Each tetrahedron follows the three axes in one of their six
+// orders.
 static void add_cell(const grid *g, int32_t i, int32_t j, int32_t k, int32_t *tetrahedron)
 {
 	static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},

@@ -14,7 +14,7 @@ enum { TURNS = 9 }; // turning points of four periods
 static const double beam_m[3] = {0.06, 0.02, 0.01};
 static const int32_t beam_cells[3] = {12, 4, 2};
 static const double beam_hz = 5.01;
-static const double swing_m = 5e-4; // one 120th of its length, so the motion is linear
+static const double swing_m = 5e-4; // m; 1/120 of the beam's length, so the motion is linear
 
 static cau_scene_def *beam(int integrator, double rate_hz)
 {
@@ -152,11 +152,12 @@ static void implicit_euler_is_as_it_was(void **state)
 
 // ---- viscosity
 
-static const double damping_ratio = 0.05; // at 5 Hz; 0.73 of the amplitude is left after a period
+// Share of critical damping at 5 Hz; 0.73 of the amplitude is left after a period.
+static const double damping_ratio = 0.05;
 
 static double kept_by_kelvin_and_voigt(double hz, double viscosity_s)
 {
-	// Half of viscosity times angular frequency.
+	// The damping ratio is half of viscosity times angular frequency.
 	double pi = acos(-1.0), ratio = pi * hz * viscosity_s;
 	return exp(-2 * pi * ratio / sqrt(1 - ratio * ratio));
 }
@@ -311,7 +312,7 @@ static void a_block_keeps_its_angular_momentum(void **state)
 	stage_add_slab(scene, "cake", (double[3]){0.04, 0.04, 0.02}, (int32_t[3]){6, 6, 3});
 	scene->integrator = CAU_INTEGRATOR_SDIRK2;
 	assert_true(fabs(spin(scene, 10) - 1) <= 0.01);
-	scene->layers[0].viscosity_s = 0.05; // rotation is no stretch
+	scene->layers[0].viscosity_s = 0.05; // viscosity must not damp a rotation, which is no stretch
 	assert_true(fabs(spin(scene, 10) - 1) <= 0.01);
 	free(scene);
 }

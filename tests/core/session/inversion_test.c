@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tetrahedra that stay inverted are counted by layer, after half a second and not earlier, until
-// they recover. A gain of energy has its scale.
+// they recover. The gain of energy is reported with a reference, energy_scale_j.
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
 enum { LONG_TICKS = 30 };
 
-// A scene with a force in the middle of a slab that StVK's law cannot resist. A second layer at the
-// same place keeps its shape.
+// Returns a scene with a force in the middle of a slab that StVK's law cannot resist. A second
+// layer at the same place keeps its shape.
 static cau_scene_def *squashed_scene(int precision)
 {
 	const double size[3] = {0.04, 0.04, 0.01}, floor_m[2][3] = {{-1, -1, -0.0101}, {1, 1, -0.0099}};

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Replaces base/pages.h, by the linker, in tests that restore thousands of snapshots. Pages that
-// are given back are kept for the next taker. Unmapping them took half of the time of such a test,
-// because each time the kernel interrupts the other processors. Kept pages are filled with ones
-// (not a number, or -1), so a read after their return finds no valid state. This is not used under
-// sanitizers and in fuzzing, where such a read ends the program.
+// are given back are kept for the next request. Unmapping them took half of the time of such a
+// test, because each time the kernel interrupts the other processors. Kept pages are filled with
+// ones (not a number, or -1), so a read after their return finds no valid state. The replacement is
+// not used under sanitizers and in fuzzing, where such a read ends the program.
 #include <pthread.h>
 #include <string.h>
 
 #include "base/pages.h"
 
-// A larger block is not kept. An arena's block that is large because of an announced count is
-// hardly used, and filling it would take longer.
+// KEPT_MOST: largest number of kept blocks. BYTES_MOST: size up to which a block is kept. SPENT:
+// the byte with which kept blocks are filled. An arena's block that is large because of an
+// announced count is hardly used, and filling it would take longer.
 enum { KEPT_MOST = 16, BYTES_MOST = 256 << 10, SPENT = 0xff };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -22,7 +23,7 @@ bool __wrap_cau_pages_take(cau_pages *pages, size_t byte_count);
 void __real_cau_pages_give_back(cau_pages *pages);
 void __wrap_cau_pages_give_back(cau_pages *pages);
 
-// Removes an entry; the others keep the order in which they were given back.
+// Removes an entry. The other entries keep the order in which their blocks were given back.
 static void leave_out(int index)
 {
 	kept_count--;

@@ -20,7 +20,8 @@ static const bool once[CAU_COMMAND_COUNT] = {
 	[CAU_COMMAND_TOOL_HOLD] = true, // holds the present pose, which may differ from the earlier one
 };
 
-// A slab between the jaws of `jaws`. In this case repeated grasps once held 7, 3 and 0 points.
+// Returns a scene: a slab between the jaws of the tool `jaws`. In this case repeated grasps once
+// held 7, 3 and 0 points.
 static cau_scene_def *between_jaws(void)
 {
 	const double size[3] = {0.04, 0.04, 0.016};
@@ -122,7 +123,8 @@ static void stated_again_a_level_changes_nothing(void **state)
 	(void)state;
 	cau_scene_def *scene = between_jaws();
 	for (int kind = 0; kind < CAU_COMMAND_COUNT; kind++) {
-		assert_true(levels[kind] != once[kind]); // each kind is in one of the two lists
+		// Each kind must be in exactly one of the two lists.
+		assert_true(levels[kind] != once[kind]);
 		for (int variant = 0; variant < MOST && levels[kind]; variant++)
 			for (int what = 0; what < BEFORE_COUNT; what++) {
 				static const int agains[] = {0, 5, -2};

@@ -233,7 +233,7 @@ static size_t write_organ(const organ *of, unsigned char *bytes)
 	return used;
 }
 
-// Makes the organ as the server does: the unit is guessed from the surface, which is then filled.
+// Makes an organ as the server does: guesses the unit from the surface, then fills the surface.
 static void organ_lives(int number)
 {
 	static unsigned char bytes[84 + 50 * FACETS];
@@ -267,7 +267,7 @@ static bool all_organs;
 static void organs_live(void **state)
 {
 	(void)state;
-	// An organ with a hole; an organ that also has facets that look inward.
+	// Numbers of organs: one with a hole, and one that also has facets that look inward.
 	static const int some[] = {5, 17};
 	for (int k = 0; k < (all_organs ? ORGANS : CAU_TEST_SANITIZED ? 1 : 2); k++)
 		organ_lives(all_organs ? k : some[k]);

@@ -50,7 +50,8 @@ static void gravity_and_materials_of_now(void **state)
 	assert_int_equal(cau_session_restore(other, snapshot, bytes, &exact, NULL), CAU_OK);
 	assert_true(thickness_of(other, scene, &z) == 2 * before && z == -3);
 
-	// A material for another kind of layer is refused at its tick, and is not included before.
+	// A material for another kind of layer is refused at its tick, and the definition does not
+	// include it before.
 	material.as.material.kind = CAU_LAYER_FAT;
 	cau_default_fat_material(&material.as.material.fat);
 	stage_submit(session, &material);
@@ -69,8 +70,8 @@ static const cau_scene_def *present_of(const cau_session *session, const cau_sce
 	return &present;
 }
 
-// One tool is changed, one removed, one added. The definition includes this at once, and is the
-// same after the tick.
+// One tool is changed, one is removed, one is added. The definition includes these changes at once,
+// and is the same after the tick.
 static void tools_of_now(void **state)
 {
 	(void)state;
@@ -107,7 +108,7 @@ static void tools_of_now(void **state)
 	free(scene);
 }
 
-// A tool that has moved has its present pose.
+// In the definition, a tool that has moved has its present pose.
 static void a_moved_tool(void **state)
 {
 	(void)state;

@@ -21,7 +21,7 @@ static const kind kinds[] = {
 	{"hook of 1.5 mm", CAU_TOOL_HOOK, 1.5e-3},     {"jaws of 1.5 mm", CAU_TOOL_GRASPER, 1.5e-3},
 };
 static const double speeds_m_s[] = {0.01, 0.1, 0.5, 1.5, 0.001};
-static const double slow_m_s = 0.005; // slower presses take hundreds of ticks
+static const double slow_m_s = 0.005; // the slow speed; slower presses take hundreds of ticks
 static const double cells_m[] = {4e-3, 2e-3, 1e-3};
 static const char *const tissues[] = {"sheet", "slab", "layers"};
 
@@ -32,7 +32,7 @@ enum {
 	TISSUES = sizeof tissues / sizeof *tissues,
 };
 
-static const double most_penetration_m = 1e-4; // of a ball at rest, anywhere on the drawn surface
+static const double most_penetration_m = 1e-4; // depth of a ball at rest in the drawn surface
 
 // Returns the depth of a press. A thin tip that dents soft tissue farther than this finally passes.
 static double depth_m(const kind *k)
@@ -47,7 +47,7 @@ static bool is_held(const pressing *p, const kind *k)
 	cau_session *session = stage_open(scene, 1);
 	int ticks = (int)(60 * (p->depth_m + 1e-3) / p->speed_m_s) + 31, crossed = 0;
 	double most = 0;
-	for (int tick = 0; tick < 10; tick++) { // until the jaws are closed
+	for (int tick = 0; tick < 10; tick++) { // the jaws close meanwhile
 		pressing_move(session, p, -1e-3);
 		stage_step(session, 1);
 	}
@@ -75,16 +75,19 @@ static bool is_held(const pressing *p, const kind *k)
 static void nothing_crosses(void **state)
 {
 	(void)state;
-	enum { SHARE = CAU_TEST_SANITIZED ? 61 : 9, FIRST = 3 }; // odd, so that all speeds are tested
+	// SHARE is odd, so that the presses take the four speeds in turn.
+	enum { SHARE = CAU_TEST_SANITIZED ? 61 : 9, FIRST = 3 };
 	const char *wanted = getenv("PROXY_MATRIX");
 	bool all = wanted && !strcmp(wanted, "all");
 	int share = wanted && atoi(wanted) > 0 ? atoi(wanted) : SHARE;
 	int number = 0, failed = 0, tried = 0;
 	for (int t = 0; t < TISSUES; t++)
-		for (int c = 0; c < (t == PRESSING_LAYERS ? 1 : CELLS); c++) // layers has its own mesh
+		// `layers` has only its own mesh.
+		for (int c = 0; c < (t == PRESSING_LAYERS ? 1 : CELLS); c++)
 			for (int k = 0; k < KINDS; k++)
 				for (int s = 0; s < SPEEDS; s++) {
-					bool heavy = t == PRESSING_SLAB && cells_m[c] < 2e-3; // 70,000 tetrahedra
+					// True for the slab of 70,000 tetrahedra.
+					bool heavy = t == PRESSING_SLAB && cells_m[c] < 2e-3;
 					if ((heavy || speeds_m_s[s] < slow_m_s) && !all)
 						continue;
 					if (number++ % share != FIRST % share && !all)

@@ -156,10 +156,12 @@ static void where_it_is_is_part_of_the_state(void **state)
 static void it_is_let_out_slowly(void **state)
 {
 	(void)state;
-	const double most_m = 2 * 0.1 / 60; // in a tick; pushed tissue drags the tissue beside it along
+	// Largest motion of a vertex in a tick: twice that of the tool, because pushed tissue drags its
+	// neighbourhood along.
+	const double most_m = 2 * 0.1 / 60;
 	static const pressing p = {PRESSING_SLAB, CAU_TOOL_SPHERE, 6e-3, 2e-3, 0.1, 0, 0};
 	cau_scene_def *scene = pressing_scene(&p);
-	// So that the ball enters the tissue and cuts nothing.
+	// The ball is at ambient temperature, so that it enters the tissue and cuts nothing.
 	scene->tools[0].temperature_c = scene->ambient_c;
 	scene->tools[0].shaft_radius_m = 1e-3;
 	cau_session *session = stage_open(scene, 1);

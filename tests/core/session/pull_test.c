@@ -4,9 +4,10 @@
 
 #include <stdio.h>
 
-static const double bounded_m = 0.3; // m; a pull of 0.1 m on a scene of 0.12 m stays below this
-// Under sanitizers a step takes thirty times as long. There each scene is pulled in one direction
-// only; the other directions use the same code.
+// Largest distance of a vertex, m. A pull of 0.1 m on a scene of 0.12 m stays below this distance.
+static const double bounded_m = 0.3;
+// Number of directions of pulls under sanitizers, where a step takes thirty times as long. The
+// other directions use the same code.
 static const size_t ways_under_sanitizers = 1;
 
 static double farthest(const cau_session *session, int32_t *inverted)
@@ -40,7 +41,7 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, top_m - 0.004);
 	jaws->max_speed_m_s = 5; // the largest speed that a scene may have
 	jaws->slip_force_n = slip_force_n;
-	jaws->force_max_n = 1000; // so that the jaws do not stay behind
+	jaws->force_max_n = 1000; // with a large force the jaws do not stay behind
 	jaws->grasp_stiffness_n_m = slip_force_n > 100 ? 1e4 : 200;
 	cau_session *session = stage_open(scene, 2);
 	size_t way_count = CAU_TEST_SANITIZED ? ways_under_sanitizers : sizeof ways / sizeof *ways;

@@ -54,8 +54,8 @@ static cau_status read_and_check(const cau_scene_def *scene, cau_error *error)
 	return status;
 }
 
-// Some entries bind two numbers, which their text states. This sets the second number so that both
-// ends of the field's range are valid.
+// The text of some entries states a relation to a second number. This function sets the second
+// number so that both ends of the field's range are valid.
 static void make_way(cau_tool_def *tool, const cau_field *field)
 {
 	if (strcmp(field->name, "hot_radius_m") == 0)
@@ -70,6 +70,7 @@ static void make_way(cau_tool_def *tool, const cau_field *field)
 	}
 }
 
+// True if the text of the table, quoted below, restricts the range of this field further.
 static bool is_word_bound(const cau_field *field, double value)
 {
 	bool definite = strcmp(field->name, "target") == 0;            // "positive definite"

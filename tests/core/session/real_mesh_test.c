@@ -9,7 +9,7 @@
 #include "session/session_internal.h"
 
 static const double cut_s = 10;
-// The mesh is scaled to this size, whatever the file's unit is.
+// Size, m, to which the mesh is scaled, whatever the file's unit is.
 static const double wanted_size_m = 0.12;
 
 static int has_ending(const char *name, const char *ending)

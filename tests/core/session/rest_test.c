@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rest: tissue that has stopped keeps its bits, and every run rests at the same tick. Its position
-// is the one at which it would have stopped. Everything that could move the tissue wakes it.
+// Rest: tissue that has stopped keeps its bits, and every run rests at the same tick. Resting
+// tissue is at the position at which it would have stopped. Everything that could move the tissue
+// wakes it.
 #include "core/session/stage.h"
 #include "session/session_internal.h"
 
@@ -26,7 +27,7 @@ static int32_t step_to_rest(cau_session *session)
 	return ticks;
 }
 
-// A taut sheet, pinned at its rim, with a hook and jaws above it, out of reach.
+// Returns a scene: a taut sheet, pinned at its rim, with a hook and jaws above it, out of reach.
 static cau_scene_def *make_sheet(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
@@ -37,7 +38,7 @@ static cau_scene_def *make_sheet(void)
 	return scene;
 }
 
-// A block of fat, pinned at its top.
+// Returns a scene: a block of fat, pinned at its top.
 static cau_scene_def *make_hanging_block(int precision)
 {
 	const double size[3] = {0.03, 0.02, 0.02}, least[3] = {-1, -1, -1e-4}, most[3] = {1, 1, 1};

@@ -9,8 +9,8 @@
 enum { LOOK = 10, TOOL_TICKS = CAU_TEST_SANITIZED ? 60 : 300, TOOL_MOTIONS = 10000 };
 
 static const double THICKNESS_M = 5e-4;
-// Largest energy gain of a tick, from what ten iterations leave unsolved. One of these sheets falls
-// with some 1e-5 J.
+// Largest energy gain of a tick, J. Ten iterations leave an error, which can add energy. For
+// comparison: a falling sheet of these tests has about 1e-5 J.
 static const double GAIN_J = 1e-5;
 
 typedef struct course {
@@ -43,7 +43,7 @@ static cau_scene_def *touching_scene(void)
 	return scene;
 }
 
-// A sheet above a slab that is pinned at its floor.
+// Returns a scene: a sheet above a slab that is pinned at its floor.
 static cau_scene_def *make_flap(void)
 {
 	const double size[3] = {0.05, 0.04, 0.008};
@@ -74,7 +74,7 @@ static void a_flap_that_is_laid_back_stays(void **state)
 	course fall = run(session, 40);
 	assert_true(fall.most_touching > 100 && fall.most_gain_j < GAIN_J);
 	double lowest = lowest_of_sheet_m(session);
-	// On the slab, whose top is at 0 or sags a little.
+	// The sheet lies on the slab, whose top is at 0 or sags a little.
 	assert_true(lowest > -0.001 && lowest < 0.003);
 	stage_force(session,
 	            stage_box((double[]){-0.016, -0.011, 0.003}, (double[]){0.016, 0.011, 0.005}), 0, 0,
@@ -152,7 +152,8 @@ static cau_scene_def *make_busy(void)
 {
 	cau_scene_def *scene = stage_layered();
 	scene->contact_thickness_m = THICKNESS_M;
-	for (int32_t i = 0; i < scene->layer_count; i++) // so that a fast hook parts the tissue
+	// The fascia parts soon, even under a fast hook.
+	for (int32_t i = 0; i < scene->layer_count; i++)
 		if (scene->layers[i].kind == CAU_LAYER_FASCIA)
 			scene->layers[i].sheet[0].heat.ignition_c = 8;
 	return scene;
@@ -182,8 +183,8 @@ static void wave_tools(cau_session *session, int tick, bool grasping, uint64_t *
 		stage_release(session, "jaws");
 }
 
-// Runs random tools. Tissue held by jaws may cross, until it finds its way out, so tissue that was
-// ever held is not checked.
+// Runs random tools. Tissue held by jaws may cross other tissue, and still crosses for a time after
+// its release. So tissue that was ever held is not checked.
 static void run_tools(int ticks, int look, bool grasping)
 {
 	cau_scene_def *scene = make_busy();
@@ -231,8 +232,8 @@ static void many_motions_of_tools_that_grasp(void **state)
 	run_tools(6 * TOOL_MOTIONS, 6 * LOOK, true);
 }
 
-// A session restored to the present state reaches the same bits, without any other knowledge of the
-// past.
+// A session restored to the present state reaches the same bits, although it knows nothing else
+// about the past.
 static void expect_the_same_after_a_restore(cau_session *session)
 {
 	enum { TICKS = 4 };
@@ -260,12 +261,13 @@ static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;
 	enum { DRAWN = 20, TICKS = 100 };
-	// The pull tests something only if more than one in 300 tetrahedra is inverted: 100 of the
-	// 30,000 in the full `layers`.
+	// The pull tests something only if more than one tetrahedron in LEAST_INVERTED becomes
+	// inverted. These are 100 of the 30,000 in the full `layers`.
 	enum { LEAST_INVERTED = 300 };
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;
-	scene->iterations = 10; // with the scene's twenty, 130 vertices stay excluded
+	// With twenty iterations, the scene's number, 130 vertices stay excluded.
+	scene->iterations = 10;
 	for (int32_t i = 0; i < scene->layer_count; i++) // no tissue tears
 		scene->layers[i].sheet[0].heat.tear_energy_j_m2 =
 			scene->layers[i].fat[0].heat.tear_energy_j_m2 =
@@ -406,7 +408,8 @@ int main(int count, char **argument)
 		cmocka_unit_test(many_motions_of_tools),
 		cmocka_unit_test(many_motions_of_tools_that_grasp),
 	};
-#ifdef __SANITIZE_THREAD__ // the loops on two threads; the other tests run the same loops on fewer
+// ThreadSanitizer runs only the test with the most threads; the others run the same parallel loops.
+#ifdef __SANITIZE_THREAD__
 	const struct CMUnitTest threaded[] = {cmocka_unit_test(the_same_bits)};
 	return cmocka_run_group_tests(threaded, NULL, NULL);
 #endif

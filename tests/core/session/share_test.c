@@ -11,8 +11,9 @@
 
 enum { LATER = 20 }; // ticks by which the second session begins later
 
-// A session alone is compared with two that share memory: one creates the image, and one begins to
-// share while the other already runs. All run through cuts, refactorisations and a restore.
+// A session alone is compared with two sessions that share memory. The first creates the image; the
+// second begins to share while the first already runs. All three run through cuts, refactorisations
+// and a restore.
 static void steps_are_those_of_a_session_alone(void **state)
 {
 	(void)state;

@@ -11,7 +11,8 @@ typedef struct victim {
 static void expect_refusal(const victim *v, const void *bytes, size_t count, const char *what,
                            size_t where)
 {
-	// A copy of its own, so that a sanitizer detects a read past the end.
+	// The bytes are restored from a copy of exactly their size, so that a sanitizer detects a read
+	// past the end.
 	void *copy = malloc(count ? count : 1);
 	assert_non_null(copy);
 	memcpy(copy, bytes, count);
@@ -36,7 +37,7 @@ static void damage_is_refused(void **state)
 	unsigned char *bytes = malloc(shot->count + 8);
 	assert_non_null(bytes);
 	memcpy(bytes, shot->bytes, shot->count);
-	const size_t dense = 512; // every byte of the header, then samples
+	const size_t dense = 512; // every byte before this is tested, later bytes are sampled
 	for (size_t at = 0; at < shot->count; at += at < dense ? 1 : shot->count / 150) {
 		unsigned char flip = (unsigned char)(1u << at % 8);
 		bytes[at] ^= flip;

@@ -15,7 +15,7 @@ static int tick_with(int from, int making)
 	return -1;
 }
 
-// A condition of the other tests: they would prove little if the run did nothing.
+// Checks that the run is busy. The other tests would prove little if the run did nothing.
 static void the_run_is_busy(void **state)
 {
 	(void)state;
@@ -86,7 +86,8 @@ static void written_again_it_is_the_same(void **state)
 	free(scene);
 }
 
-// Exposures of elements that part one by one are part of the state, also half-reached exposures.
+// Exposures of elements that part one by one are part of the state, also exposures of elements that
+// have not parted yet.
 static void doses_of_elements(void **state)
 {
 	(void)state;
@@ -148,7 +149,7 @@ static void queued_commands_pins_and_materials(void **state)
 	free(scene);
 }
 
-// A session restores its own beginning. Its present factor is of other materials, or lacks
+// A session restores its own beginning. The present factor belongs to other materials, or lacks
 // elements, or is being computed. Each time the session continues like a fresh session.
 static void a_factor_serves_its_own_matrix_alone(void **state)
 {
@@ -158,7 +159,7 @@ static void a_factor_serves_its_own_matrix_alone(void **state)
 	stage_bytes beginning = stage_snapshot(session);
 	uint64_t fresh = 0;
 	for (int round = 0; round < 4; round++) {
-		if (round == 1) { // round 0: as it began; round 1: with another matrix
+		if (round == 1) { // round 1 has another matrix; round 0 keeps the first
 			cau_command stiffer;
 			cau_default_command(&stiffer, CAU_COMMAND_SET_MATERIAL);
 			stiffer.as.material.kind = CAU_LAYER_FAT;

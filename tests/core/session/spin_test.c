@@ -110,7 +110,7 @@ static double off_the_rigid_one(const cau_session *session, cau_vec3 rest_centre
 
 // Bounds for the accuracy of the rotation.
 typedef struct wanted {
-	double kept, aside, off_m, gained, ends; // the last two are relative to the energy
+	double kept, aside, off_m, gained, ends; // `gained` and `ends` are relative to the energy
 } wanted;
 
 static void check_spin(const cau_scene_def *scene, cau_vec3 omega, int ticks, const wanted *most)
@@ -140,7 +140,8 @@ static void check_spin(const cau_scene_def *scene, cau_vec3 omega, int ticks, co
 	cau_session_destroy(session);
 }
 
-static const cau_vec3 about[] = {{0, 0, 10}, {10, 0, 0}, {6, 0, 8}, {8, 4.8, 3.6}}; // rad/s
+// Angular velocities, rad/s.
+static const cau_vec3 about[] = {{0, 0, 10}, {10, 0, 0}, {6, 0, 8}, {8, 4.8, 3.6}};
 enum { AXES = sizeof about / sizeof about[0] };
 
 static void a_free_block_turns_as_a_rigid_one(void **state)

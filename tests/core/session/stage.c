@@ -9,7 +9,7 @@
 
 const double stage_absurd[STAGE_ABSURD_COUNT] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
 
-static const double all_of_it_m = 100; // beyond the size of any scene
+static const double all_of_it_m = 100; // m, more than the size of any scene
 
 static void expect_ok(cau_status status, const cau_error *error)
 {

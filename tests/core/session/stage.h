@@ -29,7 +29,7 @@ cau_scene_def *stage_scene(int precision);
 // Returns the scene deploy/scenes/NAME.json.
 cau_scene_def *stage_scene_named(const char *name);
 // Returns the scene deploy/scenes/NAME.json, but under sanitizers with half as many cells along
-// each axis. For tests whose bounds do not depend on the resolution.
+// each axis. Use this scene in tests whose bounds do not depend on the resolution.
 cau_scene_def *stage_scene_light(const char *name);
 
 // Add a layer on its own generated mesh, with the defaults of its kind. The results point into the
@@ -62,7 +62,7 @@ void stage_step(cau_session *session, int32_t ticks);
 cau_frame stage_frame(const cau_session *session);
 cau_session_info stage_info(const cau_session *session);
 cau_balance stage_balance(cau_session *session);
-// From the present frame.
+// Returns a tool's state from the present frame.
 const cau_tool_state *stage_tool(const cau_session *session, const char *name);
 
 // ---- commands, for the next tick
@@ -84,7 +84,7 @@ int stage_cut_ticks(const cau_cut_def *cut, double step_s);
 
 // ---- numbers
 double stage_mean_edge_m(const cau_session_info *info);
-// Largest distance (m) of a vertex of the frame from its position in `from` (m, n x 3).
+// Returns the largest distance (m) of a vertex of the frame from its position in `from` (m, n x 3).
 double stage_farthest(const cau_frame *frame, const double *from, int32_t vertex_count);
 double stage_seconds(void); // wall clock, for reports
 

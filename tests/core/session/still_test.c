@@ -45,7 +45,7 @@ static void off_and_hold_need_no_room(void **state)
 	stage_step(session, 5);
 	assert_false(is_on(session));
 	assert_memory_equal(&before, &stage_tool(session, "hook")->asked_pose, sizeof before);
-	// The same with commands.
+	// An energy-off and a hold that are submitted as commands do the same.
 	cau_command off = energy(0, 0, 0), hold = stage_command(CAU_COMMAND_TOOL_HOLD);
 	session->tool[cau_session_find_tool(session, "hook")].state.energized = true;
 	assert_int_equal(cau_session_submit(session, &off, NULL), CAU_OK);
@@ -159,7 +159,7 @@ static void an_enable_ends_after_its_ticks(void **state)
 	fill_queue(session, 100000); // the end of an enable needs no capacity
 	assert_int_equal(ticks_on(session, 12), 4);
 	session->command_count = 0;
-	// A newer enable has its own limit, or none.
+	// A newer enable replaces the limit of the enable before it, even by no limit.
 	stage_submit(session, &limited);
 	assert_int_equal(ticks_on(session, 2), 2);
 	stage_submit(session, &again);
@@ -222,7 +222,7 @@ static void it_says_what_it_may_heat(void **state)
 	assert_null(cau_session_heats_beyond(session, NULL, 0));
 	cau_command later = energy(1, 100, 0);
 	stage_submit(session, &later);
-	// The queued enable would heat it later.
+	// The queued enable would let the hook heat later.
 	assert_string_equal(cau_session_heats_beyond(session, NULL, 0), "hook");
 	assert_null(cau_session_heats_beyond(session, &hook, 1));
 	cau_session_energy_off(session, "hook", 0);
@@ -236,7 +236,8 @@ static void it_says_what_it_may_heat(void **state)
 
 // ---- replay
 
-// A small log of everything that voids commands. In one run these are calls, in the other commands.
+// Submits a small log with all causes that void commands. In one run the causes are calls, in the
+// other run commands.
 static void act(cau_session *session, uint64_t tick, bool as_commands)
 {
 	cau_command on = energy(1, 0, 0), later = energy(1, tick + 3, 0), off = energy(0, 0, 0);
@@ -260,8 +261,9 @@ static void act(cau_session *session, uint64_t tick, bool as_commands)
 		else
 			cau_session_hold_still(session, "hook", 0);
 	}
+	// This enable follows the energy-off or hold at the same tick border.
 	if (tick % 7 == 5)
-		stage_submit(session, &on); // after the energy-off or hold, at the same tick border
+		stage_submit(session, &on);
 }
 
 static void as_commands_they_give_the_same_bits(void **state)

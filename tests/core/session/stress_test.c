@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress channel of whole sessions: it exists only while it is watched, also without a step,
-// and a restored session has its own stress.
+// The stress channel of whole sessions: the channel exists only while a client watches it, even
+// before a step, and a restored session has its own stress.
 #include "core/session/stage.h"
 
 enum { TICKS = 20 };

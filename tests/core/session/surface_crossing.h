@@ -37,7 +37,7 @@ static inline int surface_pierces(const double *x, int32_t p, int32_t q, const i
 }
 
 // Returns the number of crossing pairs of an edge and a face; edges of two faces count twice. Faces
-// with a corner in `left_out` (by vertex; NULL: none) are skipped.
+// with a corner in `left_out` (by vertex, may be NULL) are skipped.
 static inline int surface_crossings_but(const cau_session *session, const uint8_t *left_out)
 {
 	cau_session_info info = stage_info(session);

@@ -8,8 +8,8 @@
 
 // ---- a strip of known energy [Rivlin and Thomas 1953]
 // The strip is held along both long edges, which are moved apart, and is cut half way along its
-// middle. Far before the cut it is stretched evenly; behind the cut it is slack. So a growing tear
-// releases k/2 strain^2 times the strip's width for its area, wherever its tip is.
+// middle. Far before the cut the strip is stretched evenly; behind the cut it is slack. So a
+// growing tear releases k/2 strain^2 times the strip's width for its area, wherever its tip is.
 static const double long_m = 0.08, wide_m = 0.02, stiffness_pa = 1e6, tear_j_m2 = 500;
 // Largest error of the energy at which the strip tears. 4 % were measured on each mesh, of
 // triangles and of tetrahedra.
@@ -61,7 +61,7 @@ static cau_scene_def *strip_scene(int parting, int32_t cells, bool solid, double
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	scene->parting = parting;
 	scene->iterations = 200;
-	scene->damping_per_s = 20; // so that slow motion is nearly at rest
+	scene->damping_per_s = 20; // with this damping slow motion is nearly at rest
 	int32_t along = (int32_t)lround(cells * long_m / wide_m);
 	if (solid) {
 		const double size[3] = {long_m, wide_m, wide_m / cells};

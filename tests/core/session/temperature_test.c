@@ -46,7 +46,8 @@ static void test_it_is_there_when_asked_for(void **state)
 	cau_session *session = opened(&scene);
 	busy_run(session, TICKS);
 	assert_null(stage_frame(session).temperature);
-	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE); // exists at once, without a step
+	// The channel exists at once, without a step.
+	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE);
 	assert_true(expect_the_grids(session) > 20);
 	for (int tick = 0; tick < 10; tick++) {
 		busy_run(session, 1);

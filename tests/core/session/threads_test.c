@@ -43,7 +43,7 @@ static void *run_alone(void *context)
 {
 	worker *w = context;
 	cau_scene_def *scene = busy_scene();
-	// Analysed while the other sessions are analysed.
+	// This system is analysed while other threads analyse the systems of other sessions.
 	cau_session *session = stage_open(scene, w->threads);
 	busy_run(session, 50);
 	w->hash = cau_session_hash(session);

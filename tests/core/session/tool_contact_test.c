@@ -5,7 +5,7 @@
 
 static const double tick_s = 1.0 / 60;
 
-// A ball of 3 mm above the middle of a slab of elastic fat, whose top is at z = 0.
+// Returns a scene: a ball of 3 mm above the middle of a slab of elastic fat, whose top is at z = 0.
 static cau_scene_def *ball_on_slab(void)
 {
 	const double size[3] = {0.04, 0.04, 0.012};
@@ -73,8 +73,8 @@ static void records_are_there_while_watched(void **state)
 	free(scene);
 }
 
-// Planes begin where the record's force implies. Tissue that is near has planes before the tool
-// touches it.
+// The offsets of planes agree with the record's force. Tissue that is near has planes before the
+// tool touches it.
 static void planes_fit_the_force(void **state)
 {
 	(void)state;
@@ -88,14 +88,15 @@ static void planes_fit_the_force(void **state)
 	double first = -1;
 	for (int32_t i = 0; i < near.plane_count; i++)
 		first = fmax(first, near.plane[i].offset_m / near.plane[i].normal[2]);
-	assert_true(fabs(first - 0.003) < 2e-4); // where the ball of 3 mm touches
+	assert_true(fabs(first - 0.003) < 2e-4); // the height at which the ball of 3 mm touches
 	go(session, 0, 0, 0.0015, 60);
 	cau_tool_contact contact = contact_of(session);
 	const cau_tool_state *tool = stage_tool(session, "ball");
 	assert_memory_equal(contact.force_n, tool->raw_force_n, sizeof contact.force_n);
 	assert_true(contact.force_n[2] > 0.05 && contact.plane_count > 0);
 	int32_t touching = 0;
-	// Friction is part of the force, but not of the planes. It moves the position by at most this.
+	// Friction is part of the force, but not of the planes. Friction moves the position by at most
+	// `slack`.
 	double slack =
 		tool->definition.friction * cau_length(cau_vec3_of(contact.force_n)) *
 		fmax(contact.compliance_m_n[0], fmax(contact.compliance_m_n[1], contact.compliance_m_n[2]));

@@ -6,10 +6,10 @@
 #include "session/session_internal.h"
 
 static const double radius_m = 0.006, first_m = 0.0065,
-					way_m = 2e-4;     // radius and first height of a ball; its motion in a tick
-static const double rounding = 1e-12; // relative
+					way_m = 2e-4;     // m: radius and first height of a ball; its motion in a tick
+static const double rounding = 1e-12; // largest relative error
 
-// A ball above a block of fat whose top is at z = 0.
+// Returns a scene: a ball above a block of fat whose top is at z = 0.
 static cau_scene_def *block_scene(double force_filter_s)
 {
 	const double size[3] = {0.03, 0.03, 0.012}, least[3] = {-1, -1, -0.0121},

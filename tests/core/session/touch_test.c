@@ -8,9 +8,11 @@
 #include "session/session_internal.h"
 #include "tool/tool_shape.h"
 
-// Greatest depth of a vertex inside a pushing tool at the end of a step: ten iterations at 2 cm/s.
+// Greatest depth, m, of a vertex inside a pushing tool at the end of a step, with ten iterations
+// and a tool that moves at 2 cm/s.
 static const double penetration_m = 2e-5;
-static const double cone_tolerance = 1e-6; // rounding, relative to the normal force
+// Largest excess over the cone: rounding, relative to the normal force.
+static const double cone_tolerance = 1e-6;
 static const double weight_tolerance = 0.01;
 
 // ---- pushing
@@ -154,8 +156,9 @@ static int32_t vertices_within(const cau_session *session, double margin_m, bool
 	return count;
 }
 
-// A ball at a block with this many cells. Near vertices have contact constraints; if there are too
-// many, only touching vertices have. Touching vertices without a constraint are reported.
+// Puts a ball into a block with this many cells, and checks the constraints. Near vertices have
+// contact constraints; if there are too many, only touching vertices have constraints. Touching
+// vertices without a constraint are reported.
 static void check_rows(const int32_t cells[3], double radius_m, double depth_m, int32_t *left_out)
 {
 	const double touching_m = 2e-4; // a vertex nearer than this touches (thin.c)
@@ -193,10 +196,11 @@ static void contact_says_what_it_left_out(void **state)
 	int32_t left_out;
 	check_rows((const int32_t[3]){16, 16, 6}, 0.006, 1e-4, &left_out);
 	assert_int_equal(left_out, 0);
-	// Many constraints, within the capacity.
+	// This ball has many constraints, within the capacity.
 	check_rows((const int32_t[3]){16, 16, 6}, 0.04, 8e-3, &left_out);
 	assert_int_equal(left_out, 0);
-	check_rows((const int32_t[3]){40, 40, 2}, 0.05, 5e-3, &left_out); // more than the capacity
+	check_rows((const int32_t[3]){40, 40, 2}, 0.05, 5e-3,
+	           &left_out); // beyond the capacity
 	assert_true(left_out > 0);
 }
 
@@ -213,7 +217,7 @@ static cau_scene_def *resting_scene(void)
 	fat->fat[0].young_modulus_pa = 50000;
 	stage_mesh_of(scene, fat)->translate_m[2] = 0.0041;
 	cau_tool_def *table = stage_add_tool(scene, "table", CAU_TOOL_SPHERE, 0, 0, -0.05);
-	table->hot_radius_m = 0.05; // its top is at z = 0, and its shaft below
+	table->hot_radius_m = 0.05; // the ball's top is at z = 0, its shaft below
 	table->grid_step_m = 0.01;
 	table->pose.rotation[0] = 0;
 	table->pose.rotation[1] = 1;

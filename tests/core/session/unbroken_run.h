@@ -7,7 +7,7 @@
 #include "session/session_internal.h"
 
 typedef struct unbroken_run {
-	uint64_t hash[BUSY_TICKS + 1]; // before each tick, and at the end
+	uint64_t hash[BUSY_TICKS + 1]; // hash of the state before each tick, and at the end
 	int waiting[BUSY_TICKS + 1];   // number of removed elements that were still in the factor
 	int making[BUSY_TICKS + 1];    // 1: a factor was being computed
 	stage_bytes shot[BUSY_TICKS + 1];

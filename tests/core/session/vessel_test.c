@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A blood vessel in a session (core/vessel). It bleeds where it is cut, but not where jaws press it
-// shut or a seal holds. Snapshots restore its state.
+// A blood vessel in a session (core/vessel). The vessel bleeds where it is cut, but not where jaws
+// press it shut or a seal holds. Snapshots restore its state.
 #include "core/session/stage.h"
 
 #include "session/session_internal.h"
 
 static const double sealed_m = -0.005, deep_m = -0.007, above_m = 0.04;
-// Under sanitizers these tests use half as many cells along each axis, and skip tests that need
-// fine cells.
+// Numbers of ticks for each action. Under sanitizers these tests use half as many cells along each
+// axis, and skip tests that need fine cells.
 enum {
-	TRAVEL = 12, // ticks; twice the time for the longest motion, 48 mm, at the tools' 0.5 m/s
+	TRAVEL = 12, // ticks for a motion: twice those for 48 mm, the longest, at the tools' 0.5 m/s
 	CLOSING = 40,
-	OPENING = 20,  // the jaws open in a few ticks, then the tissue springs back
-	SEALING = 180, // largest number of ticks
+	OPENING = 20,  // ticks: the jaws open in a few, then the tissue springs back
+	SEALING = 180, // largest number of ticks until the vessel is sealed
 	HOLDING = 30,  // ticks after the vessel is sealed, in which the rest of the seal becomes strong
 	CUTTING = CAU_TEST_SANITIZED ? 35 : 70
 };
@@ -172,10 +172,10 @@ static void pressure_stops_bleeding_and_heals_nothing(void **state)
 	cau_session *session = open_pedicle(1);
 	divide(session, 0.004);
 	double free_m3_s = artery(session)->bleeding_m3_s;
-	close_forceps(session); // on the first end's side of the cut
+	close_forceps(session); // the forceps close on the first end's side of the cut
 	const cau_vessel_state *vessel = artery(session);
 	assert_true(vessel->flags & CAU_VESSEL_SHUT);
-	// The other stump still bleeds, with its 4 kPa.
+	// The other stump still bleeds, with the 4 kPa of its end.
 	double other = cau_vessel_outflow(&session->scene->vessels[0], 4000, 1);
 	assert_true(vessel->bleeding_m3_s <= other && vessel->bleeding_m3_s < 0.5 * free_m3_s);
 	withdraw_forceps(session);

@@ -151,8 +151,8 @@ static double random_share(void)
 	return (double)(state >> 11) * 0x1p-53;
 }
 
-// Expects that a box that is called uniform has its label at its corners and at random points. Some
-// of these are outside the domain's own box.
+// Checks boxes for which is_uniform() returns true: label_at() must return the same label at the
+// box's corners and at random points in it. Some boxes are outside the domain.
 static void boxes_keep_their_word(const char *name)
 {
 	int seen[CAU_SOLID_LABEL_MAX + 1] = {0};
@@ -201,7 +201,8 @@ static void surfaces(void **state)
 			fputs("v 0 0 0\nv 1 1 0\nv 0.5 0.1 1\nv 0.3 0.7 0.9\nf 1 2 3\nf 1 4 2\n", of.out);
 		else if (kind == TWO_FAR)
 			put_two_far(&of, 4);
-		else if (kind == BOWL) // its winding number is a half everywhere in the opening
+		// The winding number is a half everywhere in the bowl's opening.
+		else if (kind == BOWL)
 			put_ball(&of, 1, 0, false, 40, 20);
 		else
 			put_ball(&of, 1, 0, false, 12, 12);

@@ -8,7 +8,7 @@
 #include "mesh/mesh.h"
 #include "solid/domain.h"
 
-enum { MOST_BYTES = 1 << 16, ONE_IN = 64, TETRAHEDRA = 500 }; // larger values only take time
+enum { MOST_BYTES = 1 << 16, ONE_IN = 64, TETRAHEDRA = 500 }; // larger limits only take time
 
 static void demand(int promise)
 {

@@ -5,7 +5,8 @@
 
 #include "core/rig/law_scenes.h"
 
-// Rounding of cotangents of well-shaped triangles, times metres.
+// Rounding of cotangents of well-shaped triangles, times metres. The tests allow ten times this
+// value.
 static const double FLAT_TOLERANCE = 1e-15;
 
 static void combine(const rig *r, int32_t hinge, const double *x, double e[3])

@@ -5,7 +5,7 @@
 
 #include "core/dissect/cutting.h"
 
-static const double FRAME_TOLERANCE = 1e-13; // some rounding errors of unit vectors
+static const double FRAME_TOLERANCE = 1e-13; // largest error of a unit vector: a few roundings
 
 static void test_layers_lie_one_after_the_other(void **state)
 {

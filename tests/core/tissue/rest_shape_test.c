@@ -4,9 +4,9 @@
 
 #include "core/dissect/cutting.h"
 
-// Rounding of sums of thousands of terms.
+// Largest relative error of a mass: rounding of sums of thousands of terms.
 static const double MASS_TOLERANCE = 1e-12;
-// Rounding of a 3x3 inverse of a well-shaped element.
+// Largest error of an inverse: rounding of a 3x3 inverse of a well-shaped element.
 static const double INVERSE_TOLERANCE = 1e-12;
 
 static void make(rig *r)
@@ -64,7 +64,7 @@ static void test_maps_reproduce_the_rest_shape(void **state)
 			}
 			for (int c = 0; c < map.rank; c++)
 				for (int row = 0; row < 3; row++) {
-					double expected = row == c; // for fat
+					double expected = row == c; // the identity, for fat
 					if (kind == CAU_ELEMENT_TRIANGLE)
 						expected = r.tissue.triangle_frame[6 * e + 3 * c + row];
 					else if (kind == CAU_ELEMENT_LINK)
