@@ -76,8 +76,8 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 	}
 }
 
-// Handles one event under the lock. The trace gets the event before the call and its effects after
-// it. The lock makes the order of the trace that of the calls.
+// Handles one event under the lock. The trace gets the event before the call, and the effects after
+// the call. Because of the lock, the trace has the order of the calls.
 static void apply(cau_hosted *h, const cau_logic_event *event, cau_effects *effects)
 {
 	cau_trace_take(h->decisions.trace, event);

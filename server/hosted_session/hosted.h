@@ -26,7 +26,7 @@ typedef struct cau_hosted_times {
 } cau_hosted_times;
 const char *cau_hosted_stage_name(int stage); // for example "global"
 
-// What all sessions share. It must outlive them.
+// What all sessions share. It must outlive the sessions.
 typedef struct cau_surroundings {
 	const cau_config *config;
 	cau_store *store;

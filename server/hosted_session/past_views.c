@@ -15,7 +15,8 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// Estimated times of the stages; they order the builder's jobs (rewind.c).
+// Estimated times of the stages, s, and s for each vertex. The builder sorts its jobs by them, as
+// in rewind.c.
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
 #define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
@@ -100,7 +101,7 @@ static void tell_progress(cau_past_views *views)
 // ---- the queue ----------------------------------------------------------------------------------
 // Makes the next waiting request the present one. Returns false if none waits; then the builder
 // releases the views. Another thread of the builder may have the views as soon as the lock is
-// released, so nothing of them is read after that.
+// released, so this function reads nothing of the views after that.
 static bool take_next(cau_past_views *views)
 {
 	pthread_mutex_lock(&views->lock);

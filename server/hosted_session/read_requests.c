@@ -6,7 +6,8 @@
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
-// If the next tick border of a running session is at most this far, reads wait for it.
+// Longest period of ticks, s of wall time, with which reads wait for the next tick border of a
+// running session.
 #define BORDER_SOON_S 0.0334
 
 enum {
@@ -56,7 +57,7 @@ static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
 }
 
 // True if the next tick border comes soon anyway. Must be called after the order was queued: a
-// slice that pauses the session publishes this before it looks for waiting requests.
+// slice that pauses the session publishes the pause before it looks for waiting requests.
 static bool border_is_near(cau_hosted *h)
 {
 	cau_wire_session_summary summary;

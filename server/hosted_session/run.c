@@ -65,8 +65,8 @@ static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 	return CAU_DONE;
 }
 
-// Reports that no commit is under way. An earlier order may have been committed while its resend
-// looked for it; the resend must not wait for a further commit.
+// Reports that no commit is under way. A resend may have looked for its earlier order just before
+// the commit of that order ended. Without this report the resend would wait for a further commit.
 static void note_commits(cau_hosted *h)
 {
 	if (h->commits.under_way == 0)

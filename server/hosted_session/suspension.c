@@ -43,7 +43,7 @@ static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
 }
 
 // Sorts the session.destroy orders that have come. A resend belongs to an earlier session of this
-// name, and gets its answer again.
+// name, and gets the earlier answer again.
 bool cau_suspension_is_cancelled(cau_hosted *h)
 {
 	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {
