@@ -58,8 +58,8 @@ void cau_logic_expect_sound(const cau_logic *logic)
 
 // ---- after a broken rule ------------------------------------------------------------------------
 
-// Turns the tool's energy off and requests a cut-off, whatever the state says: the core is the part
-// that heats.
+// Turns the tool's energy off and requests a cut-off, even if `lit` says that the core does not
+// heat. The state may be wrong, and the core is the part that heats.
 static void take_energy_off(cau_logic *logic, cau_drive *drive)
 {
 	drive->tool[sizeof drive->tool - 1] = 0;
