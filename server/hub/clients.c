@@ -98,7 +98,7 @@ static cau_client *add_client(cau_hub *hub)
 		hub->client_capacity = capacity;
 	}
 	cau_client *client = &hub->clients[hub->client_count++];
-	// until a client takes the entry
+	// The entry counts as a lost client until a client takes it.
 	*client = (cau_client){.asker.client = ++hub->last_client, .lost = true};
 	return client;
 }
