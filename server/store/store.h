@@ -77,11 +77,11 @@ typedef struct cau_store_config {
 	int64_t retention_bytes;
 	// bytes of all tables; beyond them the oldest removable records of all are removed; 0: no bound
 	int64_t store_bytes;
-	int64_t retention_age_ms;       // age at which left branches are removed
-	int64_t answer_age_ms;          // age at which recorded answers are removed
-	int64_t event_age_ms;           // age at which events are removed
-	int32_t retention_interval_ms;  // time between retention steps, at least 1
-	size_t wal_bytes;               // the write-ahead log is folded into the file when it is larger
+	int64_t retention_age_ms;      // age at which left branches are removed
+	int64_t answer_age_ms;         // age at which recorded answers are removed
+	int64_t event_age_ms;          // age at which events are removed
+	int32_t retention_interval_ms; // time between retention steps, at least 1
+	size_t wal_bytes; // size of the write-ahead log above which it is folded into the file
 	int64_t (*wall_clock_ms)(void); // returns Unix time; NULL: the system's clock
 	// Called on the store thread when the state changes; may be NULL. After FULL -> READY, the logs
 	// of running sessions lack the failed batches: checkpoint every session before its next
