@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random interleavings of orders, signs of life, losses, time and the worker's acts. A failing
-// sequence is shortened and printed as a script of a few lines.
+// Tests random interleavings of orders, signs of life, losses, time and the worker's acts. A
+// failing sequence is shortened and printed as a script of a few lines.
 //     test_server_session_logic [SEQUENCES [FIRST_SEED]]
 #include <stdlib.h>
 #include <string.h>
@@ -178,8 +178,9 @@ int main(int argc, char **argv)
 	       (unsigned long long)count, (unsigned long long)events, 1e-6 * (double)events / seconds,
 	       (unsigned long long)w->steps, (unsigned long long)w->lit_steps,
 	       (unsigned long long)w->lit_advances);
-	bool seen = w->steps > count / 100 && w->lit_steps > count / 1000 &&
-	            w->lit_advances > count / 1000; // otherwise the test covers too little
+	// with fewer of these ticks and advances, the test would cover too little
+	bool seen =
+		w->steps > count / 100 && w->lit_steps > count / 1000 && w->lit_advances > count / 1000;
 	world_destroy(w);
 	return seen ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -10,13 +10,15 @@
 
 enum { REACH_TOOLS = 2, REACH_CLIENTS = 2, REACH_QUEUE = 2 };
 
-// Arbitrary values: a state only stores which times are fresh at REACH_NOW_S, and which orders are
-// for a tick after REACH_TICK.
+// Arbitrary values of a present time, s, and a present tick. A state only stores which times are
+// fresh at REACH_NOW_S, and which orders are for a tick after REACH_TICK.
 #define REACH_NOW_S 100.0
-#define REACH_TICK_S 101.0 // time of the next tick; a driver that is fresh now is fresh then
+// time of the next tick, s; a driver that is fresh now is still fresh at this time
+#define REACH_TICK_S 101.0
 #define REACH_DEADLINE_S 8.0
 enum { REACH_TICK = 1000, REACH_STEP_TICKET = 60 };
-#define REACH_STEP_S REACH_DEADLINE_S // in lock-step a deadline has the length of one tick
+// length of a tick, s; in lock-step, a deadline then has the length of one tick
+#define REACH_STEP_S REACH_DEADLINE_S
 enum { REACH_ON = 1, REACH_OFF };
 
 // The members of the structs below, and the bits of each member in a packed state. Searches keep

@@ -48,7 +48,8 @@ enum {
 	LOCKSTEP = 2048,   // session.advance
 	EVENTS_MOST = 128,
 	STATES_OF_PART = 10000000,
-	STATES_HELD = 200000000, // limit of a search that should close; reaching it is a failure
+	// most states of a search that should close; a search that reaches the limit fails
+	STATES_HELD = 200000000,
 };
 
 typedef struct search {

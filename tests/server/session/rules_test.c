@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One value of a machine is corrupted. In every build the session is then faulted, its tool's
-// energy is cut off, and every request is answered. The session works again after a rewind.
+// Tests a machine of which one value is corrupted. In every build the session is then faulted, its
+// tool's energy is cut off, and every request is answered. The session works again after a rewind.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
