@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads return what was written: sessions, answers to resends, branches with their shared past,
-// events.
+// Tests that reads return what was written: sessions, answers to resends, branches with their
+// shared past, events.
 #include "store_fixture.h"
 
 #include <string.h>
@@ -290,7 +290,8 @@ static void a_branch_sees_its_past_and_not_its_siblings(void **state)
 	expect_checkpoint(store, 1, 99, "root 50");
 	expect_checkpoint(store, 1, 49, NULL);
 	expect_checkpoint(store, 0, 1000, "root 150");
-	put_checkpoint(store, 0, 150, "root 150 again"); // replaces the first one
+	// this checkpoint replaces the earlier checkpoint of tick 150
+	put_checkpoint(store, 0, 150, "root 150 again");
 	expect_checkpoint(store, 0, 160, "root 150 again");
 	cau_store_close(store);
 }
@@ -335,9 +336,9 @@ static void a_fork_before_the_parents_start_finds_the_owner(void **state)
 static void a_long_log_is_read_in_pieces_and_whole(void **state)
 {
 	cau_store *store = open_with_knee(state);
-	log_ticks(store, 0, 0, 1537); // six pieces and one entry more
+	log_ticks(store, 0, 0, 1537); // the log has six pieces and one entry more
 	expect_log(store, 0, 0, 1000000, 1537);
-	expect_log(store, 0, 256, 768, 512); // exactly two pieces
+	expect_log(store, 0, 256, 768, 512); // these ticks are exactly two pieces
 	assert_int_equal(cau_store_read_log(store, "knee", 5, 0, 10, NULL, NULL, NULL), CAU_NOT_FOUND);
 	assert_int_equal(cau_store_read_log(store, "hip", 0, 0, 10, NULL, NULL, NULL), CAU_NOT_FOUND);
 	cau_store_close(store);
