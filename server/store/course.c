@@ -7,8 +7,8 @@
 #include "fault.h"
 
 enum {
-	// divisor of an age: thinning removes a checkpoint only if its two neighbours are at most a
-	// quarter of the later neighbour's age apart
+	// divisor of an age: thinning may remove a checkpoint if its two neighbours are at most
+	// age / AGE_SHARE ticks apart, where `age` is that of the later neighbour
 	AGE_SHARE = 4,
 	// number of newest checkpoints that always stay: if the last cannot be restored, the one before
 	// can
