@@ -73,7 +73,8 @@ static void committed(void *user, cau_status status, const char *reason)
 		if (done->making)
 			end_making(done->hosted, status, reason);
 	}
-	if (done->made && !status) // before the answer is sent: the creator may use the session at once
+	// this comes before the answer, because the creator may use the session at once
+	if (done->made && !status)
 		done->hosted->creation.unanswered = false;
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {

@@ -163,8 +163,8 @@ void cau_fault_stop_unsound(cau_hosted *h)
 	cau_hosted_tell_fault(h, &error);
 }
 
-// Reports a broken safety rule of the decisions. They have already faulted the session, and their
-// energy cut-offs follow as ordinary acts.
+// Reports a broken safety rule of the decisions. The decisions have already faulted the session,
+// and the energy cut-offs follow as ordinary acts.
 void cau_fault_report_broken_rule(cau_hosted *h)
 {
 	cau_error error = {0};

@@ -2,8 +2,8 @@
 // Computes views of past ticks. A view rewinds no session, and no worker waits for it: a second
 // core (past_core.c) goes to the tick on the builder, alternating with other jobs. A session has
 // one such core, and requests wait for it in a queue, one for each client. A client's new request
-// cancels its previous one. Between two turns a request is dropped if its client has cancelled it
-// or is gone, or if the session has ended.
+// cancels the client's previous request. Between two turns a request is dropped if its client has
+// cancelled it or is gone, or if the session has ended.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,9 +19,10 @@
 // in rewind.c.
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
-#define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
+#define SLICE_S 0.1 // length of one turn of a replay, s; after each turn other short jobs may run
 
-// An unused core is freed after this time, because it takes as much memory as the session's own.
+// Time, s, after which an unused core is freed, because it takes as much memory as the session's
+// own core.
 #define KEPT_S 60.0
 
 // ---- answers ------------------------------------------------------------------------------------

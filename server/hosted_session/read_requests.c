@@ -12,7 +12,7 @@
 
 enum {
 	FILES_AT_ONCE = 2, // most files of one session with the builder: each has a copy of its state
-	CLIENT_SHARE = 4,  // one client may use at most this part (1/4) of the queue
+	CLIENT_SHARE = 4,  // divisor of the queue's capacity: one client may use at most 1/4 of it
 };
 
 bool cau_reads_are(const cau_order *order)
@@ -148,7 +148,7 @@ static void end(reading *r)
 	if (cau_reads_make_file(r->read.order))
 		atomic_fetch_sub(&h->reads.files, 1);
 	free(r->read.order);
-	// other requests may have waited for this one
+	// Other requests may have waited for the end of this request.
 	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 	cau_hosted_release(h);
 	free(r);

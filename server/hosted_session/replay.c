@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings a core to a stored state: restores the nearest checkpoint, then replays the log. It runs
-// in slices, so that other sessions keep their pace.
+// Brings a core to a stored state: restores the nearest checkpoint, then replays the log. The
+// replay runs in slices, so that other sessions keep their pace.
 #include <stdlib.h>
 #include <string.h>
 

@@ -16,7 +16,7 @@
 // Restoring a sheet of 250,000 vertices takes 1.5 s.
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
-#define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
+#define SLICE_S 0.1 // length of one turn of a replay, s; after each turn other short jobs may run
 
 typedef struct going {
 	cau_job job; // must be the first member

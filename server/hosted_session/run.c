@@ -7,8 +7,9 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define STEPPING_SLICE_S 0.01 // longest slice of session.step, before other sessions get the worker
-#define REPLAY_SLICE_S 0.008  // longest slice of a replay, so that other sessions keep realtime
+// longest slice of session.step, s; then other sessions get the worker
+#define STEPPING_SLICE_S 0.01
+#define REPLAY_SLICE_S 0.008 // longest slice of a replay, s, so that other sessions keep realtime
 
 static void step(cau_hosted *h)
 {

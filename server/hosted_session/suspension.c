@@ -49,7 +49,8 @@ bool cau_suspension_is_cancelled(cau_hosted *h)
 	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {
 		next = order->next;
 		cau_outcome_kind looked = cau_record_resend(h, order);
-		if (looked == CAU_POSTPONED) // its earlier order is not on the disk yet
+		// the order is a resend, and the earlier order is not on the disk yet
+		if (looked == CAU_POSTPONED)
 			keep_cancelling(&h->suspension, order);
 		else if (looked == CAU_DONE)
 			cau_order_append(&h->suspension.destroyers, order);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The hub has the daemon's sessions and clients. It is the same for every transport. A transport
 //   - attaches a client for each connection (WebSocket) or publication handle (DDS) that may drive,
-//   - hands its commands to sessions as orders, with that client as the asker,
+//   - hands the client's commands to sessions as orders, with this client as the asker,
 //   - passes on signs of life, and detaches a client that is gone,
 //   - gives a sink that receives answers, notifications and new frames.
 // So drivers, deadlines, the order of commands and the log are the same for all transports. Any
@@ -31,8 +31,8 @@ typedef struct cau_hub_def {
 
 cau_status cau_hub_create(cau_hub **hub, const cau_hub_def *def, cau_error *error);
 // Ends every session. Refuses their waiting orders, and waits until their batches are on the disk.
-// Call this after cau_builder_stop. Transports may still hold sessions and release them; nothing is
-// answered then. `hub` may be NULL.
+// Call this after cau_builder_stop. Transports may still hold sessions and release them, but no
+// request is answered any more. `hub` may be NULL.
 void cau_hub_stop(cau_hub *hub);
 // Call this after cau_hub_stop, once all references to sessions are released, because their release
 // changes counts of the hub. `hub` may be NULL.

@@ -53,7 +53,7 @@ static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, c
 }
 
 // Returns the arrival to build, marked as `writing`. Returns NULL if it cannot be built (*status),
-// or if it was built before; the latter is answered.
+// or if it was built before; in the second case the request is answered.
 static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *error)
 {
 	pthread_mutex_lock(&job->moves->mutex);

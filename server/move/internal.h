@@ -126,8 +126,8 @@ void cau_departure_fail_unknown(const cau_reply *reply);
 // Called with the lock. Returns the departure of this move, or NULL if the move is not under way
 // here.
 cau_departure *cau_departure_find_own(cau_moves *moves, const cau_move_asked *asked);
-// Called with the lock. Removes the departure from the list and frees it. If a job is reading its
-// rows, that job frees it.
+// Called with the lock. Removes the departure from the list and frees it. If a job is reading the
+// departure's rows, this job frees the departure.
 void cau_departure_take_out(cau_moves *moves, cau_departure *departure);
 void cau_departures_list(const cau_moves *moves, cau_wire_list *list); // called with the lock
 void cau_departures_free(cau_moves *moves);

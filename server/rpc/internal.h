@@ -19,9 +19,10 @@ enum {
 	STREAMS_OF_PEER = 8,
 	FILES_OF_PEER = 4,
 #define X(...) +1
-	CAU_ANSWER_COLUMNS = 1 CAU_RPC_ERROR_TABLE(X), // one for the result, and one for each error
+	// number of counts of a method: one for results, and one for each error
+	CAU_ANSWER_COLUMNS = 1 CAU_RPC_ERROR_TABLE(X),
 #undef X
-	MALFORMED_MOST = 16, // malformed messages after which the connection is closed
+	MALFORMED_MOST = 16, // number of malformed messages after which the connection is closed
 };
 
 // A stream that this connection has joined.
@@ -185,7 +186,7 @@ void cau_call_submit(const cau_call *call, cau_order *order);
 // ---- streams
 cau_buffer *cau_peer_next_frame(cau_peer *peer);
 bool cau_peer_has_frames(const cau_peer *peer);
-// True if the peer may join this session: it has a stream of the session, which the new one
+// True if the peer may join this session: it has a stream of the session, which the new stream
 // replaces, or it has fewer streams than its limit.
 bool cau_peer_has_room(cau_peer *peer, const cau_hosted *hosted);
 void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream); // takes the reference

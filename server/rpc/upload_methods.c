@@ -62,7 +62,8 @@ static void name_upload(const cau_upload *upload, char *name, size_t bytes)
 	snprintf(name, bytes, "%s%.16s", upload->name, ending ? ending : "");
 }
 
-// Ends an upload. If it fails its check, it is dropped, and the client must begin again.
+// Ends an upload. If the upload fails the check, it is dropped, and the client must begin the
+// upload again.
 static cau_status end(cau_peer *peer, const cau_wire_upload_end *params, cau_upload **ended,
                       cau_error *error)
 {

@@ -38,12 +38,12 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action);
 void cau_drive_cut_done(cau_logic *logic, cau_effects *effects);
 void cau_drive_cut_itself(cau_logic *logic, const char *tool);
 bool cau_drive_is_to_cut(const cau_logic *logic);
-// True if the order may use its tool as it asks. Otherwise fills the action with the refusal.
+// True if the order is allowed to use its tool. Otherwise fills the action with the refusal.
 bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action);
 // True if the core can take another tool, of this name. Otherwise fills the action with the
 // refusal.
 bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action);
-// True if an ADVANCE may use all of its tools as it asks. Otherwise fills the action with the
+// True if an ADVANCE is allowed to use all of its tools. Otherwise fills the action with the
 // refusal.
 bool cau_drive_allows_parts(cau_logic *logic, const cau_waiting *order, cau_action *action);
 // Changes the driver of a tool. `to` with client 0 leaves the tool without a driver. Returns false

@@ -442,7 +442,8 @@ static void looked(cau_logic *logic, cau_outcome_kind outcome)
 		cau_queue_remove(logic, order);
 }
 
-// Notes an advance that the core has accepted. Energy that it turns off was cut off on its arrival.
+// Notes an advance that the core has accepted. Energy that the advance turns off was cut off when
+// the advance arrived.
 static void advance(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	for (int32_t i = 0; i < order->asked.part_count; i++) {

@@ -186,8 +186,8 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 	cut_order(logic, &logic->serving, client);
 }
 
-// Makes the order void if its asker is silent. An advance depends on all tools that its asker
-// drives, another order only on its own tool.
+// Makes the order void if the client that sent it is silent. An advance depends on all tools that
+// this client drives, another order only on the order's own tool.
 static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {

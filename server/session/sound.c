@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the conditions that hold between two calls, and handles a broken one.
+// Checks the conditions that hold between two calls, and handles a broken condition.
 //
 // A broken rule is a mistake of this program, and its extent is unknown. So this session alone is
 // faulted. The energy of its tools is cut off by ordinary acts, as after numerical trouble. Waiting

@@ -147,7 +147,7 @@ static cau_status put_row(struct importing *to, const cau_row *row, cau_error *e
 	}
 	if (row->table == CAU_ROWS_SESSION)
 		return make_session(to, row, error);
-	if (!inserts[row->table]) // the head of the move, and tables that this store does not keep
+	if (!inserts[row->table]) // the head of the move and the rows of some tables are not stored
 		return CAU_OK;
 	if (!to->key)
 		status = find_key(to, error);

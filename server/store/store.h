@@ -196,7 +196,7 @@ typedef struct cau_store_checkpoint {
 	cau_store_bytes snapshot;
 } cau_store_checkpoint;
 
-// Adds a checkpoint. It replaces one at the same tick of the same branch.
+// Adds a checkpoint. It replaces a checkpoint at the same tick of the same branch.
 cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
                                     cau_error *error);
 // Adds a checkpoint without a copy: the batch borrows the snapshot until the batch is destroyed.
@@ -409,8 +409,8 @@ typedef struct cau_store_health {
 } cau_store_health;
 void cau_store_get_health(cau_store *store, cau_store_health *health);
 
-#define CAU_STORE_SIZE_BUCKETS 13 // for 1, 2, 4, ... 4096 batches in a commit
-#define CAU_STORE_TIME_BUCKETS 96 // quarter octaves from 10 microseconds on
+#define CAU_STORE_SIZE_BUCKETS 13 // number of buckets: for 1, 2, 4, ... 4096 batches in a commit
+#define CAU_STORE_TIME_BUCKETS 96 // number of buckets: quarter octaves from 10 microseconds on
 
 typedef struct cau_store_metrics {
 	uint64_t commits; // committed groups

@@ -12,7 +12,7 @@
 
 #define DEADLINE_S 0.25
 #define PERIOD_S 0.05
-#define AHEAD_S 1e5 // client's clock minus the server's clock
+#define AHEAD_S 1e5 // client's clock minus the server's clock, s
 
 // Returns the time of heartbeat `k` of a series that begins at `from_s`.
 static double beat_s(double from_s, int k)

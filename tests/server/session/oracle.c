@@ -415,7 +415,7 @@ static uint64_t waits(const world *w, cau_ask ask, const char *tool)
 
 static uint64_t oldest(uint64_t a, uint64_t b)
 {
-	return a && b ? (a < b ? a : b) : a + b; // 0 means none
+	return a && b ? (a < b ? a : b) : a + b; // 0 means that there is no order
 }
 
 // True for an energy cut-off of a pause. A pause cuts off the tools one after the other, and the
@@ -510,7 +510,7 @@ static void note_advance(world *w, ticket_book *ticket)
 			note_enable(w, oracle_book(w, part->tool), ticket, part->limit);
 	}
 	ticket->stepping = true;
-	if (ticket->voided) // its client was lost while the core took the advance
+	if (ticket->voided) // the client of the advance was lost while the core took it
 		return;
 	w->lockstep = (int)ticket->asked.asker.client;
 	w->advance_tick = w->tick;

@@ -222,7 +222,8 @@ static void fail(const reach_found *found, uint32_t number, const reach_event *l
 	print_event(last);
 }
 
-// Chooses one of a state and the state with the tools exchanged, always the same one.
+// Chooses between a state and the same state with the tools exchanged. The choice is the same for
+// both.
 static void choose(const reach_state *state, reach_packed *chosen)
 {
 	reach_state swapped;

@@ -249,7 +249,7 @@ static void acts_out_of_order_are_found(void **state)
 {
 	(void)state;
 	spoilt s = begin();
-	cau_logic_done(s.logic, s.now_s, CAU_DONE, &s.effects); // no act was under way
+	cau_logic_done(s.logic, s.now_s, CAU_DONE, &s.effects); // a call although no act is under way
 	expect_safe(&s, true);
 	s = begin();
 	s.now_s += 1;

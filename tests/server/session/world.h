@@ -16,12 +16,12 @@ enum {
 	CLIENTS = 3, // clients 1 and 2 have the role operate, client 3 is an admin
 	QUEUE = 6,
 	TICKETS = 256,
-	WORLD_WORKS = 20,    // codes modulo 32 from this on: the worker continues
-	WORLD_ADVANCES = 28, // codes modulo 32 from this on: a client advances
+	WORLD_WORKS = 20,    // with codes of at least this, modulo 32, the worker continues
+	WORLD_ADVANCES = 28, // except that with this code, modulo 32, a client advances
 };
 
-#define DEADLINE_S 0.25      // deadline of every driver
-enum { DEADLINE_TICKS = 4 }; // deadline in lock-step
+#define DEADLINE_S 0.25      // deadline of every driver, s
+enum { DEADLINE_TICKS = 4 }; // deadline in lock-step, ticks
 
 // What the oracle knows about a tool.
 typedef struct tool_book {

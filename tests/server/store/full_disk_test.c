@@ -18,7 +18,7 @@
 enum {
 	SNAPSHOT_BYTES = 500000,
 	RETRY_MS = 20,
-	PATIENCE_S = 20, // longest wait for a recovery, which takes a few RETRY_MS
+	PATIENCE_S = 20, // longest wait for a recovery, s; a recovery takes a few RETRY_MS
 };
 
 // ---- the disk -------------------------------------------------------------------------

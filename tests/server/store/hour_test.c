@@ -11,7 +11,7 @@
 enum {
 	REQUESTS_PER_S = 2000,
 	TICKS_PER_S = 60,
-	CHECKPOINT_S = 10, // the same as the daemon's setting
+	CHECKPOINT_S = 10, // time between two checkpoints, as in the daemon's settings
 	CLIENTS = 8,
 	BUDGET_BYTES = 20000000,
 	WAL_BYTES = 1000000, // limit of the log; small, so that the file's size shows what is in use

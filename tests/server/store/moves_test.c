@@ -323,7 +323,7 @@ static void answers_of_a_session_that_comes_back_stay(void **state)
 	cau_store_close(store);
 }
 
-// For a session that returns, the old record of its move counts until it is accepted here.
+// If a session returns, the record that it moved away is valid until the session is accepted here.
 static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state)
 {
 	struct fixture *fixture = *state;
@@ -377,7 +377,7 @@ static void rows_that_come_twice_fail_their_batch_alone(void **state)
 	cau_store_close(store);
 }
 
-// The batch must fail by itself: otherwise it would be answered as if it were on the disk.
+// The batch must fail by itself: otherwise the batch would be answered as if it were on the disk.
 static void a_piece_of_no_session_fails_its_batch(void **state)
 {
 	struct fixture *fixture = *state;
