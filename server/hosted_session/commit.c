@@ -58,7 +58,8 @@ static void end_making(cau_hosted *h, cau_status status, const char *reason)
 	cau_hosted_fail_creator(&h->creation, &error, cau_hosted_commit_code(status));
 }
 
-// Called on the store's thread.
+// Called on the store's thread after a commit. Sends the answers that waited for it, or notes the
+// loss.
 static void committed(void *user, cau_status status, const char *reason)
 {
 	commit *done = user;

@@ -6,8 +6,8 @@
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
-// Longest period of ticks, s of wall time, with which reads wait for the next tick border of a
-// running session.
+// Longest time between two tick borders, s of wall time, with which a read waits for the next
+// border. With a longer time the read wakes the worker at once.
 #define BORDER_SOON_S 0.0334
 
 enum {

@@ -214,10 +214,10 @@ static void run_slice(cau_hosted *h)
 		serve(h, cau_monotonic_s());
 }
 
-// Runs one slice as a task of the pool. `suspension.active` must be read before `ended`. While it
-// is set, the builder has the session, including `ended`. Once it is read as false, all changes of
-// the builder are visible, so a session that has ended on the builder is not run. In the other
-// order, the session might end and return between the two reads.
+// Runs one slice as a task of the pool. `suspension.active` must be read before `ended`. While
+// `active` is set, the builder has the session, including `ended`. Once `active` is read as false,
+// all changes of the builder are visible, so a session that has ended on the builder is not run. In
+// the other order, the session might end and return between the two reads.
 cau_due cau_hosted_run(cau_task *task)
 {
 	cau_hosted *h = (cau_hosted *)task;

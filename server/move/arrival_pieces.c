@@ -179,7 +179,8 @@ static bool is_repeated(const arrival *a, const cau_move_asked *asked, const con
 	       a->pieces == (int64_t)found->index + 1 && strcmp(a->seal, found->seal) == 0;
 }
 
-// Called with the lock of cau_moves.
+// Answers how many pieces are on the disk, with the receipt once all are. Called with the lock of
+// cau_moves.
 static void answer_received(const arrival *a, const cau_reply *reply)
 {
 	cau_wire_move_received result = {.pieces = a->pieces,
@@ -244,7 +245,7 @@ static void end_older(cau_moves *moves, const arrival *a)
 		cau_arrival_take_out(moves, old);
 }
 
-// Called on the store's thread.
+// Called on the store's thread with the outcome of the commit of a piece.
 static void piece_written(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;

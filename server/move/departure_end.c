@@ -202,7 +202,7 @@ static bool is_own_fault(cau_status status)
 	       status == CAU_LIMIT;
 }
 
-// Called with the lock of cau_moves.
+// Ends the session here, because its tombstone is on the disk. Called with the lock of cau_moves.
 static void go_away(cau_moves *moves, departure *d)
 {
 	cau_tombstone_put(moves, &d->becomes);
@@ -233,7 +233,8 @@ static void decided(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// Called with the lock of cau_moves.
+// Submits the tombstone to the store. `reply` is answered after the commit. Called with the lock of
+// cau_moves.
 static void write_tombstone(cau_moves *moves, departure *d, const cau_reply *reply)
 {
 	cau_error error = {0};

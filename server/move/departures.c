@@ -28,7 +28,7 @@ static void destroy(departure *d)
 	free(d);
 }
 
-// Called with the lock of cau_moves.
+// Returns the departure of this session, or NULL. Called with the lock of cau_moves.
 static departure *find(cau_moves *moves, const char *id)
 {
 	departure *d = moves->departures;

@@ -265,7 +265,7 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
 }
 
-// True if no cut-off after the order makes its enable void.
+// True if the order's enable is valid: no cut-off came after the order.
 static bool counts(const cau_drive *drive, const cau_waiting *order)
 {
 	return !order->cut_moment && order->moment > drive->cut_moment;

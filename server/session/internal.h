@@ -40,7 +40,7 @@ void cau_drive_cut_itself(cau_logic *logic, const char *tool);
 bool cau_drive_is_to_cut(const cau_logic *logic);
 // True if the order is allowed to use its tool. Otherwise fills the action with the refusal.
 bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action);
-// True if the core can take another tool, of this name. Otherwise fills the action with the
+// True if the core can take another tool, with this name. Otherwise fills the action with the
 // refusal.
 bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action);
 // True if an ADVANCE is allowed to use all of its tools. Otherwise fills the action with the

@@ -25,8 +25,8 @@ static uint64_t next_random(uint64_t *state)
 }
 
 // Raises the share of advances, because random sequences seldom pause a session and then advance
-// it. Every fourth sequence begins paused. A quarter of its other codes are advances, most of them
-// by the driver, and half are acts of the worker.
+// it. Every fourth sequence begins paused. A quarter of the sequence's other codes are advances,
+// most of them by the driver, and half are acts of the worker.
 static void favour_advances(sequence *s)
 {
 	static const uint32_t pause[] = {0x008100a0, 0x00000034, 0x00000034};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session's machine in 16 bytes. They hold everything that its decisions depend on, and nothing
-// else, so machines with equal behaviour are one state. A moment becomes a place among the orders
-// that are not decided yet. A time becomes fresh or silent, and a tick becomes its distance from
-// the present tick. Names, causes and tickets are left out. A state can be decoded into a machine
-// again.
+// A session's machine in 16 bytes. The bytes hold everything that the machine's decisions depend
+// on, and nothing else, so machines with equal behaviour are one state. A moment becomes a place
+// among the orders that are not decided yet. A time becomes fresh or silent, and a tick becomes its
+// distance from the present tick. Names, causes and tickets are left out. A state can be decoded
+// into a machine again.
 #pragma once
 
 #include "session/logic.h"

@@ -134,8 +134,8 @@ static cau_status see_answer(void *user, const cau_store_answer *answer)
 	return CAU_OK;
 }
 
-// Checks that every command before `acknowledged` is in the store, in order, and that later ones
-// have no holes. Returns the number of commands.
+// Checks that every command before `acknowledged` is in the store, in order, and that no command is
+// missing among the later commands. Returns the number of commands.
 static uint64_t check_store(const cau_store_config *config, uint64_t acknowledged)
 {
 	static uint64_t ticks[MAX_TICKS];

@@ -221,8 +221,8 @@ static void what_could_not_be_stored_is_a_gap(void **state)
 	cau_store_close(store);
 }
 
-// Sixty hours without commands: the daemon then makes one checkpoint in 256 checkpoint_s, here
-// every 153,600 ticks. README.md states the bounds.
+// Sixty hours without commands, with one checkpoint every 153,600 ticks. server/README.md states
+// the bounds on the number of checkpoints.
 static void an_untouched_weekend_is_small(void **state)
 {
 	static const uint64_t cadence = 153600, end = 60ull * 3600 * 60;
@@ -268,7 +268,7 @@ static void read_count(sqlite3 *database, int session, int64_t *counted, int64_t
 	assert_int_equal(cau_store_integer(database, sql, logged, NULL), CAU_OK);
 }
 
-// Writes `ticks` ticks of each session's log. After every third one comes a batch that fails. The
+// Writes `ticks` ticks of each session's log. After every third tick comes a batch that fails. The
 // first record of that batch is rolled back, and must not be counted.
 static void write_logs(cau_store *store, int sessions, uint64_t ticks)
 {
