@@ -4,7 +4,8 @@
 
 #include "hosted_session/record.h"
 
-extern const cau_error cau_daemon_ends; // why the builder drops its jobs at the daemon's end
+// the error for jobs that the builder drops because the daemon ends
+extern const cau_error cau_daemon_ends;
 void cau_answer_now(const cau_reply *reply, const void *result);
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
 // Fails the order with this status, path and reason. Returns CAU_NOT_DONE.

@@ -7,7 +7,8 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define READS_SLICE_S 0.002 // time for requests that only read; the last request may exceed it
+// Most time in a slice for requests that only read, s. The last request may exceed it.
+#define READS_SLICE_S 0.002
 
 static void note_energy(cau_hosted_timeline *timeline, const cau_order *order,
                         const cau_action *action)
@@ -18,7 +19,7 @@ static void note_energy(cau_hosted_timeline *timeline, const cau_order *order,
 		                 order->as.command.tool, order->asker.name, 0, NULL);
 }
 
-// Reports what a command that the core has accepted changed, to the timeline and to clients.
+// Reports the effect of an accepted command to the timeline and to clients.
 static void note(cau_hosted *h, const cau_order *order, const cau_action *action)
 {
 	const cau_command *command = &order->as.command;

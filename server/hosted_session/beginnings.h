@@ -41,11 +41,11 @@ void cau_beginnings_finish(cau_beginnings *beginnings); // no caller may still h
 // meshes are the same once a session is built. Release the entry with cau_beginnings_let_go.
 cau_beginning *cau_beginnings_hold(cau_beginnings *beginnings, const cau_scene_def *scene);
 void cau_beginnings_let_go(cau_beginnings *beginnings, cau_beginning *held);
-// Caches the rest state of `core`, which was just built from `scene`, if that had to settle.
+// Caches the rest state of `core`, which was just built from `scene`, if the core had to settle.
 // Replaces the entry of this scene, or else the entry with the oldest request. Caches nothing if
 // memory runs out.
 void cau_beginnings_keep(cau_beginnings *beginnings, const cau_scene_def *scene,
                          const cau_session *core);
-// Removes an entry from the cache because it did not fit. The caller still holds the entry and must
-// call cau_beginnings_let_go.
+// Removes an entry from the cache because its state did not fit a core. The caller still holds the
+// entry and must call cau_beginnings_let_go.
 void cau_beginnings_forget(cau_beginnings *beginnings, const cau_beginning *held);

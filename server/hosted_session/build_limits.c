@@ -7,8 +7,8 @@
 
 #define MEGABYTE 1e6
 
-// Time to build a session, s for each vertex; orders the builder's jobs. A sheet of 250,000
-// vertices takes 10 s.
+// Estimated time to build a session, s for each vertex. The builder sorts its jobs by it. A sheet
+// of 250,000 vertices takes 10 s.
 #define BUILT_VERTEX_S 4e-5
 
 // ---- time ---------------------------------------------------------------------------------------

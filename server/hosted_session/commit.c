@@ -47,8 +47,8 @@ static void answer_all(cau_pending *list, cau_status status, const char *reason)
 	}
 }
 
-// Ends a session whose first rows the store rejected. Also fails the creator's reply: during a
-// replay it is not among the pending answers.
+// Ends a session whose first rows the store rejected. Also fails the creator's reply, because
+// during a replay this reply is not among the pending answers.
 static void end_making(cau_hosted *h, cau_status status, const char *reason)
 {
 	cau_error error = {.status = status};
@@ -58,7 +58,8 @@ static void end_making(cau_hosted *h, cau_status status, const char *reason)
 	cau_hosted_fail_creator(&h->creation, &error, cau_hosted_commit_code(status));
 }
 
-// Called on the store's thread.
+// Called on the store's thread after a commit. Sends the answers that waited for it, or notes the
+// loss.
 static void committed(void *user, cau_status status, const char *reason)
 {
 	commit *done = user;
@@ -73,7 +74,8 @@ static void committed(void *user, cau_status status, const char *reason)
 		if (done->making)
 			end_making(done->hosted, status, reason);
 	}
-	if (done->made && !status) // before the answer is sent: the creator may use the session at once
+	// this comes before the answer, because the creator may use the session at once
+	if (done->made && !status)
 		done->hosted->creation.unanswered = false;
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {
@@ -100,7 +102,8 @@ void cau_record_commit(cau_hosted *h)
 		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "no command could be stored");
 		return;
 	}
-	// An earlier batch may have failed in the meantime. The log entries of this batch need it.
+	// The log entries of this batch need all earlier batches, and an earlier batch may have failed
+	// in the meantime.
 	cau_status status = h->record.batch_acts ? cau_record_check(&h->record, &error) : CAU_OK;
 	commit *travelling = status ? NULL : malloc(sizeof *travelling);
 	if (!status && !travelling)
@@ -142,9 +145,9 @@ static cau_status send_again(void *user, const cau_store_answer *answer)
 	return CAU_OK;
 }
 
-// Looks up the stored answer of a request that was sent again. Returns CAU_OK if it was answered,
-// CAU_NOT_FOUND if the order is new, and CAU_BAD_STATE if the order must wait. CAU_ALREADY_EXISTS:
-// the order was done, but its answer is no longer stored.
+// Looks up the stored answer of a request that was sent again. Returns CAU_OK if the answer was
+// sent, CAU_NOT_FOUND if the order is new, and CAU_BAD_STATE if the order must wait.
+// CAU_ALREADY_EXISTS: the order was done, but its answer is no longer stored.
 static cau_status look_up(const cau_hosted_identity *identity, const cau_order *order,
                           cau_error *error)
 {
@@ -158,7 +161,7 @@ static cau_status look_up(const cau_hosted_identity *identity, const cau_order *
 cau_outcome_kind cau_record_resend(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
-	if (h->record.pending) // the earlier order may be in this slice's batch
+	if (h->record.pending) // the answer to the earlier order may be in this slice's batch
 		cau_record_commit(h);
 	cau_status status = look_up(&h->identity, order, &error);
 	if (status == CAU_BAD_STATE)

@@ -14,7 +14,7 @@ static void note_store(cau_hosted *h)
 		cau_hosted_store_takes(h, false, health.reason);
 }
 
-// Returns NULL if memory runs out.
+// Allocates a session with memory for `orders` orders. Returns NULL if memory runs out.
 static cau_hosted *allocate(int32_t orders)
 {
 	cau_hosted *h = calloc(1, sizeof *h);

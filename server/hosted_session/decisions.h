@@ -23,8 +23,8 @@ typedef struct cau_hosted_decisions {
 typedef struct cau_decided {
 	int state;
 	double speed;
-	double tick_s;   // in a running session: start of the next tick, on the monotonic clock
-	double period_s; // time between the starts of two ticks, on the monotonic clock
+	double tick_s;   // in a running session: start of the next tick, s on the monotonic clock
+	double period_s; // time between the starts of two ticks, s on the monotonic clock
 	int64_t steps_left;
 	uint32_t lockstep; // number of the client that has the session in lock-step; 0: none
 	int32_t drive_count;

@@ -49,8 +49,8 @@ static cau_part *part_of(cau_asked *asked, const char *tool, int32_t command)
 	return made;
 }
 
-// Describes what an advance does with each tool. The transport ensures that its commands use at
-// most CAU_MAX_TOOLS tools, and that at most one command sets a tool's energy.
+// Describes what an advance does with each tool. The transport ensures that the advance's commands
+// use at most CAU_MAX_TOOLS tools, and that at most one command sets a tool's energy.
 static void describe_parts(const cau_advance *advance, cau_asked *asked)
 {
 	asked->ticks = advance->ticks;

@@ -17,7 +17,7 @@ typedef struct cau_refused_motion {
 	cau_error error;
 } cau_refused_motion;
 
-// Any thread may use this, under the lock.
+// Refused motion of all tools of a session. Any thread may use this struct, under the lock.
 typedef struct cau_hosted_refusals {
 	pthread_mutex_t lock;
 	uint64_t count; // refused motions of all tools since the session was created
@@ -27,7 +27,7 @@ typedef struct cau_hosted_refusals {
 void cau_refusals_note(cau_hosted_refusals *refusals, const cau_order *order,
                        const cau_error *error);
 void cau_refusals_report(cau_hosted_refusals *refusals, const cau_hosted_identity *identity,
-                         double now_s); // reports the tools whose second has passed
+                         double now_s); // reports each tool at most once a second
 
 // Sends tool.driver_changed.
 void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *drive);

@@ -14,8 +14,8 @@ static cau_order *order_of(uint64_t ticket)
 
 // ---- effects ------------------------------------------------------------------------------------
 
-// Notifies clients under the lock, so that they receive decisions in the order in which they were
-// made.
+// Notifies clients under the lock, so that they receive the decisions in the order of the
+// decisions.
 static void tell(cau_hosted *h, const cau_effects *effects)
 {
 	for (int32_t i = 0; i < effects->count; i++)
@@ -76,8 +76,8 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 	}
 }
 
-// Handles one event under the lock. The trace gets the event before the call and its effects after
-// it. The lock makes the order of the trace that of the calls.
+// Handles one event under the lock. The trace gets the event before the call, and the effects after
+// the call. Because of the lock, the trace has the order of the calls.
 static void apply(cau_hosted *h, const cau_logic_event *event, cau_effects *effects)
 {
 	cau_trace_take(h->decisions.trace, event);
@@ -233,8 +233,8 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 	cau_session_frame(h->core.session, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++) {
 		memcpy(tools[i].name, frame.tools[i].name, sizeof tools[i].name);
-		// A store of an older build may have commands that wait in the core. They could still
-		// enable or move the tool, so they are voided too.
+		// A store of an older build may have commands that wait in the core. These commands could
+		// still enable or move the tool, so they are voided too.
 		tools[i].lit = frame.tools[i].energized ||
 		               cau_session_waiting(h->core.session, frame.tools[i].name) > 0;
 	}

@@ -54,7 +54,7 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 	cau_published_count(&h->published, &(cau_hosted_counts){.watchdog_cuts = watchdog});
 	cau_timeline_add(&h->timeline, watchdog ? CAU_EVENT_WATCHDOG : CAU_EVENT_ENERGY_OFF,
 	                 drive->tool, drive->driver.name, 0, drive->cut_cause);
-	if (watchdog) // shows the driver why the tool stays cold although the pedal is pressed
+	if (watchdog) // the log shows why the tool stays cold although the pedal is pressed
 		cau_log(CAU_LOG_WARNING, h->identity.id, "energy_cut",
 		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"energy stays off until the driver "
 		        "releases and enables it anew\"",

@@ -12,5 +12,6 @@ bool cau_energy_off_or_hold(const cau_hosted_identity *identity, cau_present_cor
                             const cau_command *command);
 // Turns the tool's energy off by the daemon itself. The log entry names no client.
 void cau_energy_turn_off(cau_hosted *h, const char *tool);
-// Cuts off energy as was decided. Also stops the tool where it is if its drive says `freeze`.
+// Carries out an energy cut-off of the decisions. Stops the tool where it is if its drive says
+// `freeze`.
 void cau_energy_cut(cau_hosted *h, const cau_action *action);

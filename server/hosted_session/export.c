@@ -10,8 +10,9 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define LINE_S 1e-6        // estimated time for one line of such a file
-#define LOG_EXPECTED_S 0.1 // estimate: the length of a log is known only after reading it
+#define LINE_S 1e-6 // estimated time to write one line of the file, s
+// estimated time to write a log, s; its length is known only after reading
+#define LOG_EXPECTED_S 0.1
 
 static atomic_uint last_transfer;
 
@@ -142,9 +143,9 @@ static void write_obj(const cau_read_job *job, FILE *stream)
 	}
 }
 
-// The remaining cells: tetrahedra, then drawn faces of sheets.
+// The cells of the tissue that are left: tetrahedra, then drawn faces of sheets.
 typedef struct cells {
-	int32_t *vertex; // 4 for each cell; the last one of a triangle is -1
+	int32_t *vertex; // 4 vertices for each cell; the last one of a triangle is -1
 	int32_t count;
 } cells;
 

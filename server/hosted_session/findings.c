@@ -7,9 +7,9 @@
 #include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
 
-#define GAIN_MOST 0.01 // largest gain that is not reported, relative to the tick's energy
+#define GAIN_MOST 0.01 // largest energy gain that is not reported, relative to the tick's energy
 
-// ticks after a report before the next one; one report in ten seconds is enough
+// Fewest ticks between two reports of an energy gain. One report in ten seconds is enough.
 enum { GAIN_QUIET_TICKS = 600 };
 
 void cau_findings_know(cau_hosted_findings *findings, const cau_session *core)
@@ -141,7 +141,7 @@ void cau_hosted_fault(cau_hosted *h, const cau_error *error)
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_FAULT,
 	                                 .time_s = cau_monotonic_s(),
 	                                 .cause = error->reason});
-	h->pace.realtime_factor = 0; // a faulted session does not advance, as a paused one
+	h->pace.realtime_factor = 0; // a faulted session does not advance
 	cau_hosted_tell_fault(h, error);
 }
 
@@ -154,7 +154,7 @@ void cau_fault_stop_unsound(cau_hosted *h)
 	cau_session_frame(h->core.session, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++)
 		cau_energy_turn_off(h, frame.tools[i].name);
-	cau_energy_turn_off(h, h->decisions.odd_tool); // this tool may not have been added yet
+	cau_energy_turn_off(h, h->decisions.odd_tool); // `frame` lacks a tool that is not added yet
 	cau_fail(&error, CAU_FAULTED, "", "tool %s had energy on without a valid enable",
 	         h->decisions.odd_tool);
 	cau_log(CAU_LOG_ERROR, h->identity.id, "energy_disagrees", "tick=%llu tool=%s",
@@ -163,8 +163,8 @@ void cau_fault_stop_unsound(cau_hosted *h)
 	cau_hosted_tell_fault(h, &error);
 }
 
-// Reports a broken safety rule of the decisions. They have already faulted the session, and their
-// energy cut-offs follow as ordinary acts.
+// Reports a broken safety rule of the decisions. The decisions have already faulted the session,
+// and the energy cut-offs follow as ordinary acts.
 void cau_fault_report_broken_rule(cau_hosted *h)
 {
 	cau_error error = {0};

@@ -11,7 +11,7 @@
 typedef struct cau_hosted_frames {
 	cau_streams streams; // has its own lock
 	atomic_bool dirty;   // any thread: the streams must show a change that no step made
-	uint64_t epoch;      // only for the session's owning thread
+	uint64_t epoch;      // epoch of the next frame; only for the owning thread
 } cau_hosted_frames;
 
 void cau_frames_publish(cau_hosted *h, double now_s); // publishes to the streams that are due

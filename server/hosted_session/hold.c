@@ -9,7 +9,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define STOPS_EXPECTED_S 0.01 // time of a commit; orders the builder's jobs
+#define STOPS_EXPECTED_S 0.01 // expected time of a commit, s, by which the builder sorts its jobs
 
 typedef struct cau_holding {
 	cau_job job; // must be the first member

@@ -38,7 +38,8 @@ void cau_hosted_refuse_gone(const cau_hosted_life *life, cau_order *order)
 void cau_hosted_end(cau_hosted *h)
 {
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_END, .time_s = cau_monotonic_s()});
-	// set after the decision: a thread that sees `ended` may refuse waiting orders, which needs it
+	// `ended` is set after the decision: a thread that sees `ended` may refuse waiting orders, and
+	// this refusal needs the decision
 	h->life.ended = true;
 	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 }

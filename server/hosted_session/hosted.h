@@ -26,7 +26,7 @@ typedef struct cau_hosted_times {
 } cau_hosted_times;
 const char *cau_hosted_stage_name(int stage); // for example "global"
 
-// What all sessions share. It must outlive them.
+// What all sessions share. It must outlive the sessions.
 typedef struct cau_surroundings {
 	const cau_config *config;
 	cau_store *store;
@@ -156,8 +156,8 @@ double cau_hosted_watch(cau_hosted *hosted, double now_s);
 int32_t cau_hosted_waiting(cau_hosted *hosted, cau_wire_waiting_command *list, int32_t capacity);
 int32_t cau_hosted_cancel(cau_hosted *hosted, uint32_t client, uint64_t number);
 
-// The client will not return. A session that is still being built for the client ends at the next
-// border of its stages. An ephemeral session that the client created is destroyed.
+// Notes that the client will not return. A session that is still being built for the client ends at
+// the next border of its stages. An ephemeral session that the client created is destroyed.
 void cau_hosted_abandon(cau_hosted *hosted, uint32_t client);
 // True if the session is kept only in memory.
 bool cau_hosted_is_ephemeral(const cau_hosted *hosted);

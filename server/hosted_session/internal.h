@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session and its parts. Each part has an owner, which its header names: a lock, a thread, or the
 // session's owning thread. The owning thread is the worker that runs the session's slice. While the
-// session is suspended, it is the builder.
+// session is suspended, the owning thread is the builder's.
 #pragma once
 
 #include "clock/clock.h"

@@ -18,8 +18,8 @@ static void drop(cau_kept_states *kept, int32_t index)
 }
 
 // Longest replay, in ticks, to a tick near this state if the state were dropped. The first and the
-// last state have only one neighbour, so the distance to it is doubled. Ticks before the first
-// state are reached from the store.
+// last state have only one neighbour, so the distance to this neighbour is doubled. Ticks before
+// the first state are reached from the store.
 static uint64_t gap_without(const cau_kept_states *kept, int32_t index)
 {
 	uint64_t tick = kept->state[index].tick;

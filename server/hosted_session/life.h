@@ -6,8 +6,8 @@
 
 #include "hosted_session/hosted.h"
 
-// Until the session is started, only the builder uses this. Any thread may use the members marked
-// so.
+// The creation of a session. Until the session is started, only the builder uses this struct. Any
+// thread may use the members marked "any thread".
 typedef struct cau_hosted_creation {
 	cau_hosted_origin origin;
 	bool pause_at_start;
@@ -25,7 +25,7 @@ typedef struct cau_hosted_creation {
 	int64_t memory_held;    // share of the memory that all sessions may take, bytes
 } cau_hosted_creation;
 
-// Any thread may read this.
+// The end of a session. Any thread may read this struct.
 typedef struct cau_hosted_life {
 	atomic_bool ended, drain_wanted, drained;
 	// target of the move after which the session ended here; written before `ended`

@@ -9,9 +9,10 @@
 #include "hosted_session/internal.h"
 #include "log/log.h"
 
-// Estimates of a job's time; they order the builder's jobs.
-#define READ_BYTES_PER_S 20e6 // reading speed for text
-// Added if the surface may be filled. The thread for short jobs then leaves the job to others.
+// Estimates from which a job's time is computed. The builder sorts its jobs by this time.
+#define READ_BYTES_PER_S 20e6 // speed of reading text, bytes/s
+// Time that is added if the surface may be filled, s. With it, the job is too long for the thread
+// for short jobs, and another thread takes it.
 #define FILL_S 1.0
 
 enum { MENDS_MAX = 16 };
@@ -178,8 +179,8 @@ static cau_status read_solid(reading *what, double unit_m, cau_error *error)
 	return status;
 }
 
-// Reads a surface unfilled first, for its report and its unit. *has_inside: it is then to be
-// filled.
+// Reads a surface unfilled first, for its report and its unit. Sets *has_inside if the surface is
+// to be filled.
 static cau_status read_surface(reading *what, bool *has_inside, cau_error *error)
 {
 	int32_t kind = what->asked.layer_kind;
@@ -215,7 +216,8 @@ static cau_status read_mesh(reading *what, cau_mesh_report *file, cau_error *err
 	                  error);
 }
 
-// Puts the uploaded file's numbers into the report, in place of those of the solid made from it.
+// Puts the uploaded file's numbers into the report, in place of the numbers of the solid made from
+// this file.
 static void keep_of_file(reading *what, const cau_mesh_report *file)
 {
 	cau_mesh_report *to = &what->report;

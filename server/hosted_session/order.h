@@ -11,8 +11,8 @@
 
 // The kinds of orders, and the functions that serve them at a tick border (slice.h).
 //
-//    CHANGE(KIND, ask, apply)  waits in the session's queue. ask: CAU_ASK_<ask> of session/logic.h,
-//                              as which it is decided; for a COMMAND it depends on the command
+//    CHANGE(KIND, ask, apply)  waits in the session's queue, and is decided as CAU_ASK_<ask> of
+//                              session/logic.h; a COMMAND is decided by the kind of its command
 //    READ(KIND, apply)         changes nothing, and waits in a queue of its own (read_requests.c)
 #define CAU_ORDER_TABLE(CHANGE, READ)                                                              \
 	CHANGE(COMMAND, TISSUE, cau_apply_command) /* as.command */                                    \

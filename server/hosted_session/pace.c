@@ -5,8 +5,9 @@
 
 #include "clock/clock.h"
 
-#define FACTOR_WINDOW_S 1.0 // window over which realtime_factor is measured
-#define PIECE_KEPT 0.9 // piece_s falls by this factor from step to step, unless a step is longer
+#define FACTOR_WINDOW_S 1.0 // window over which realtime_factor is measured, s
+// factor by which piece_s falls from step to step, unless a step takes longer than piece_s
+#define PIECE_KEPT 0.9
 
 _Static_assert((int)CAU_HOSTED_STAGES == (int)CAU_STAGE_COUNT,
                "a histogram for each stage of the core");

@@ -8,8 +8,8 @@
 #include "hosted_session/build_limits.h"
 #include "hosted_session/shown.h"
 
-// A state is kept if the nearest earlier kept state is at least this many ticks back. In most
-// scenes this is half a second, which is replayed faster than a user notices.
+// Fewest ticks between two kept states. In most scenes this is half a second, which is replayed
+// faster than a user notices.
 enum { KEPT_TICKS = 30 };
 
 // ---- building -----------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A second core of a session. It goes to past ticks of the session and makes frames of them. It
-// touches nothing that the session's steps change. One thread at a time uses it, in the same stages
-// as a rewind (rewind.c).
+// A second core of a session. The second core goes to past ticks of the session and makes frames of
+// them. It changes nothing that the session's steps change. One thread at a time uses it, in the
+// same stages as a rewind (rewind.c).
 #pragma once
 
 #include "buffer/buffer.h"

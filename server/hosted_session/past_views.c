@@ -2,8 +2,8 @@
 // Computes views of past ticks. A view rewinds no session, and no worker waits for it: a second
 // core (past_core.c) goes to the tick on the builder, alternating with other jobs. A session has
 // one such core, and requests wait for it in a queue, one for each client. A client's new request
-// cancels its previous one. Between two turns a request is dropped if its client has cancelled it
-// or is gone, or if the session has ended.
+// cancels the client's previous request. Between two turns a request is dropped if its client has
+// cancelled it or is gone, or if the session has ended.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,12 +15,14 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// Estimated times of the stages; they order the builder's jobs (rewind.c).
+// Estimated times of the stages, s, and s for each vertex. The builder sorts its jobs by them, as
+// in rewind.c.
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
-#define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
+#define SLICE_S 0.1 // length of one turn of a replay, s; after each turn other short jobs may run
 
-// An unused core is freed after this time, because it takes as much memory as the session's own.
+// Time, s, after which an unused core is freed, because it takes as much memory as the session's
+// own core.
 #define KEPT_S 60.0
 
 // ---- answers ------------------------------------------------------------------------------------
@@ -100,7 +102,7 @@ static void tell_progress(cau_past_views *views)
 // ---- the queue ----------------------------------------------------------------------------------
 // Makes the next waiting request the present one. Returns false if none waits; then the builder
 // releases the views. Another thread of the builder may have the views as soon as the lock is
-// released, so nothing of them is read after that.
+// released, so this function reads nothing of the views after that.
 static bool take_next(cau_past_views *views)
 {
 	pthread_mutex_lock(&views->lock);

@@ -6,12 +6,13 @@
 #include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 
-// If the next tick border of a running session is at most this far, reads wait for it.
+// Longest time between two tick borders, s of wall time, with which a read waits for the next
+// border. With a longer time the read wakes the worker at once.
 #define BORDER_SOON_S 0.0334
 
 enum {
 	FILES_AT_ONCE = 2, // most files of one session with the builder: each has a copy of its state
-	CLIENT_SHARE = 4,  // one client may use at most this part (1/4) of the queue
+	CLIENT_SHARE = 4,  // divisor of the queue's capacity: one client may use at most 1/4 of it
 };
 
 bool cau_reads_are(const cau_order *order)
@@ -56,7 +57,7 @@ static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
 }
 
 // True if the next tick border comes soon anyway. Must be called after the order was queued: a
-// slice that pauses the session publishes this before it looks for waiting requests.
+// slice that pauses the session publishes the pause before it looks for waiting requests.
 static bool border_is_near(cau_hosted *h)
 {
 	cau_wire_session_summary summary;
@@ -147,7 +148,7 @@ static void end(reading *r)
 	if (cau_reads_make_file(r->read.order))
 		atomic_fetch_sub(&h->reads.files, 1);
 	free(r->read.order);
-	// other requests may have waited for this one
+	// Other requests may have waited for the end of this request.
 	cau_worker_pool_wake(h->identity.around->pool, &h->task);
 	cau_hosted_release(h);
 	free(r);

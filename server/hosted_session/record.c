@@ -14,7 +14,9 @@
 // with its log entries.
 enum { REACHED_BYTES = 2048 };
 
-enum { QUIET_DOUBLINGS = 6 }; // a resting session has a checkpoint at least every 64 checkpoint_s
+// Most doublings of the interval between checkpoints. A resting session has a checkpoint at least
+// every 2^6 = 64 checkpoint_s.
+enum { QUIET_DOUBLINGS = 6 };
 
 void cau_record_init(cau_hosted_record *record, const cau_hosted_identity *identity,
                      const cau_present_core *core, const cau_hosted_history *history,
@@ -75,8 +77,8 @@ static cau_store_command next_entry(cau_hosted_record *record, int32_t kind)
 }
 
 // True if commands of this tick are already logged. A checkpoint of a tick comes before the
-// commands of that tick, so it is too late for one. The log then leads here from the previous
-// checkpoint, and the next tick border gets a checkpoint.
+// commands of that tick, so this tick can have no checkpoint any more. A restart then replays the
+// log from the previous checkpoint to this tick. The next tick border gets a checkpoint.
 static bool is_past_commands(const cau_hosted_record *record)
 {
 	return record->logged_tick == record->core->tick && record->logged_acts;
@@ -89,7 +91,7 @@ void cau_record_command(cau_hosted_record *record, const cau_command *command,
 	size_t json_bytes = 0;
 	record->touched = true;
 	if (record->commits->lost_from <= record->core->tick && is_past_commands(record))
-		return; // an energy cut-off by the daemon after a command that was lost
+		return; // the daemon's energy cut-off follows a command that the log lost
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(record);
 	cau_store_command row = next_entry(record, command->kind);
@@ -213,7 +215,8 @@ bool cau_record_is_due(cau_hosted_record *record, bool running, bool energy_on, 
 		record->quiet_checkpoints = 0;
 	else if (due && record->quiet_checkpoints < QUIET_DOUBLINGS)
 		record->quiet_checkpoints++;
-	// A full store is not tried. Once it has capacity again, it asks for a checkpoint.
+	// No checkpoint is tried while the store is full. Once the store has capacity again, it asks
+	// for a checkpoint.
 	return (due || record->commits->checkpoint_wanted) && store_is_ready(record);
 }
 

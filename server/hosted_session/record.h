@@ -19,7 +19,8 @@ typedef struct cau_pending {
 	size_t text_bytes;
 } cau_pending;
 
-// Set by the session's owning thread and by the store's thread. Any thread may read it.
+// The commits of a session. The session's owning thread and the store's thread set these members,
+// and any thread may read them.
 typedef struct cau_hosted_commits {
 	// The store lacks commands from this tick on, until a checkpoint is stored; UINT64_MAX: it
 	// lacks none.
@@ -37,14 +38,14 @@ typedef struct cau_hosted_record {
 
 	cau_store_batch *batch; // batch of this slice; NULL: nothing to write
 	uint64_t batch_tick;    // tick at which `batch` was created
-	uint64_t batch_lost;    // first tick of the gap that this batch ends; UINT64_MAX: none
-	bool batch_acts;        // `batch` has log entries since its last checkpoint
-	cau_pending *pending;   // answers that wait for the commit of `batch`
-	uint64_t logged_tick;   // tick of the last log entry
-	uint32_t logged_order;  // number of that tick's next log entry
-	bool logged_acts;       // some of these entries are commands
-	bool touched;           // commands or cuts came since the last checkpoint
-	double checkpoint_s;    // time of the last checkpoint
+	uint64_t batch_lost;  // first tick of the gap that this batch ends; UINT64_MAX: there is no gap
+	bool batch_acts;      // `batch` has log entries since its last checkpoint
+	cau_pending *pending; // answers that wait for the commit of `batch`
+	uint64_t logged_tick; // tick of the last log entry
+	uint32_t logged_order; // number of that tick's next log entry
+	bool logged_acts;      // commands are among the log entries of `logged_tick`
+	bool touched;          // commands or cuts came since the last checkpoint
+	double checkpoint_s;   // time of the last checkpoint
 	uint64_t checkpoint_tick;
 	int32_t quiet_checkpoints; // consecutive checkpoints between which nothing happened
 	cau_shelf *shelf;          // memory for checkpoints

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings a core to a stored state: restores the nearest checkpoint, then replays the log. It runs
-// in slices, so that other sessions keep their pace.
+// Brings a core to a stored state: restores the nearest checkpoint, then replays the log. The
+// replay runs in slices, so that other sessions keep their pace.
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,7 +64,7 @@ cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *ses
 	if (!status)
 		status = cau_store_read_log(store, session, branch, replay->from, before, take_command,
 		                            replay, error);
-	// Checked last, because retention may have removed some of the log in the meantime.
+	// This check is the last, because retention may have removed some of the log in the meantime.
 	if (!to_end && (!status || status == CAU_NOT_FOUND)) {
 		cau_status reached = cau_store_check_reach(store, session, branch, tick, error);
 		status = reached ? reached : status;
@@ -99,7 +99,8 @@ static void submit_due(cau_replay *replay, cau_session *core)
 	     replay->at++)
 		if (replay->commands[replay->at].acts &&
 		    cau_session_submit(core, &replay->commands[replay->at].command, NULL))
-			replay->exact = false; // the core accepted the command when it was logged
+			replay->exact =
+				false; // the core refuses a command that it accepted when the command was logged
 }
 
 cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,

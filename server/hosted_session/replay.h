@@ -13,7 +13,7 @@ typedef struct cau_replayed {
 	cau_command command;
 } cau_replayed;
 
-// Only one thread at a time may use this.
+// A replay that is under way. Only one thread at a time may use this struct.
 typedef struct cau_replay {
 	void *snapshot; // snapshot of the checkpoint, until the core is restored from it
 	size_t snapshot_bytes;
@@ -33,8 +33,8 @@ cau_status cau_replay_check(const cau_hosted_identity *identity, const cau_hoste
 // Reads the checkpoint and the log of a session's branch up to `tick` (UINT64_MAX: the end).
 cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *session,
                            int64_t branch, uint64_t tick, cau_error *error);
-// Restores the core from that checkpoint. After CAU_CORRUPT the core is unchanged. After another
-// failure its state is undefined.
+// Restores the core from the checkpoint that cau_replay_read has read. After CAU_CORRUPT the core
+// is unchanged. After another failure its state is undefined.
 cau_status cau_replay_restore(cau_replay *replay, cau_session *core, cau_error *error);
 // Replays the log until its end, or for about `seconds`.
 cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,

@@ -12,11 +12,11 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-// Estimated times of the stages; they order the builder's jobs. Restoring a sheet of 250,000
-// vertices takes 1.5 s.
+// Estimated times of the stages, s, and s for each vertex. The builder sorts its jobs by them.
+// Restoring a sheet of 250,000 vertices takes 1.5 s.
 #define READ_EXPECTED_S 0.02
 #define RESTORED_VERTEX_S 6e-6
-#define SLICE_S 0.1 // length of one turn of a replay; then other short jobs may run
+#define SLICE_S 0.1 // length of one turn of a replay, s; after each turn other short jobs may run
 
 typedef struct going {
 	cau_job job; // must be the first member
@@ -137,7 +137,7 @@ static cau_status read_past(going *g, cau_error *error)
 	                                g->branch, g->tick, error);
 }
 
-// Takes a snapshot of the present state. A faulted session may go without one.
+// Takes a snapshot of the present state. For a faulted session a failure is no error.
 static cau_status keep_present(going *g, cau_error *error)
 {
 	cau_hosted *h = g->hosted;
@@ -185,7 +185,8 @@ static double expected_s(const going *g)
 	return h->pace.piece_s > SLICE_S ? h->pace.piece_s : SLICE_S;
 }
 
-// Submits the next stage. Another thread may have the job at once, so it is not used after this.
+// Submits the next stage. Another thread may have the job at once, so this function does not use
+// `g` after that.
 static void go_on(going *g)
 {
 	g->job.expected_s = expected_s(g);

@@ -7,8 +7,9 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define STEPPING_SLICE_S 0.01 // longest slice of session.step, before other sessions get the worker
-#define REPLAY_SLICE_S 0.008  // longest slice of a replay, so that other sessions keep realtime
+// longest slice of session.step, s; then other sessions get the worker
+#define STEPPING_SLICE_S 0.01
+#define REPLAY_SLICE_S 0.008 // longest slice of a replay, s, so that other sessions keep realtime
 
 static void step(cau_hosted *h)
 {
@@ -65,8 +66,8 @@ static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 	return CAU_DONE;
 }
 
-// Reports that no commit is under way. An earlier order may have been committed while its resend
-// looked for it; the resend must not wait for a further commit.
+// Reports that no commit is under way. A resend may have looked for its earlier order just before
+// the commit of that order ended. Without this report the resend would wait for a further commit.
 static void note_commits(cau_hosted *h)
 {
 	if (h->commits.under_way == 0)
@@ -213,10 +214,10 @@ static void run_slice(cau_hosted *h)
 		serve(h, cau_monotonic_s());
 }
 
-// Runs one slice as a task of the pool. `suspension.active` must be read before `ended`. While it
-// is set, the builder has the session, including `ended`. Once it is read as false, all changes of
-// the builder are visible, so a session that has ended on the builder is not run. In the other
-// order, the session might end and return between the two reads.
+// Runs one slice as a task of the pool. `suspension.active` must be read before `ended`. While
+// `active` is set, the builder has the session, including `ended`. Once `active` is read as false,
+// all changes of the builder are visible, so a session that has ended on the builder is not run. In
+// the other order, the session might end and return between the two reads.
 cau_due cau_hosted_run(cau_task *task)
 {
 	cau_hosted *h = (cau_hosted *)task;

@@ -6,8 +6,8 @@
 
 #include "clock/clock.h"
 
-// A tool in contact is always a little behind its commanded pose. Below this distance a user does
-// not see it.
+// Largest distance between actual and commanded pose, m, that is not shown. A tool in contact is
+// always a little behind its commanded pose, and a user does not see so small a distance.
 static const double behind_m = 1e-5;
 
 static bool is_behind(const cau_tool_state *tool)

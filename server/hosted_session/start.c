@@ -228,7 +228,8 @@ void cau_hosted_start(cau_hosted *h)
 		cau_hosted_started(h);
 }
 
-// Removes events after the tick to which the store leads, because they have no effect any more.
+// Removes events after the last tick that the store can restore, because they have no effect any
+// more.
 static void go_on_from_events(cau_hosted_timeline *timeline)
 {
 	cau_error error = {0};

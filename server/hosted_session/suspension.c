@@ -43,13 +43,14 @@ static bool keep_cancelling(cau_hosted_suspension *suspension, cau_order *order)
 }
 
 // Sorts the session.destroy orders that have come. A resend belongs to an earlier session of this
-// name, and gets its answer again.
+// name, and gets the earlier answer again.
 bool cau_suspension_is_cancelled(cau_hosted *h)
 {
 	for (cau_order *order = take_cancelling(&h->suspension), *next; order; order = next) {
 		next = order->next;
 		cau_outcome_kind looked = cau_record_resend(h, order);
-		if (looked == CAU_POSTPONED) // its earlier order is not on the disk yet
+		// the order is a resend, and the earlier order is not on the disk yet
+		if (looked == CAU_POSTPONED)
 			keep_cancelling(&h->suspension, order);
 		else if (looked == CAU_DONE)
 			cau_order_append(&h->suspension.destroyers, order);

@@ -10,7 +10,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 
-#define READ_EXPECTED_S 0.02 // to read a page of the timeline from the store
+#define READ_EXPECTED_S 0.02 // estimated time to read a page of the timeline from the store, s
 
 static void tell(const cau_hosted_identity *identity, const cau_wire_timeline_event *what)
 {

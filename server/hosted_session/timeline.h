@@ -7,8 +7,9 @@
 #include "hosted_session/record.h"
 
 enum {
-	EVENT_COUNT = 512,    // most events in memory
-	CUT_MERGE_TICKS = 30, // cuts within this time are merged into one event, and so are tears
+	EVENT_COUNT = 512, // most events in memory
+	// longest time, in ticks, over which cuts are merged into one event, and so are tears
+	CUT_MERGE_TICKS = 30,
 };
 
 typedef struct cau_hosted_timeline {

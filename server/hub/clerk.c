@@ -8,7 +8,7 @@
 #include "hosted_session/resend.h"
 #include "hub/internal.h"
 
-// pause before a resend is tried again, while its earlier request is being handled
+// Pause, s, before a resend is tried again while its earlier request is being handled.
 #define AGAIN_S 0.02
 
 void cau_creation_free(cau_creation *creation)
@@ -82,8 +82,8 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
                               cau_error *error)
 {
 	cau_moved_to to;
-	// This must come first: an arrival becomes one of the hub's sessions before it ceases to be an
-	// arrival.
+	// The hub is asked about arrivals first: an arrival becomes one of the hub's sessions before it
+	// ceases to be an arrival.
 	bool arrives = creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_arrives(hub, id);
 	cau_hosted *other = cau_hub_find(hub, id);
 	cau_hosted_release(other);
@@ -165,12 +165,12 @@ static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 	                             error);
 }
 
-// Handles a request for a session that is not here. A session that was created since the request
-// came is not the one that it meant.
+// Handles a request for a session that is not here. The request does not mean a session that was
+// created after the request came.
 static void act_on_missing(cau_hub *hub, const cau_creation *asked)
 {
 	bool destroys = asked->reply.method == CAU_METHOD_SESSION_DESTROY;
-	// must come first, as in check_place
+	// The hub is asked about arrivals before it is searched, as in check_place.
 	bool arrives = destroys && cau_hub_arrives(hub, asked->name);
 	cau_hosted *made = cau_hub_find(hub, asked->name);
 	if (!made && destroys)

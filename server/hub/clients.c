@@ -44,7 +44,8 @@ static bool keeps_client_id(const cau_client *client, const cau_client *kept)
 	       (!*client->said_id || !*kept->said_id || strcmp(client->said_id, kept->said_id) == 0);
 }
 
-// Gives an id to a client that sends none, to distinguish its requests from those of others.
+// Gives an id to a client that sends none, to distinguish the client's requests from those of other
+// clients.
 static bool fill_client_id(cau_client *client, const cau_client *kept)
 {
 	cau_asker *asker = &client->asker;
@@ -98,7 +99,7 @@ static cau_client *add_client(cau_hub *hub)
 		hub->client_capacity = capacity;
 	}
 	cau_client *client = &hub->clients[hub->client_count++];
-	// until a client takes the entry
+	// The entry counts as a lost client until a client takes it.
 	*client = (cau_client){.asker.client = ++hub->last_client, .lost = true};
 	return client;
 }

@@ -33,7 +33,7 @@ static void finish(discarding *what)
 	free(what);
 }
 
-// Called on the store's thread.
+// Called on the store's thread with the outcome of the commit that removes the session.
 static void committed(void *user, cau_status status, const char *reason)
 {
 	discarding *what = user;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The hub has the daemon's sessions and clients. It is the same for every transport. A transport
 //   - attaches a client for each connection (WebSocket) or publication handle (DDS) that may drive,
-//   - hands its commands to sessions as orders, with that client as the asker,
+//   - hands the client's commands to sessions as orders, with this client as the asker,
 //   - passes on signs of life, and detaches a client that is gone,
 //   - gives a sink that receives answers, notifications and new frames.
 // So drivers, deadlines, the order of commands and the log are the same for all transports. Any
@@ -22,7 +22,7 @@ typedef struct cau_hub_def {
 	cau_store *memory; // store of ephemeral sessions; NULL: there are none
 	cau_worker_pool *pool;
 	cau_builder *builder;
-	// for sessions that move, at the workers' priority; NULL: `builder` does this
+	// builder for sessions that move, at the workers' priority; NULL: `builder` builds these too
 	cau_builder *mover;
 	cau_scenes *scenes;
 	void (*armed)(void *user); // energy came on: cau_hub_watch must be called again
@@ -31,8 +31,8 @@ typedef struct cau_hub_def {
 
 cau_status cau_hub_create(cau_hub **hub, const cau_hub_def *def, cau_error *error);
 // Ends every session. Refuses their waiting orders, and waits until their batches are on the disk.
-// Call this after cau_builder_stop. Transports may still hold sessions and release them; nothing is
-// answered then. `hub` may be NULL.
+// Call this after cau_builder_stop. Transports may still hold sessions and release them, but no
+// request is answered any more. `hub` may be NULL.
 void cau_hub_stop(cau_hub *hub);
 // Call this after cau_hub_stop, once all references to sessions are released, because their release
 // changes counts of the hub. `hub` may be NULL.
@@ -64,10 +64,11 @@ typedef struct cau_client {
 // client_id to "".
 bool cau_hub_bind_client_id(char client_id[65], const char *owner);
 // Registers a client. Fills its number, its token for resuming, said_id if that is "", and
-// asker.client_id if that is "". `resume` (may be NULL) is the token of an earlier client. If the
-// hub still keeps that client, its number and tools pass to this client. *replaced is then its
-// connection (0: already lost). Its asker.client_id also passes to this client, whoever owns the
-// token, unless the two clients said different client_ids.
+// asker.client_id if that is "".
+// `resume` (may be NULL) is the token of an earlier client. If the hub still keeps the earlier
+// client, the new client gets the earlier client's number and tools, and *replaced is the earlier
+// client's connection (0: already lost). The new client also gets the earlier asker.client_id, even
+// if the owners differ, unless the two clients said different client_ids.
 // Returns false if there are too many clients, if memory runs out, or if the system has no random
 // bytes.
 bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced);
@@ -122,7 +123,7 @@ void cau_creation_free(cau_creation *creation);
 // Takes ownership of the creation, which is malloc'ed.
 void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
 // Handles a request that changes session `id`, which is not here. It may be a resend whose answer
-// is in the store (`client_sequence` 0: it is none). Or it may destroy a session that is only in
+// is in the store (never if `client_sequence` is 0). Or it may destroy a session that is only in
 // the store, because it could not be resumed. Returns true if the request is answered through
 // `reply`, and false if there is nothing to look for.
 bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker,

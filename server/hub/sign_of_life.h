@@ -17,7 +17,8 @@
 #include <stdbool.h>
 
 #define CAU_SIGN_WINDOW_S 5.0
-#define CAU_SIGN_GAP_S 1.0 // a longer pause between two arrivals begins a new window
+// Longest pause between two arrivals of one window, s. A longer pause begins a new window.
+#define CAU_SIGN_GAP_S 1.0
 
 typedef struct cau_sign_of_life {
 	bool clocked;          // a message had a clock; from then on only messages with a clock count

@@ -36,7 +36,7 @@ static void built(void *user, const cau_reply *reply, const cau_outcome *outcome
 	free(made);
 }
 
-// Called with the lock of cau_moves.
+// Begins to build the session in advance. Called with the lock of cau_moves.
 static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, cau_error *error)
 {
 	cau_moves *moves = job->moves;
@@ -53,7 +53,7 @@ static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, c
 }
 
 // Returns the arrival to build, marked as `writing`. Returns NULL if it cannot be built (*status),
-// or if it was built before; the latter is answered.
+// or if it was built before; in the second case the request is answered.
 static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *error)
 {
 	pthread_mutex_lock(&job->moves->mutex);
@@ -265,7 +265,7 @@ static void drop(cau_job *job)
 	end_accepting((accepting *)job, &error, CAU_RPC_DRAINING);
 }
 
-// Called on the store's thread.
+// Called on the store's thread with the outcome of the commit of an acceptance.
 static void accepted(void *user, cau_status status, const char *reason)
 {
 	accepting *what = user;
@@ -287,7 +287,7 @@ static void accepted(void *user, cau_status status, const char *reason)
 	end_accepting(what, &error, cau_hosted_commit_code(status));
 }
 
-// Called with the lock of cau_moves.
+// Submits the acceptance to the store. Called with the lock of cau_moves.
 static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error)
 {
 	cau_store_arrival row = cau_arrival_row(a, a->pieces, CAU_STORE_ACCEPTED);
@@ -375,7 +375,7 @@ static void forgotten(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// Called with the lock of cau_moves.
+// Submits the removal of the arrival to the store. Called with the lock of cau_moves.
 static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau_error *error)
 {
 	forgetting *travelling = malloc(sizeof *travelling);
@@ -411,7 +411,7 @@ static bool may_forget(const cau_move_job *job, const arrival *a)
 	return true;
 }
 
-// Called with the lock of cau_moves.
+// Checks whether the arrival can and may be forgotten now. Called with the lock of cau_moves.
 static cau_status check_forget(const cau_move_job *job, const arrival *a, int32_t *code,
                                cau_error *error)
 {

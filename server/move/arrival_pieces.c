@@ -116,8 +116,8 @@ static cau_status check_place(cau_moves *moves, const char *id, cau_error *error
 }
 
 // Called with the lock. Adds a new arrival before any older arrival of the same id. The older
-// arrival's session is gone; it stays in the list until the first piece of the new one is on the
-// disk.
+// arrival's session is gone. The older arrival stays in the list until the first piece of the new
+// arrival is on the disk.
 static arrival *enlist(cau_moves *moves, const cau_move_asked *asked, const contents *found,
                        cau_error *error)
 {
@@ -181,7 +181,8 @@ static bool is_repeated(const arrival *a, const cau_move_asked *asked, const con
 	       a->pieces == (int64_t)found->index + 1 && strcmp(a->seal, found->seal) == 0;
 }
 
-// Called with the lock of cau_moves.
+// Answers how many pieces are on the disk, with the receipt once all are. Called with the lock of
+// cau_moves.
 static void answer_received(const arrival *a, const cau_reply *reply)
 {
 	cau_wire_move_received result = {.pieces = a->pieces,
@@ -193,7 +194,7 @@ static void answer_received(const arrival *a, const cau_reply *reply)
 }
 
 // Returns the arrival that takes this piece next, marked as `writing`. Returns NULL if the piece is
-// refused (*error), or if it was already here; the latter is answered.
+// refused (*error), or if it was already here; in the second case the request is answered.
 static arrival *begin_piece(cau_move_job *job, const contents *found, int32_t *code,
                             cau_error *error)
 {
@@ -201,7 +202,7 @@ static arrival *begin_piece(cau_move_job *job, const contents *found, int32_t *c
 	pthread_mutex_lock(&moves->mutex);
 	arrival *a = cau_arrival_find(moves, job->asked.session);
 	if (a && cau_coming_serves(&a->coming))
-		a = NULL; // belongs to an earlier move that was accepted
+		a = NULL; // this arrival belongs to an earlier move that was accepted
 	bool is_new = !a;
 	if (is_repeated(a, &job->asked, found)) {
 		answer_received(a, &job->reply);
@@ -246,7 +247,7 @@ static void end_older(cau_moves *moves, const arrival *a)
 		cau_arrival_take_out(moves, old);
 }
 
-// Called on the store's thread.
+// Called on the store's thread with the outcome of the commit of a piece.
 static void piece_written(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;

@@ -59,7 +59,9 @@ void cau_move_answer(const cau_reply *reply, const void *result)
 {
 	cau_error error = {0};
 	cau_outcome outcome = {0};
-	if (!reply->answer) // without a receiver there is no method, whose name the answer needs
+	// Without a receiver no client waits for an answer, and the method that would name the answer
+	// is unknown.
+	if (!reply->answer)
 		return;
 	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
 	outcome.text = text;

@@ -6,8 +6,10 @@
 
 #include "move/internal.h"
 
-#define HELD_MOST_S 30.  // a session that is suspended for longer resumes
-#define SENDS_MOST_S 60. // a courier that is silent for longer counts as gone
+// Longest suspension of a session, s. After a longer time the session resumes.
+#define HELD_MOST_S 30.
+// Longest silence of a courier, s. A courier that is silent for longer counts as gone.
+#define SENDS_MOST_S 60.
 
 typedef cau_departure departure;
 
@@ -51,7 +53,8 @@ static void cleared(void *user, cau_status status, const char *reason)
 	if (status) {
 		cau_move_fail(&d->waiting, CAU_IO, CAU_RPC_STORE_FULL, "", "the store is full");
 		d->waiting = (cau_reply){0};
-		d->held_s = cau_monotonic_s(); // tried again later
+		// the suspension is timed from now on, so the commit is tried again later
+		d->held_s = cau_monotonic_s();
 	} else {
 		let_go(moves, d, CAU_LEAVING_CLEARING, act);
 	}
@@ -200,7 +203,7 @@ static bool is_own_fault(cau_status status)
 	       status == CAU_LIMIT;
 }
 
-// Called with the lock of cau_moves.
+// Ends the session here, because its tombstone is on the disk. Called with the lock of cau_moves.
 static void go_away(cau_moves *moves, departure *d)
 {
 	cau_tombstone_put(moves, &d->becomes);
@@ -231,7 +234,8 @@ static void decided(void *user, cau_status status, const char *reason)
 	free(done);
 }
 
-// Called with the lock of cau_moves.
+// Submits the tombstone to the store. `reply` is answered after the commit. Called with the lock of
+// cau_moves.
 static void write_tombstone(cau_moves *moves, departure *d, const cau_reply *reply)
 {
 	cau_error error = {0};

@@ -15,8 +15,8 @@ enum {
 	TOMBSTONES_MOST = 100000,
 };
 
-// A courier that has read the first piece and asks for no more within this time counts as gone. A
-// line of 4 Mbit/s takes 8.4 s for PIECE_BYTES.
+// Longest time, s, from the first piece to the courier's request for more. A courier that takes
+// longer counts as gone. A line of 4 Mbit/s takes 8.4 s for PIECE_BYTES.
 #define FIRST_PIECE_MOST_S 10.
 
 typedef cau_departure departure;
@@ -28,7 +28,7 @@ static void destroy(departure *d)
 	free(d);
 }
 
-// Called with the lock of cau_moves.
+// Returns the departure of this session, or NULL. Called with the lock of cau_moves.
 static departure *find(cau_moves *moves, const char *id)
 {
 	departure *d = moves->departures;
@@ -122,7 +122,7 @@ static cau_hosted *find_hosted(cau_move_job *job)
 }
 
 // True if the courier of this move is gone before the target had a piece. The target's list then
-// does not name the move, so no later courier would find it there.
+// does not name the move, so no later courier would find the move there.
 static bool is_left(const departure *d, double now_s)
 {
 	if (d->reading || d->leaving.state != CAU_LEAVING_SENDS || d->pieces > 1)
@@ -198,8 +198,8 @@ void cau_departure_begin(cau_move_job *job)
 
 // ---- read ---------------------------------------------------------------------------------------
 
-// Writes the drivers of the tools. This comes with the remaining rows, because drivers are only in
-// memory, as after a lost connection.
+// Writes the speed and the drivers of the tools. Drivers are only in memory, so they are written
+// with the remaining rows. A driver's row has the token with which the client gets the tool back.
 static void write_hands(cau_moves *moves, departure *d, cau_rows_writer *writer)
 {
 	cau_drive drives[CAU_MAX_TOOLS];

@@ -7,10 +7,10 @@
 // Functions of sessions, the store and the builder, and answers to couriers, are called under it:
 // none of them waits or calls back.
 //
-// An arrival has an owner in two cases. While `writing` is set, it is the request or commit that
-// set it. While `accepting` is set, it is that acceptance, until its job has ended. The owner may
-// keep the arrival and read it without the lock, except its `hosted`. cau_arrival_take_out checks
-// that there is no owner.
+// An arrival has an owner in two cases. While `writing` is set, the owner is the request or commit
+// that set `writing`. While `accepting` is set, the owner is that acceptance, until the job of the
+// acceptance has ended. The owner may keep the arrival and read it without the lock, except the
+// arrival's `hosted`. cau_arrival_take_out checks that there is no owner.
 #pragma once
 
 #include <pthread.h>
@@ -48,7 +48,7 @@ typedef struct cau_departure {
 	cau_reply waiting; // reply to a request that waits for the disk
 } cau_departure;
 
-// The driver of a tool, who may return and get the tool here.
+// A client that drove a tool at the source. The client may return here and get the tool.
 typedef struct cau_arrival_hand {
 	char tool[CAU_NAME_BYTES];
 	cau_client client;
@@ -114,7 +114,7 @@ const cau_tombstone *cau_tombstone_find(const cau_moves *moves, const char *id);
 // kept in memory, and move.cancel would answer that the session stays. Returns false if memory runs
 // out.
 bool cau_tombstones_reserve(cau_moves *moves);
-// uses the capacity from cau_tombstones_reserve
+// Adds a tombstone. cau_tombstones_reserve has allocated the capacity for it.
 void cau_tombstone_put(cau_moves *moves, const cau_tombstone *made);
 void cau_tombstone_drop(cau_moves *moves, const char *id);
 void cau_tombstones_list(const cau_moves *moves, cau_wire_list *list);
@@ -126,8 +126,8 @@ void cau_departure_fail_unknown(const cau_reply *reply);
 // Called with the lock. Returns the departure of this move, or NULL if the move is not under way
 // here.
 cau_departure *cau_departure_find_own(cau_moves *moves, const cau_move_asked *asked);
-// Called with the lock. Removes the departure from the list and frees it. If a job is reading its
-// rows, that job frees it.
+// Called with the lock. Removes the departure from the list and frees it. If a job is reading the
+// departure's rows, this job frees the departure.
 void cau_departure_take_out(cau_moves *moves, cau_departure *departure);
 void cau_departures_list(const cau_moves *moves, cau_wire_list *list); // called with the lock
 void cau_departures_free(cau_moves *moves);

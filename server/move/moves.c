@@ -8,7 +8,8 @@
 
 #include "move/internal.h"
 
-#define EXPECTED_S 0.05 // time to read or write a piece; orders the builder's jobs
+// estimated time to read or write a piece, s, by which the builder sorts its jobs
+#define EXPECTED_S 0.05
 
 // ---- creation and end
 static bool has_moved(void *user, const char *id, cau_moved_to *to)

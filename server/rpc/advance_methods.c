@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// session.advance: turns its params into one order, followed by everything that the params request.
+// session.advance: turns its params into one order. Everything that the params request follows the
+// order in the same memory.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,7 +183,7 @@ static cau_status read_params(const cau_call *call, wanted *to, cau_error *error
 	return cau_rpc_params(call->message, &to->params, error);
 }
 
-// Makes the order. The same memory has the advance, its commands and its vertices behind it.
+// Makes the order. The advance, its commands and its vertices follow the order in the same memory.
 static cau_order *make_order(const cau_call *call, const wanted *from)
 {
 	const cau_wire_session_advance *params = &from->params;

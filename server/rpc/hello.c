@@ -10,7 +10,8 @@
 
 enum { WIRE_VERSION = 1 };
 
-// time between log lines, so that a client that tries tokens does not fill the log
+// Least time between two log lines about refused tokens, s. So a client that tries many tokens does
+// not fill the log.
 #define REFUSALS_TOLD_S 1.
 
 static void answer_refusal(const cau_call *call, int32_t code, const char *reason)

@@ -19,9 +19,10 @@ enum {
 	STREAMS_OF_PEER = 8,
 	FILES_OF_PEER = 4,
 #define X(...) +1
-	CAU_ANSWER_COLUMNS = 1 CAU_RPC_ERROR_TABLE(X), // one for the result, and one for each error
+	// number of counts of a method: one for results, and one for each error
+	CAU_ANSWER_COLUMNS = 1 CAU_RPC_ERROR_TABLE(X),
 #undef X
-	MALFORMED_MOST = 16, // malformed messages after which the connection is closed
+	MALFORMED_MOST = 16, // number of malformed messages after which the connection is closed
 };
 
 // A stream that this connection has joined.
@@ -51,7 +52,7 @@ typedef struct cau_peer {
 	bool refusal_logged; // a refused notification of this connection has been logged
 	int64_t motions;
 	cau_subscription streams[STREAMS_OF_PEER];
-	int next_stream; // streams are served in turn
+	int next_stream; // stream that is served next, because streams are served in turn
 	cau_uploads uploads;
 	cau_outgoing files[FILES_OF_PEER];
 	int files_asked; // files that were requested and are not announced yet
@@ -130,8 +131,8 @@ void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *f
 void cau_peer_malformed(cau_peer *peer);
 
 // ---- life.c
-// Returns the monotonic time of the peer's newest sign of life. This is now, if the peer never sent
-// its clock and the network thread was not stopped.
+// Returns the monotonic time of the peer's newest sign of life. If the peer never sent its clock,
+// this is the present time, unless the network thread was stopped.
 double cau_peer_alive_s(const cau_peer *peer);
 // Notes a heartbeat, with the peer's clock when the heartbeat was sent.
 void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us);
@@ -185,7 +186,7 @@ void cau_call_submit(const cau_call *call, cau_order *order);
 // ---- streams
 cau_buffer *cau_peer_next_frame(cau_peer *peer);
 bool cau_peer_has_frames(const cau_peer *peer);
-// True if the peer may join this session: it has a stream of the session, which the new one
+// True if the peer may join this session: it has a stream of the session, which the new stream
 // replaces, or it has fewer streams than its limit.
 bool cau_peer_has_room(cau_peer *peer, const cau_hosted *hosted);
 void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream); // takes the reference
@@ -196,7 +197,7 @@ void cau_peer_watch_slowness(cau_peer *peer, double now_s);
 bool cau_peer_has_room_for_file(const cau_peer *peer);
 void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count);
 cau_buffer *cau_peer_next_chunk(cau_peer *peer);
-// Sets the bytes of the scene's meshes of source bytes to this connection's uploads.
+// Gives each mesh of the scene that has source bytes the bytes of this connection's upload.
 cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error *error);
 
 // ---- pages.c

@@ -9,7 +9,7 @@ double cau_peer_alive_s(const cau_peer *peer)
 }
 
 // Notes the peer's clock. A heartbeat that may have waited for a long time is not used as the first
-// one, because nothing shows how long it waited.
+// heartbeat, because nothing shows how long it waited.
 void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us)
 {
 	double now_s = cau_monotonic_s();

@@ -8,8 +8,8 @@
 
 // ---- the metrics of sessions
 
-// The metrics of each session: name, type, unit, help, and the value from its counts `c` and its
-// summary `s`.
+// The metrics of each session: name, type, unit, help, and value. The value is from the session's
+// counts `c` and summary `s`.
 #define SESSION_METRICS(X)                                                                         \
 	X("session_steps", COUNTER, "", "Steps computed", c->steps)                                    \
 	X("session_step_seconds", COUNTER, "seconds", "Wall time spent in steps", c->step_seconds)     \

@@ -48,7 +48,7 @@ void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream)
 	if (slot)
 		close_subscription(slot);
 	else
-		slot = find(peer, NULL); // a slot is free
+		slot = find(peer, NULL); // the caller has checked that a slot is free
 	*slot = (cau_subscription){hosted, {.stream = stream, .key_asked_s = -INFINITY}};
 	cau_connection_want_frame(peer->connection);
 }

@@ -51,7 +51,7 @@ void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count)
 		return;
 	}
 	cau_upload *upload = cau_uploads_find_transfer(&peer->uploads, chunk.transfer);
-	if (upload) // if not found, the upload was discarded or replaced meanwhile
+	if (upload) // an upload that is not found was discarded or replaced meanwhile
 		cau_upload_take(upload, chunk.offset, chunk.data, chunk.byte_count);
 }
 
@@ -62,7 +62,8 @@ static void name_upload(const cau_upload *upload, char *name, size_t bytes)
 	snprintf(name, bytes, "%s%.16s", upload->name, ending ? ending : "");
 }
 
-// Ends an upload. If it fails its check, it is dropped, and the client must begin again.
+// Ends an upload. If the upload fails the check, it is dropped, and the client must begin the
+// upload again.
 static cau_status end(cau_peer *peer, const cau_wire_upload_end *params, cau_upload **ended,
                       cau_error *error)
 {
@@ -211,7 +212,7 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 			                "no upload of this connection is named `%.48s`", name);
 		mesh->bytes = upload->bytes;
 		mesh->byte_count = upload->byte_count;
-		if (upload->filling) // the solid inside, once it is ready
+		if (upload->filling) // the filling gives the solid inside the surface, once it is ready
 			cau_filling_solid(upload->filling, &mesh->bytes, &mesh->byte_count);
 	}
 	return CAU_OK;

@@ -12,7 +12,8 @@
 #include "config/config.h"
 #include "fill/fill.h"
 
-// Least bytes that an upload counts for, so that the number of small ones is limited too.
+// Least bytes that an upload counts as in the limits, so that the number of small uploads is
+// limited too.
 enum { CAU_UPLOAD_LEAST_BYTES = 65536 };
 
 typedef struct cau_upload {
@@ -52,7 +53,8 @@ void cau_upload_take(cau_upload *upload, uint64_t offset, const void *data, size
 // Checks that all bytes have come and have this hash. *error says what is wrong.
 cau_status cau_upload_check(const cau_upload *upload, const char *sha256, cau_error *error);
 
-// Sets the upload's filling, taking `filling` (NULL: none). The one before is cancelled.
+// Sets the upload's filling and takes ownership of `filling` (NULL: no filling). Cancels the
+// upload's previous filling.
 void cau_upload_refill(cau_upload *upload, cau_filling *filling);
 void cau_uploads_drop(cau_uploads *uploads, cau_upload_total *total, cau_upload *upload);
 void cau_uploads_drop_all(cau_uploads *uploads, cau_upload_total *total);

@@ -11,5 +11,5 @@ typedef struct cau_asker {
 	char name[65];
 	char client_id[65];
 	cau_role role;
-	double deadline_s; // energy is cut off after this silence
+	double deadline_s; // the client's energy is cut off after a silence of this length, s
 } cau_asker;

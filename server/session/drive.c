@@ -73,7 +73,7 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 void cau_drive_end_lockstep(cau_logic *logic)
 {
 	if (logic->lockstep)
-		logic->steps_left = 0; // the order that asked for ticks is answered next
+		logic->steps_left = 0; // the order that asked for the dropped ticks is answered next
 	logic->lockstep = 0;
 }
 
@@ -87,12 +87,13 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
 }
 
 // Turns off the energy of a tool whose driver is lost, and stops the tool where it is. Waiting
-// orders of the lost driver are made void in the queue. Orders of other clients for the next driver
-// still count.
+// orders of the lost driver are made void in the queue. Orders of other clients stay valid; they
+// count once their client drives the tool.
 static void cut_lost(cau_drive *drive, const char *cause, cau_effects *effects)
 {
 	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
-	// reported at once, as is energy off; the core follows in the next act
+	// `frozen` is reported at once, as is energy off. The core stops the tool in the worker's next
+	// act.
 	drive->freeze = drive->frozen = true;
 	cau_effect_wake(effects);
 }
@@ -212,7 +213,8 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 		*action = (cau_action){
 			.act = CAU_ACT_CUT, .was_lit = drive->lit && !drive->enabled, .drive = *drive};
 		memcpy(logic->cutting, drive->tool, sizeof logic->cutting);
-		drive->freeze = false; // a request that comes during the act is a new one
+		// a request to stop the tool that comes during the act is a new request
+		drive->freeze = false;
 		CAU_RULE(action->act == CAU_ACT_CUT, "tool %s is cut by act %d", drive->tool,
 		         (int)action->act);
 		return true;
@@ -235,7 +237,8 @@ void cau_drive_cut_done(cau_logic *logic, cau_effects *effects)
 	cau_effect_tell(effects, drive);
 }
 
-// Lets the worker turn the core's energy off, because the order that should do so will not.
+// Lets the worker turn the core's energy off, because the order that should turn it off will not be
+// done.
 void cau_drive_cut_itself(cau_logic *logic, const char *tool)
 {
 	cau_drive *drive = cau_drive_find(logic, tool);
@@ -263,7 +266,7 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
 }
 
-// True if no cut-off after the order makes its enable void.
+// True if the order's enable is valid: no cut-off came after the order.
 static bool counts(const cau_drive *drive, const cau_waiting *order)
 {
 	return !order->cut_moment && order->moment > drive->cut_moment;
@@ -307,7 +310,7 @@ static bool allows_take_over(const cau_drive *drive, const cau_asked *asked, cau
 }
 
 // Refuses a tool if its name exists, or if the session has the most tools already. The core would
-// not take it.
+// refuse such a tool.
 bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action)
 {
 	char reason[160];

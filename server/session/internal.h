@@ -23,7 +23,7 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
 void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
                           cau_effects *effects);
 // True if the tool's energy is on and its driver gave no sign of life for longer than the deadline.
-// In lock-step the deadline is a number of ticks: the client is silent if its advance goes beyond
+// In lock-step, the deadline is a number of ticks: the client is silent if its advance goes beyond
 // this number.
 bool cau_drive_is_silent(const cau_logic *logic, const cau_drive *drive, double now_s);
 // Ends lock-step without turning energy off. The caller turns off the client's energy.
@@ -38,16 +38,16 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action);
 void cau_drive_cut_done(cau_logic *logic, cau_effects *effects);
 void cau_drive_cut_itself(cau_logic *logic, const char *tool);
 bool cau_drive_is_to_cut(const cau_logic *logic);
-// True if the order may use its tool as it asks. Otherwise fills the action with the refusal.
+// True if the order is allowed to use its tool. Otherwise fills the action with the refusal.
 bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action);
-// True if the core can take another tool, of this name. Otherwise fills the action with the
+// True if the core can take another tool, with this name. Otherwise fills the action with the
 // refusal.
 bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action);
-// True if an ADVANCE may use all of its tools as it asks. Otherwise fills the action with the
+// True if an ADVANCE is allowed to use all of its tools. Otherwise fills the action with the
 // refusal.
 bool cau_drive_allows_parts(cau_logic *logic, const cau_waiting *order, cau_action *action);
-// Changes the driver of a tool; `to` may be no client. Returns false if the tool's energy is on:
-// then an energy cut-off comes first.
+// Changes the driver of a tool. `to` with client 0 leaves the tool without a driver. Returns false
+// if the tool's energy is on: then an energy cut-off comes first.
 bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_asker *to,
                       cau_effects *effects);
 // Notes that the core has accepted an enable, from an order or from a part of an ADVANCE.
@@ -63,17 +63,18 @@ void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effec
 // Returns the time of the asker's newest sign of life; `now_s` is the arrival time of the order.
 double cau_order_alive_s(const cau_asked *asked, double now_s);
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
-// The next four functions make waiting orders void: orders that move, hold or heat a tool, and the
-// client's commands for later ticks. They apply to a client that is lost; to tools whose driver is
-// silent now; to a tool that changes its driver; to a removed tool. The last two apply to orders
-// from before `moment`. An energy-off becomes void only if its asker drives the tool. If a client
-// will not return, all of its commands for later ticks are void.
+// Each of the next four functions makes waiting orders void: orders that move, hold or heat a tool,
+// and commands of the tool's driver for later ticks. The four functions are for a client that is
+// lost, for tools whose driver is silent now, for a tool that changes its driver, and for a tool
+// that is removed. A function with `moment` affects only orders from before `moment`. An energy-off
+// becomes void only if its sender drives the tool. If a client will not return, all of its commands
+// for later ticks are void.
 void cau_queue_cut(cau_logic *logic, uint32_t client);
 void cau_queue_cut_silent(cau_logic *logic, double now_s);
 void cau_queue_change_hands(cau_logic *logic, const cau_drive *drive, uint64_t moment);
 void cau_queue_remove_tool(cau_logic *logic, const char *tool, uint64_t moment);
 void cau_queue_cancel(cau_logic *logic, uint32_t client, uint64_t number, cau_effects *effects);
-// makes resume orders from before `moment` ineffective
+// Makes resume orders from before `moment` ineffective, because a later pause was served.
 void cau_queue_overtake(cau_logic *logic, uint64_t moment);
 void cau_queue_forget(cau_logic *logic, uint32_t client);
 // Makes enables from before `moment` void, for a tool that does not exist yet.
@@ -83,7 +84,7 @@ void cau_queue_committed(cau_logic *logic, cau_effects *effects);
 cau_waiting *cau_queue_head(cau_logic *logic);
 cau_waiting *cau_queue_find(cau_logic *logic, uint64_t ticket);
 const cau_waiting *cau_queue_find_ask(const cau_logic *logic, cau_ask ask);
-// for this border, not for a later tick
+// Returns true if an energy-off of the tool waits for this border, not for a later tick.
 bool cau_queue_off_waits(const cau_logic *logic, const char *tool);
 void cau_queue_remove(cau_logic *logic, cau_waiting *order);
 bool cau_queue_is_due(const cau_logic *logic);

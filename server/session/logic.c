@@ -201,8 +201,9 @@ static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action
 	return true;
 }
 
-// Turns the tool's energy off. An off for this tick has not done so yet, whatever enabled the tool
-// since. Any other off did so on arrival.
+// Turns the tool's energy off. An energy-off for a given tick turns energy off only here, even if
+// the tool was enabled after the order arrived. Any other energy-off has turned energy off on
+// arrival.
 static void turn_off(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
@@ -225,7 +226,8 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 		return refuse(action, CAU_BAD_STATE, 0, "", "the client that sent this request is gone");
 	action->changed = drive->driver.client != to.client;
 	const cau_drive before = *drive;
-	// The cut-off comes first: the tool's `lit` is set, so cau_drive_next_cut finds one.
+	// If energy is on, the driver cannot change before a cut-off. The tool's `lit` is then set, so
+	// cau_drive_next_cut finds a cut-off.
 	if (action->changed && !cau_drive_change(drive, order, &to, effects))
 		return !cau_drive_next_cut(logic, true, action);
 	if (action->changed)
@@ -278,7 +280,8 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 		action->act = CAU_ACT_LOOK;
 		return false;
 	}
-	// A client that is silent by now must not start to count ticks instead.
+	// Drivers that are silent by now are cut off first. In lock-step, their silence would be
+	// counted in ticks instead.
 	if (asked->ask == CAU_ASK_ADVANCE && !logic->lockstep)
 		cut_silent(logic, logic->now_s, effects);
 	if (order->cut_moment &&
@@ -439,7 +442,8 @@ static void looked(cau_logic *logic, cau_outcome_kind outcome)
 		cau_queue_remove(logic, order);
 }
 
-// Notes an advance that the core has accepted. Energy that it turns off was cut off on its arrival.
+// Notes an advance that the core has accepted. Energy that the advance turns off was cut off when
+// the advance arrived.
 static void advance(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	for (int32_t i = 0; i < order->asked.part_count; i++) {

@@ -180,7 +180,7 @@ typedef struct cau_logic_event {
 	bool store_takes;
 	int state; // ARRIVED: CAU_SESSION_*
 	uint64_t tick;
-	double step_s; // ARRIVED
+	double step_s; // ARRIVED: length of a tick, simulated s
 	const cau_arrived_tool *tools;
 	int32_t tool_count;
 } cau_logic_event;
@@ -292,7 +292,8 @@ typedef struct cau_logic {
 
 // Largest number of one client's waiting orders for later ticks.
 enum { CAU_LATER_OF_CLIENT = 64 };
-int32_t cau_logic_later_most(int32_t capacity); // this limit for a queue of this capacity
+// returns this largest number for a queue of `capacity`
+int32_t cau_logic_later_most(int32_t capacity);
 
 // Returns the bytes of a machine with a queue of this capacity.
 size_t cau_logic_bytes(int32_t capacity);

@@ -147,9 +147,10 @@ static void make_void(cau_logic *logic, cau_waiting *order, cau_void_cause cause
 		order->void_cause = cause;
 }
 
-// True if the order becomes void when its asker loses its tool. Such orders use the tool, or are
-// for a later tick. An off of any client stays valid, except an off for a later tick by the driver
-// itself: it was the end of the driver's own use.
+// True if the order becomes void when the client that sent it loses the order's tool. This holds
+// for orders that use the tool, and for orders for a later tick. An energy-off of any client stays
+// valid. The exception is an energy-off that the driver itself sent for a later tick: it was the
+// end of the driver's own use.
 static bool is_of_hold(cau_logic *logic, const cau_waiting *order)
 {
 	const cau_asked *asked = &order->asked;
@@ -185,8 +186,8 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 	cut_order(logic, &logic->serving, client);
 }
 
-// Makes the order void if its asker is silent. An advance depends on all tools that its asker
-// drives, another order only on its own tool.
+// Makes the order void if the client that sent it is silent. An advance depends on all tools that
+// this client drives, another order only on the order's own tool.
 static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {

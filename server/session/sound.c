@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the conditions that hold between two calls, and handles a broken one.
+// Checks the conditions that hold between two calls, and handles a broken condition.
 //
 // A broken rule is a mistake of this program, and its extent is unknown. So this session alone is
 // faulted. The energy of its tools is cut off by ordinary acts, as after numerical trouble. Waiting
@@ -58,8 +58,8 @@ void cau_logic_expect_sound(const cau_logic *logic)
 
 // ---- after a broken rule ------------------------------------------------------------------------
 
-// Turns the tool's energy off and requests a cut-off, whatever the state says: the core is the part
-// that heats.
+// Turns the tool's energy off and requests a cut-off, even if `lit` says that the core does not
+// heat. The state may be wrong, and the core is the part that heats.
 static void take_energy_off(cau_logic *logic, cau_drive *drive)
 {
 	drive->tool[sizeof drive->tool - 1] = 0;

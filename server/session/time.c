@@ -13,7 +13,8 @@
 #include "cautery/assert.h"
 #include "session/internal.h"
 
-#define BEHIND_MOST_S 0.25 // a larger delay behind the wall clock is dropped, not caught up
+// Largest delay behind the wall clock that is caught up, s. A larger delay is dropped.
+#define BEHIND_MOST_S 0.25
 
 bool cau_time_is_due(const cau_logic *logic, double now_s)
 {
@@ -156,7 +157,7 @@ void cau_time_speed(cau_logic *logic, double speed, double now_s)
 
 double cau_time_due_s(const cau_logic *logic)
 {
-	if (logic->stepping) // its ticks are being computed, or its answer is due
+	if (logic->stepping) // the order's ticks are being computed, or its answer is due
 		return 0;
 	return logic->state == CAU_SESSION_RUNNING ? logic->next_step_s : INFINITY;
 }

@@ -12,15 +12,16 @@
 #include "retention.h"
 
 enum {
-	// bytes to reserve beyond the failed ones before a full store tries again
+	// bytes that must be free, besides those of the failed batches, before a full store tries again
 	SPARE_BYTES = 1000000,
 	FOLD_PATIENCE = 4,
 	CHORE_PAUSE_MS = 5, // pause between two small steps of retention
 	OVERDRAWN_MS = 10,  // longest wait of a commit for retention, while the budget is exceeded
-	// if usage exceeds the budget by a tenth, commits wait until it is within the budget
+	// divisor of the budget: if usage exceeds the budget by more than 1/10 of it, commits wait
+	// until usage is within the budget
 	BEYOND_SHARE = 10,
 	MAX_FAILED_BYTES = 1 << 30,
-	// share of the budget that may be committed between two checks of the budget
+	// divisor of the budget: 1/100 of it may be committed between two checks of the budget
 	UNSEEN_SHARE = 100,
 };
 
@@ -42,7 +43,7 @@ static cau_status write_batch(struct cau_store_committer *committer, struct cau_
 		status = cau_store_writer_apply(&committer->writer, record, now_ms, error);
 	if (is_own_fault(status)) {
 		batch->error = *error;
-		// set again, because the record's function may have changed the error
+		// The status is set again, because the record's function may have changed the error.
 		batch->error.status = status;
 		committer->writer.uncounted = before;
 		status = cau_store_execute(committer->database, "ROLLBACK TO batch", "writing", error);
@@ -133,7 +134,8 @@ static void fold_log(struct cau_store *store)
 	cau_store_folder_ask(&store->folder);
 	if (log_bytes / FOLD_PATIENCE < store->config.wal_bytes || now_s < committer->fold_due_s)
 		return;
-	if (!cau_store_folder_wait(&store->folder)) // after a failure, wait before the next attempt
+	// after a failed fold, commits do not wait for folds until full_retry_ms have passed
+	if (!cau_store_folder_wait(&store->folder))
 		committer->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 }
 
@@ -208,7 +210,7 @@ static bool chore_is_due(const struct cau_store_committer *committer, int64_t mo
 static bool has_room(const struct cau_store *store)
 {
 	struct statvfs disk;
-	if (store->config.memory) // in memory: retention may have freed memory, so try
+	if (store->config.memory) // retention may have freed memory, so a store in memory always tries
 		return true;
 	return statvfs(store->path, &disk) == 0 &&
 	       (uint64_t)disk.f_bavail * disk.f_frsize >= store->committer.wanted_bytes;

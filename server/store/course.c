@@ -7,9 +7,11 @@
 #include "fault.h"
 
 enum {
-	// the gap between a checkpoint's neighbours is at most this part of the later one's age
+	// divisor of an age: thinning may remove a checkpoint if its two neighbours are at most
+	// age / AGE_SHARE ticks apart, where `age` is that of the later neighbour
 	AGE_SHARE = 4,
-	// newest checkpoints that are always kept: if the last cannot be restored, the one before can
+	// number of newest checkpoints that always stay: if the last cannot be restored, the one before
+	// can
 	NEWEST_KEPT = 2,
 };
 

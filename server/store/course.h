@@ -58,8 +58,8 @@ bool cau_store_course_range(const struct cau_store_course *course, int64_t after
 // Returns the index of the checkpoint that thinning removes next; -1 if none. A checkpoint can be
 // removed if its two neighbours are at most `spacing` ticks apart, or at most a quarter of the
 // later one's age. So the number of checkpoints grows with the logarithm of time. A view of `a`
-// ticks ago needs a replay of at most a / 4 ticks. The first, the newest two, marked ones and one
-// at the end of a hole always stay.
+// ticks ago needs a replay of at most a / 4 ticks. These checkpoints always stay: the first, the
+// newest two, marked checkpoints, and a checkpoint at the end of a hole.
 int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing);
 
 // Returns the index of the oldest checkpoint that may be removed; -1 if none may.

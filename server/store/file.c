@@ -10,7 +10,8 @@
 #include "fault.h"
 #include "migrate.h"
 
-enum { BUSY_MS = 2000 }; // wait, ms, while an operator's sqlite3 holds the write lock
+// longest wait, ms, for the write lock, which an operator's sqlite3 may hold
+enum { BUSY_MS = 2000 };
 
 static cau_status open_connection(const char *path, int flags, sqlite3 **database, cau_error *error)
 {
@@ -71,7 +72,8 @@ static cau_status build(const char *draft, cau_error *error)
 		return status;
 	status = cau_store_migrate(database, error);
 	if (!status)
-		status = set_wal(database, error); // noted in the header; the close folds the log
+		// the file's header notes WAL; the close folds the log into the file
+		status = set_wal(database, error);
 	sqlite3_close(database);
 	return status;
 }

@@ -92,7 +92,7 @@ struct importing {
 	sqlite3 *database;
 	const char *id;
 	char name[CAU_STORE_ID_BYTES];
-	int64_t key; // 0: not known yet
+	int64_t key; // key of the session; 0: not known yet
 	// first: the piece has the head of a move; made: the piece created the session
 	bool first, made;
 	sqlite3_stmt *statement[CAU_ROWS_COUNT];
@@ -147,7 +147,7 @@ static cau_status put_row(struct importing *to, const cau_row *row, cau_error *e
 	}
 	if (row->table == CAU_ROWS_SESSION)
 		return make_session(to, row, error);
-	if (!inserts[row->table]) // the head of the move, and tables that this store does not keep
+	if (!inserts[row->table]) // the head of the move and the rows of some tables are not stored
 		return CAU_OK;
 	if (!to->key)
 		status = find_key(to, error);
@@ -231,7 +231,7 @@ static cau_status put_arrival(sqlite3 *database, const cau_store_arrival *arriva
 	sqlite3_bind_text(statement, 10, arrival->seal ? arrival->seal : "", -1, SQLITE_STATIC);
 	status = run(database, statement, error);
 	sqlite3_finalize(statement);
-	if (!status) // A session that returns brings its answers; those that are still here stay
+	if (!status) // a session that returns brings its answers; answers that are still here stay
 		status =
 			run_texts(database, "UPDATE sessions SET deleted = 1 WHERE id = ?1 AND deleted = 2", id,
 		              0, 0, error);

@@ -72,8 +72,8 @@ cau_status cau_store_lock_take(struct cau_store_lock *lock, const char *path, ca
 // database's size.
 static const off_t lock_at = (off_t)1 << 62;
 
-// The databases that this process holds. It must never open one of them again, not even to try:
-// closing that descriptor would drop SQLite's locks on the database.
+// The databases that this process holds. This process must never open one of them again, not even
+// to try: closing that descriptor would drop SQLite's locks on the database.
 static pthread_mutex_t held_mutex = PTHREAD_MUTEX_INITIALIZER;
 static struct cau_store_lock *held;
 
@@ -105,13 +105,14 @@ static cau_status hold(struct cau_store_lock *lock, const char *path, cau_error 
 {
 	struct stat file;
 	if (stat(path, &file) || !S_ISREG(file.st_mode))
-		return CAU_OK; // no database yet, or a file that the probe refuses
+		return CAU_OK; // there is no database yet, or the probe will refuse the file
 	if (is_held_here(&file))
 		return cau_fail(error, CAU_BAD_STATE, NULL,
 		                "this process has the store open under another name");
 	int descriptor = open(path, O_RDWR | O_CLOEXEC);
 	if (descriptor < 0)
-		return CAU_OK; // not writable by this process: the later open for writing reports why
+		// this process may not write the file, and the later open for writing reports why
+		return CAU_OK;
 	cau_status status = lock_file(descriptor, error);
 	if (status) {
 		close(descriptor);

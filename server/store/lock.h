@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Allows one process per store, whatever names its file has. There are two locks. One is on a file
-// beside the database: it names its holder and exists before the database does. The other is on the
-// database itself, which a hard link, a bind mount or another path reaches as well.
+// Allows one process per store, whatever names its file has. There are two locks. The first is on a
+// file beside the database, which names the holder and exists before the database does. The second
+// is on the database itself, which a hard link, a bind mount or another path reaches as well.
 #pragma once
 
 #include <sys/types.h>

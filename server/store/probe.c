@@ -15,7 +15,8 @@
 
 enum {
 	HEADER_BYTES = 100,
-	// offset of a big-endian 32-bit word, https://www.sqlite.org/fileformat.html
+	// offsets of two big-endian 32-bit words in the file's header,
+	// https://www.sqlite.org/fileformat.html
 	USER_VERSION_AT = 60,
 	APPLICATION_ID_AT = 68,
 };

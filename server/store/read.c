@@ -9,8 +9,8 @@
 #include "read.h"
 
 enum {
-	PIECE_ROWS = 256,      // commands read in one piece
-	PIECE_BYTES = 1 << 20, // about the largest bytes of the commands in one piece
+	PIECE_ROWS = 256,      // most commands in one piece
+	PIECE_BYTES = 1 << 20, // approximate limit of the bytes of commands in one piece
 	// largest number of branches from a branch to its root; more means damage
 	MAX_DEPTH = 100000,
 };

@@ -12,9 +12,9 @@
 #include "trim.h"
 
 enum {
-	// part of the budget that is free after retention, once the budget was exceeded
+	// divisor of the budget: 1/20 of it is free after retention, once the budget was exceeded
 	FREED_SHARE = 20,
-	ANSWER_SHARE = 4,          // answers may keep this part of the budget when it is exceeded
+	ANSWER_SHARE = 4,          // divisor of the budget: answers keep 1/4 if it is exceeded
 	LEAST_SPACING_TICKS = 600, // smallest spacing of thinning: 10 s at 60 Hz, replayed in 3 s
 };
 
@@ -151,7 +151,8 @@ static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *
 	"DELETE FROM forgotten WHERE client IN (SELECT client FROM forgotten"                          \
 	" WHERE time_ms < ?1 ORDER BY time_ms " CAU_STORE_ROWS ")"
 
-// Events are written nearly in the order of time, so only the oldest keys are checked.
+// SQL that removes old events. Events are written nearly in the order of time, so only the oldest
+// keys are checked.
 #define OLD_EVENTS                                                                                 \
 	"DELETE FROM events WHERE key IN (SELECT key FROM (SELECT key, time_ms"                        \
 	" FROM events AS e WHERE NOT EXISTS(SELECT 1 FROM marks AS m WHERE m.session = e.session"      \

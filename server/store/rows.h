@@ -50,7 +50,7 @@ typedef enum cau_rows_table {
 typedef enum cau_rows_flags {
 	// the last piece of the first reading: all rows from before the move are sent
 	CAU_ROWS_PART_ENDS = 1,
-	CAU_ROWS_ENDS = 2, // the last piece of the move: all rows since then are sent too
+	CAU_ROWS_ENDS = 2, // the last piece of the move: all rows since the first reading are sent too
 } cau_rows_flags;
 
 typedef struct cau_column {
@@ -87,7 +87,7 @@ void cau_rows_text(const cau_row *row, int column, char *text, size_t capacity);
 typedef struct cau_rows_writer {
 	unsigned char *bytes; // malloc'ed; belongs to the caller when the piece is complete
 	size_t byte_count, capacity;
-	bool failed; // memory ran out: everything since then is missing
+	bool failed; // memory ran out: all rows since then are missing
 } cau_rows_writer;
 
 // Returns the bytes that the row takes in a piece.

@@ -43,7 +43,8 @@ static const char first_step[] =
 	" session TEXT, result BLOB NOT NULL, PRIMARY KEY(client, sequence)) WITHOUT ROWID;"
 	"CREATE INDEX answer_by_time ON answers(time_ms);";
 
-// The clients that have driven a session, so that nobody must search its log for them.
+// The clients that have driven a session. With this table, a read of the clients need not search
+// the session's log.
 static const char second_step[] =
 	"CREATE TABLE clients(session INTEGER NOT NULL, client TEXT NOT NULL,"
 	" sequence INTEGER NOT NULL, PRIMARY KEY(session, client)) WITHOUT ROWID;"

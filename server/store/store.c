@@ -195,7 +195,8 @@ static cau_status open_memory(struct cau_store *store, cau_error *error)
 {
 	struct cau_store_committer *committer = &store->committer;
 	sqlite3 **const further[] = {&store->reading.database, &store->answers.database};
-	// Retention keeps the database below twice the budget.
+	// Largest size of the database in memory, bytes. Retention keeps the database below this size,
+	// which is twice the budget.
 	int64_t most = 2 * store->config.store_bytes;
 	snprintf(store->path, sizeof store->path, "file:/cautery-%p?vfs=memdb", (void *)store);
 	cau_status status = cau_store_memory_open(store->path, most, &committer->database, error);

@@ -77,11 +77,11 @@ typedef struct cau_store_config {
 	int64_t retention_bytes;
 	// bytes of all tables; beyond them the oldest removable records of all are removed; 0: no bound
 	int64_t store_bytes;
-	int64_t retention_age_ms;       // age at which left branches are removed
-	int64_t answer_age_ms;          // age at which recorded answers are removed
-	int64_t event_age_ms;           // age at which events are removed
-	int32_t retention_interval_ms;  // time between retention steps, at least 1
-	size_t wal_bytes;               // the write-ahead log is folded into the file when it is larger
+	int64_t retention_age_ms;      // age at which left branches are removed
+	int64_t answer_age_ms;         // age at which recorded answers are removed
+	int64_t event_age_ms;          // age at which events are removed
+	int32_t retention_interval_ms; // time between retention steps, at least 1
+	size_t wal_bytes; // size of the write-ahead log above which it is folded into the file
 	int64_t (*wall_clock_ms)(void); // returns Unix time; NULL: the system's clock
 	// Called on the store thread when the state changes; may be NULL. After FULL -> READY, the logs
 	// of running sessions lack the failed batches: checkpoint every session before its next
@@ -196,7 +196,7 @@ typedef struct cau_store_checkpoint {
 	cau_store_bytes snapshot;
 } cau_store_checkpoint;
 
-// Adds a checkpoint. It replaces one at the same tick of the same branch.
+// Adds a checkpoint. It replaces a checkpoint at the same tick of the same branch.
 cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
                                     cau_error *error);
 // Adds a checkpoint without a copy: the batch borrows the snapshot until the batch is destroyed.
@@ -409,8 +409,8 @@ typedef struct cau_store_health {
 } cau_store_health;
 void cau_store_get_health(cau_store *store, cau_store_health *health);
 
-#define CAU_STORE_SIZE_BUCKETS 13 // for 1, 2, 4, ... 4096 batches in a commit
-#define CAU_STORE_TIME_BUCKETS 96 // quarter octaves from 10 microseconds on
+#define CAU_STORE_SIZE_BUCKETS 13 // number of buckets: for 1, 2, 4, ... 4096 batches in a commit
+#define CAU_STORE_TIME_BUCKETS 96 // number of buckets: quarter octaves from 10 microseconds on
 
 typedef struct cau_store_metrics {
 	uint64_t commits; // committed groups

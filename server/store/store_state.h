@@ -13,7 +13,7 @@
 
 enum {
 	GROUP_BATCHES = 1024, // largest number of batches in one commit
-	// a commit ends with the batch with which its bytes reach this number
+	// bytes of a full commit: the batch with which a commit reaches them is its last batch
 	GROUP_BYTES = 16 * 1000000,
 };
 

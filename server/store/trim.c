@@ -156,8 +156,8 @@ static cau_status may_lose_log(sqlite3 *database, const int64_t segment[4], bool
 }
 
 // Records the segment as a gap, so that no rewind enters it after this transaction. Later steps
-// remove its commands. If a gap ends where this one begins, that gap grows, and the checkpoint
-// between the two is removed.
+// remove its commands. If an older gap ends where the new gap begins, the older gap grows instead,
+// and the checkpoint between the two is removed.
 static cau_status open_gap(sqlite3 *database, const struct cau_store_present *present, int index,
                            int64_t *rows, cau_error *error)
 {
@@ -168,7 +168,7 @@ static cau_status open_gap(sqlite3 *database, const struct cau_store_present *pr
 	bool follows = false;
 	for (int i = 0; i < course->hole_count; i++)
 		follows |= course->hole[i].before_tick == from->tick;
-	// A gap that ends where this one begins is extended instead.
+	// An older gap that ends where the new gap begins is extended instead.
 	cau_status status = cau_store_run(
 		database,
 		CAU_STORE_LINE "INSERT INTO gaps SELECT ?1, branch,"

@@ -11,7 +11,7 @@
 #include "store/store.h"
 
 enum { CAU_STORE_ROWS_A_STEP = 256 };
-#define CAU_STORE_ROWS "LIMIT 256" // CAU_STORE_ROWS_A_STEP
+#define CAU_STORE_ROWS "LIMIT 256" // SQL: at most CAU_STORE_ROWS_A_STEP rows in a step
 _Static_assert(CAU_STORE_ROWS_A_STEP == 256, "CAU_STORE_ROWS says the same");
 
 // Result of a statement: number of rows, sum and minimum of columns, and the last row.

@@ -320,8 +320,8 @@ static cau_status apply_request(struct cau_store_writer *writer, int64_t key,
 	return run(writer, SEE_CLIENT, "a client", error);
 }
 
-// Removes the log's last entry if both that one and the new one are of kind CAU_STORE_REACHED.
-// *taken: the new one replaces it, so the branch's bytes stay the same.
+// Removes the log's last entry if both this entry and the new entry are of kind CAU_STORE_REACHED.
+// *taken: an entry was removed. The new entry replaces it, so the branch's bytes stay the same.
 static cau_status take_place(struct cau_store_writer *writer, int64_t key,
                              const cau_store_command *command, bool *taken, cau_error *error)
 {

@@ -8,7 +8,7 @@
 
 enum {
 	CAU_STORE_STATEMENTS = 20,
-	// about the number of branches that are written at the same time
+	// number of slots: about as many as branches that are written at the same time
 	CAU_STORE_UNCOUNTED_SLOTS = 16,
 };
 

@@ -39,14 +39,14 @@ typedef struct fake_state { // everything that a snapshot holds
 	int32_t tool_count;
 	cau_tool_state tools[CAU_MAX_TOOLS];
 	cau_pose target[CAU_MAX_TOOLS];
-	// a force of 1000 N along x faults the session at this tick, the one after the force
+	// A force of 1000 N along x faults the session at this tick, which is the tick after the force.
 	uint64_t trouble_tick;
 	bool faulted;
 	int32_t queued;
 	cau_command queue[QUEUE]; // must be last: snapshots hold only its used part
 } fake_state;
 
-#define SLOW_STEP_S 0.05 // wall time of a slow step: a third of the pace of 60 Hz
+#define SLOW_STEP_S 0.05 // wall time of a slow step, s: three times the period of 60 Hz
 
 struct cau_session {
 	fake_state state;

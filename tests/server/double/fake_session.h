@@ -10,14 +10,15 @@ typedef struct cau_fake_hooks {
 	// Called when the creation reaches the border before this stage; CAU_BUILD_STAGE_COUNT: its
 	// end.
 	void (*build)(cau_build_stage next);
-	// New sessions report built-in tension.
+	// True if new sessions report built-in tension.
 	bool tension;
 	uint64_t tissue_hash; // tissue hash of new sessions
 	// Called before a snapshot is restored. Any result except CAU_OK fails the restore halfway.
 	cau_status (*restore)(void);
 	// Called before the core takes this command.
 	void (*submit)(const cau_command *command);
-	// Called while a tick is computed; the commands that were due are already in the tools.
+	// Called while a tick is computed. The tools already have the effect of the commands that were
+	// due.
 	void (*step)(const cau_session *session);
 	// Called before energy is turned off. If it returns true, the double leaves energy on.
 	bool (*breaks_off)(void);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core heats a tool that no client has turned on, because the double ignores an energy-off. No
-// tick is computed with this energy, and this session alone is faulted.
+// A test in which the core heats a tool that no client has turned on, because the double ignores an
+// energy-off. No tick is computed with this energy, and only this session is faulted.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -84,7 +84,8 @@ static void a_broken_rule_faults_the_session(void **state)
 	cau_error error = {0};
 	cau_order *finder = hosted_new_order(OFF, CAU_ORDER_PAUSE, CAU_METHOD_SESSION_PAUSE);
 	cau_status found = cau_hosted_submit(t.h, finder, &error);
-	if (found) { // else the worker, still in its last slice, found the broken rule first
+	// if nothing was found here, the worker found the broken rule first, in its last slice
+	if (found) {
 		assert_int_equal(found, CAU_FAULTED);
 		assert_non_null(strstr(error.reason, "safety rule"));
 		free(finder);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rest state of a scene that had to settle is found again for exactly this scene, and only few
-// are cached.
+// Tests the cache of rest states. The rest state of a scene that had to settle is found again for
+// exactly this scene, and only a few are cached.
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>

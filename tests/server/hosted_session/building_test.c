@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Events during the building of a session: it is destroyed once or twice, its creator disconnects,
-// it is too large, or the daemon ends. Orders that wait for a session that ends are answered.
+// Tests events during the building of a session: it is destroyed once or twice, its creator
+// disconnects, it is too large, or the daemon ends. Orders that wait for a session that ends are
+// answered.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -52,8 +53,8 @@ static void destroyed_after_the_last_border_it_is_made_first(void **state)
 	assert_int_equal(hosted_stored_sessions(), 0);
 }
 
-// The order was sent twice because no answer came. Both orders get the answer, which is stored
-// once.
+// The client sends session.destroy twice because no answer came. Both orders get the answer, which
+// is stored once.
 static void a_resend_of_its_destruction_gets_the_same_answer(void **state)
 {
 	(void)state;
@@ -70,8 +71,8 @@ static void a_resend_of_its_destruction_gets_the_same_answer(void **state)
 	assert_int_equal(hosted_stored_answers(6), 0);
 }
 
-// The order has destroyed an earlier session of this name. Sent again, it must not destroy this
-// one.
+// The session.destroy has destroyed an earlier session of this name. If it is sent again, it must
+// not destroy the present session.
 static void a_resend_does_not_destroy_the_next_of_its_name(void **state)
 {
 	(void)state;
@@ -89,8 +90,8 @@ static void a_resend_does_not_destroy_the_next_of_its_name(void **state)
 	assert_int_equal(hosted_stored_sessions(), 1);
 }
 
-// The earlier order is on its way to the disk. Meanwhile other orders destroy the session of the
-// same name that is being built now.
+// The first session.destroy is on its way to the disk. Meanwhile other orders destroy the session
+// of the same name that is being built now.
 static void a_resend_is_looked_for_once_its_first_is_on_the_disk(void **state)
 {
 	(void)state;
@@ -236,7 +237,7 @@ static void whose_creator_is_gone_for_good_it_ends(void **state)
 {
 	(void)state;
 	hosted_begin(CAU_BUILD_FACTOR, 0);
-	cau_hosted_abandon(t.h, CREATOR + 1); // another client
+	cau_hosted_abandon(t.h, CREATOR + 1); // a client that did not create the session
 	cau_hosted_abandon(t.h, CREATOR);
 	hosted_go_on();
 	assert_non_null(

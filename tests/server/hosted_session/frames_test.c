@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core computes costly channels only while a subscriber receives them.
+// Tests that the core computes costly channels only while a subscriber receives them.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>

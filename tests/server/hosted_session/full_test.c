@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The store of a paused session is full for a while. The log of the tick then has no entry after a
-// lost command. So a restart can replay each acknowledged command.
+// Tests a paused session whose store is full for a while. In the log of a tick, no entry follows a
+// command that was lost. So a restart can replay each acknowledged command.
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>

@@ -109,7 +109,8 @@ int hosted_open_surroundings(void **state)
 	return 0;
 }
 
-// Closes as cau_hub_stop and the daemon do. Fails if a session has not returned its memory.
+// Closes in the order of cau_hub_stop and the daemon. Fails if a session has not returned its
+// memory.
 int hosted_close_surroundings(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kept states of the past stay within their budget and are thinned out evenly.
+// Tests that kept states of the past stay within their budget and are thinned out evenly.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -59,7 +59,7 @@ static void test_a_budget_holds_and_gaps_grow_evenly(void **state)
 		uint64_t gap = kept.state[i].tick - kept.state[i - 1].tick;
 		widest = gap > widest ? gap : widest;
 	}
-	// four times the gap of an even distribution
+	// the widest gap is at most four times the gap of an even distribution
 	assert_true(widest <= 4 * 1000 / (BUDGET / BYTES));
 	cau_kept_states_finish(&kept);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Past views of a session whose second core is stopped on its way. A client that cancels its view,
-// disconnects, or loses the session gets the right answer. The session does not change.
+// Tests past views of a session whose second core is stopped on its way. A client that cancels its
+// view, disconnects, or loses the session gets the right answer. The session does not change.
 #include <math.h>
 #include <sched.h>
 #include <setjmp.h>
@@ -83,7 +83,7 @@ static void each_look_is_answered_and_the_session_stays(void **state)
 	begin();
 	look(FIRST, ANYBODY, 5);
 	assert_shown(FIRST, 5);
-	look(SECOND, ANYBODY, 12); // continues from tick 5
+	look(SECOND, ANYBODY, 12); // the replay continues from tick 5
 	assert_shown(SECOND, 12);
 	look(THIRD, ANYBODY, TICKS);
 	assert_shown(THIRD, TICKS);

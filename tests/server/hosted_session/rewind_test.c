@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session is rewound while other requests arrive. If the rewind fails, the session is as before.
+// Tests a session that is rewound while other requests arrive. If the rewind fails, the session is
+// as before.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -12,7 +13,8 @@
 #include "server/hosted_session/hosted_fixture.h"
 
 enum { CREATED, STEPPED, BACK, OTHER, NEXT };
-// A session that is stepped this far has a checkpoint at TICKS.
+// TICKS: number of ticks that the session is stepped, after which it has a checkpoint. BACK_TICK:
+// tick of the rewind.
 enum { TICKS = 40, BACK_TICK = 5 };
 
 static void step(int asked, int64_t ticks)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session among threads. First, losses are timed to meet each moment on the way of an enable
-// exactly. Then they come at random.
+// Tests a session among threads. First, losses are timed to meet each moment on the way of an
+// enable exactly. Then losses come at random.
 #include "server/hosted_session/threads_world.h"
 
 #include <setjmp.h>
@@ -13,7 +13,7 @@ static void assert_all_well(void)
 {
 	threads_await_answers();
 	threads_await_steps(2);
-	cau_store_flush(threads.store); // a second answer to a request would have come by now
+	cau_store_flush(threads.store); // by now a second answer to a request would have come
 	for (int i = 0; i < threads.request_count; i++)
 		assert_int_equal(threads.requests[i].answers, 1);
 	pthread_mutex_lock(&threads.lock);
@@ -22,7 +22,7 @@ static void assert_all_well(void)
 	pthread_mutex_unlock(&threads.lock);
 }
 
-// Makes an enable meet a loss: the session's or the store's thread stops at the moment `at`.
+// Makes an enable meet a loss: the session's thread or the store's thread stops at the moment `at`.
 static request *enable_meets(moment at, loss kind)
 {
 	request *enable = NULL;
@@ -52,7 +52,7 @@ static void assert_a_loss_holds(moment at, loss kind)
 	bool taken = threads_done(enable);
 	assert_true(at != WAITING || !taken || kind == OFF_BY_ANOTHER);
 	assert_true(at <= TAKEN || taken);
-	threads_await_steps(2); // the tick that had begun, and one more
+	threads_await_steps(2); // waits for the tick that had begun, and one more
 	uint64_t ticks = lit_ticks();
 	threads_await_steps(3);
 	assert_int_equal(lit_ticks(), ticks);
@@ -107,8 +107,8 @@ static void pause_and_resume(int client)
 	}
 }
 
-// Notes whether the store has capacity. Threads that wait for it are woken after the session was
-// notified.
+// Notes whether the store has capacity. Threads that wait for capacity are woken after the session
+// was notified.
 static void tell_room(bool room)
 {
 	if (room)
@@ -133,7 +133,7 @@ static void ask_something(int client, uint64_t *random)
 		threads_take_over(client, tool);
 	} else if (what < 99) {
 		pause_and_resume(client);
-	} else { // sends nothing for longer than the client's deadline
+	} else { // the client is silent for longer than its deadline
 		threads_await_steps(20);
 	}
 }
@@ -196,7 +196,7 @@ static void nothing_is_lit_after_its_loss_whatever_comes_when(void **state)
 	for (int i = 0; i < CLIENTS; i++)
 		pthread_join(asking[i], NULL);
 	threads_await_answers();
-	threads_await_steps(2); // while losses still happen
+	threads_await_steps(2); // two more steps, while losses still happen
 	pthread_mutex_lock(&threads.lock);
 	threads.ended = true;
 	pthread_cond_broadcast(&threads.changed);

@@ -35,7 +35,7 @@ static void meet(moment here)
 	pthread_barrier_wait(&threads.over);
 }
 
-// Returns the client of an enable, which its number contains.
+// Returns the client of an enable. The number of the enable contains the client.
 static int client_of(uint64_t asked)
 {
 	return (int)(asked % CLIENTS);

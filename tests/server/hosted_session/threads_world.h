@@ -10,7 +10,7 @@
 enum {
 	CLIENTS = 2,
 	TOOLS = 2,
-	ROUNDS = 1500, // requests of each client
+	ROUNDS = 1500, // number of requests of each client
 	REQUESTS = 2 * CLIENTS * ROUNDS + 512,
 	// most unanswered requests of a client; the core's queue also holds the cut-offs between two
 	// ticks

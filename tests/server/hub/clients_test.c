@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The values that a client gets: a number, a client_id that others may see, and a secret token that
-// no other client may see.
+// Tests the values that a client gets: a number, a client_id that others may see, and a secret
+// token that no other client may see.
 #include "hub/hub.h"
 
 #include <setjmp.h>
@@ -14,7 +14,8 @@
 
 enum {
 	CLIENTS = 100,
-	// Two random texts of 32 hex digits share twelve consecutive digits by chance once in 10^11.
+	// Fewest consecutive digits by which a text reveals a secret. Two random texts of 32 hex digits
+	// share twelve consecutive digits by chance once in 10^11.
 	SHARED_DIGITS = 12,
 };
 

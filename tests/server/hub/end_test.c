@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The end of the hub's sessions while transports still hold them.
+// Tests the end of the hub's sessions while transports still hold them.
 #include "hub/hub.h"
 
 #include <setjmp.h>
@@ -68,7 +68,7 @@ static int open_hub(void **state)
 	return cau_hub_create(&t.hub, &def, NULL) ? -1 : 0;
 }
 
-// Stops as the daemon does.
+// Stops the builder and the hub, in the order of the daemon.
 static void stop(void)
 {
 	if (t.stopped)
@@ -141,8 +141,8 @@ static cau_order *order_for_later(void)
 	return order;
 }
 
-// The test holds a session as a transport's mailbox does. Its release after the hub's stop sends no
-// more answers, because the transport may be partly destroyed.
+// The test holds a session as a transport's mailbox does. If the session is released after the
+// hub's stop, no more answers are sent, because the transport may be partly destroyed.
 static void a_session_that_is_held_outlives_the_hubs_stop(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sessions that a daemon starts with. The hub reports how many are not there yet, and the
+// Tests the sessions that a daemon starts with. The hub reports how many are not there yet, and the
 // daemon takes no new sessions until then. Sessions of clients do not count.
 #include "hub/hub.h"
 
@@ -197,7 +197,7 @@ static void the_demo_counts(void **state)
 	assert_int_equal(cau_hub_resuming(t.hub), 1);
 	ask_for("knee");
 	hold(false);
-	await_made(1); // the clerk's second creation
+	await_made(1); // waits for the client's session, which the clerk creates second
 	while (cau_hub_resuming(t.hub))
 		usleep(1000);
 	assert_int_equal(cau_hub_count(t.hub), 2);

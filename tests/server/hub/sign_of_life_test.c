@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signs of life by the sender's clock: delays, messages that arrive all at once, drift, and clocks
-// that are set.
+// Tests signs of life by the sender's clock: delays, messages that arrive all at once, drift, and
+// clocks that are set.
 #include "hub/sign_of_life.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 #define DEADLINE_S 0.25
 #define PERIOD_S 0.05
-#define AHEAD_S 1e5 // client's clock minus the server's clock
+#define AHEAD_S 1e5 // client's clock minus the server's clock, s
 
 // Returns the time of heartbeat `k` of a series that begins at `from_s`.
 static double beat_s(double from_s, int k)
@@ -103,7 +103,8 @@ static void an_answer_never_goes_back_nor_ahead(void **state)
 static void drift_is_followed(void **state)
 {
 	(void)state;
-	const double rates[] = {0.999, 1.001}; // ten times the drift of a bad crystal
+	// rates of the client's clock, relative to the server's: ten times the drift of a bad crystal
+	const double rates[] = {0.999, 1.001};
 	for (int i = 0; i < 2; i++) {
 		cau_sign_of_life sign = {0};
 		double alive_s = send(&sign, 10, 72000, 0.001, rates[i]);

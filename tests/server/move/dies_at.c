@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon with its own function at fault points: the process kills itself at the point that
-// CAUTERYD_DIES_AT names, as by kill -9.
+// A daemon for tests with its own function at fault points: the process kills itself at the point
+// that CAUTERYD_DIES_AT names, as by kill -9.
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>

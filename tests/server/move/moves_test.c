@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session moves between two daemons. tests/e2e/move.test.mjs tests which process may be killed
-// when.
+// Tests a session that moves between two daemons. tests/e2e/move.test.mjs tests which process may
+// be killed when.
 #include <string.h>
 
 #include "server/move/two_daemons.h"

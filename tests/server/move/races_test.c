@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that arrive between the decision and the end of another request. The other request is
-// stopped at a fault point meanwhile.
+// Tests requests that arrive between the decision and the end of an earlier request. The earlier
+// request is stopped at a fault point meanwhile.
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -206,7 +206,7 @@ static void destroy_session(side *s, const char *id)
 	cau_hosted_release(hosted);
 }
 
-// Creates one session, and one that has ended and waits to be reaped.
+// Creates two sessions. The first of them has ended and waits to be reaped.
 static void fill_places(void)
 {
 	assert_int_equal(make_session(&t.target, "first"), CAU_OK);

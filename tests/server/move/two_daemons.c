@@ -10,7 +10,7 @@
 
 two_daemons t;
 
-// ---- fault points: a thread that reaches the shut one waits there
+// ---- fault points: a thread that reaches the shut point waits there
 static struct {
 	pthread_mutex_t lock;
 	pthread_cond_t changed;

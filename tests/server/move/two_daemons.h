@@ -16,7 +16,7 @@
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, open_both, close_both)
 
-enum { PIECES_MOST = 64 }; // a small session takes two pieces
+enum { PIECES_MOST = 64 }; // most pieces that a test carries; a small session takes two
 
 typedef struct side {
 	char folder[40], file[64];
@@ -43,7 +43,7 @@ typedef struct two_daemons {
 	pthread_mutex_t lock;
 	pthread_cond_t answered;
 	answer answer;
-	answer held; // answer to a request that is stopped at a fault point while others come
+	answer held; // answer to a request that is stopped at a fault point while other requests come
 	char move[CAU_NAME_BYTES];
 	uint32_t pieces;     // number of pieces that were carried
 	cau_move_hash seal;  // seal of the last carried piece

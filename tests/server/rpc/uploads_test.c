@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the bytes of uploads against a model that counts them again after every step.
+// Tests the byte counts of uploads against a model that counts the bytes again after every step.
 #include "rpc/uploads.h"
 
 #include <setjmp.h>

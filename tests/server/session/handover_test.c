@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Searches every state of two daemons, their disks and two couriers while a session moves. All of
-// them may be killed at any time, messages may be lost, disks may refuse, and moves may begin
-// again. In each state at most one daemon serves, and at least one store has the session. From each
-// state, once both daemons are up, the courier's continuation leads to exactly one daemon that
-// serves.
+// Searches every state of two daemons, their disks and two couriers while a session moves. Daemons
+// and couriers may be killed at any time, messages may be lost, disks may refuse, and moves may
+// begin again. In each state at most one daemon serves, and at least one store has the session.
+// From each state, once both daemons are up, the courier's continuation leads to exactly one daemon
+// that serves.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -235,8 +235,8 @@ static void crash_target(world w, bool written)
 	add(&w);
 }
 
-// Replaces the courier by a new one, or by the same one after a restart. It knows what the target
-// lists.
+// Replaces the courier by a new courier, or by the same courier after a restart. The courier then
+// knows only what the target lists.
 static void new_courier(world w)
 {
 	w.at_work.carried = w.target_up ? w.coming_move : 0;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each four bytes are one event or act in the world of the property test (world.h). A fuzzer that
-// sees the branches taken finds sequences that random tests do not.
+// Fuzzes the state machine of a session. Each four bytes are one event or act in the world of the
+// property test (world.h). A fuzzer that sees the branches taken finds sequences that random tests
+// do not.
 #include <stdlib.h>
 #include <string.h>
 
 #include "fuzz/fuzz_target.h"
 #include "server/session/world.h"
 
-enum { EVENTS_MOST = 200 }; // each event has at most one order, and TICKETS is larger
+// most events of a run; each event has at most one order, and TICKETS is larger
+enum { EVENTS_MOST = 200 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
 {

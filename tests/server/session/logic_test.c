@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random interleavings of orders, signs of life, losses, time and the worker's acts. A failing
-// sequence is shortened and printed as a script of a few lines.
+// Tests random interleavings of orders, signs of life, losses, time and the worker's acts. A
+// failing sequence is shortened and printed as a script of a few lines.
 //     test_server_session_logic [SEQUENCES [FIRST_SEED]]
 #include <stdlib.h>
 #include <string.h>
@@ -25,8 +25,8 @@ static uint64_t next_random(uint64_t *state)
 }
 
 // Raises the share of advances, because random sequences seldom pause a session and then advance
-// it. Every fourth sequence begins paused. A quarter of its other codes are advances, most of them
-// by the driver, and half are acts of the worker.
+// it. Every fourth sequence begins paused. A quarter of the sequence's other codes are advances,
+// most of them by the driver, and half are acts of the worker.
 static void favour_advances(sequence *s)
 {
 	static const uint32_t pause[] = {0x008100a0, 0x00000034, 0x00000034};
@@ -178,8 +178,9 @@ int main(int argc, char **argv)
 	       (unsigned long long)count, (unsigned long long)events, 1e-6 * (double)events / seconds,
 	       (unsigned long long)w->steps, (unsigned long long)w->lit_steps,
 	       (unsigned long long)w->lit_advances);
-	bool seen = w->steps > count / 100 && w->lit_steps > count / 1000 &&
-	            w->lit_advances > count / 1000; // otherwise the test covers too little
+	// with fewer of these ticks and advances, the test would cover too little
+	bool seen =
+		w->steps > count / 100 && w->lit_steps > count / 1000 && w->lit_advances > count / 1000;
 	world_destroy(w);
 	return seen ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -135,8 +135,8 @@ static bool is_for_later(const world *w, const ticket_book *ticket)
 	return ticket->asked.tick > w->tick;
 }
 
-// True if the order becomes void when its asker loses its tool: it uses the tool, or is for a later
-// tick.
+// True if the order becomes void once its client no longer drives the order's tool. This holds for
+// orders that use the tool, and for orders of later ticks.
 static bool is_of_hold(const world *w, const ticket_book *ticket)
 {
 	cau_ask ask = ticket->asked.ask;
@@ -240,14 +240,14 @@ void oracle_check_room(world *w, const ticket_book *ticket)
 	int client = (int)ticket->asked.asker.client, bound = cau_logic_later_most(QUEUE);
 	if (w->ended || !w->store_takes || off || ticket->asked.ask == CAU_ASK_PAUSE)
 		return;
-	for (int i = 0; i < w->ticket_count; i++) // an order that may be void counts in either queue
+	for (int i = 0; i < w->ticket_count; i++) // an order that may be void can be in either queue
 		if (w->tickets[i].doubted && !w->tickets[i].answers && is_for_later(w, &w->tickets[i]))
 			return;
-	// orders that the present act makes void are counted at its end
+	// Orders that the present act makes void are counted only when the act ends.
 	if (w->working && w->action.act == CAU_ACT_ORDER)
 		return;
 	bool later = is_for_later(w, ticket), full;
-	if (later) // not counting the order itself
+	if (later) // the counts leave out the order itself
 		full = count_waiting(w, client, true) - ticket->kept >= bound ||
 		       count_waiting(w, 0, true) - ticket->kept >= QUEUE ||
 		       count_waiting(w, 0, true) + count_waiting(w, 0, false) - ticket->kept >= 2 * QUEUE;
@@ -353,14 +353,14 @@ static void note_silence(world *w, uint64_t came)
 	}
 }
 
-// A silence that was found is not undone by a later sign of life.
+// A later sign of life does not undo a silence that was found.
 void oracle_note_silence(world *w)
 {
 	note_silence(w, w->came);
 }
 
 // A sign of life after the deadline does not undo the silence, even if no check found it. Requests
-// that come with the sign count; earlier requests do not.
+// that come with the sign of life are valid; earlier requests are not.
 void oracle_note_life(world *w, int client, const char *name, double alive_s)
 {
 	note_silence(w, w->came - 1);
@@ -415,11 +415,11 @@ static uint64_t waits(const world *w, cau_ask ask, const char *tool)
 
 static uint64_t oldest(uint64_t a, uint64_t b)
 {
-	return a && b ? (a < b ? a : b) : a + b; // 0 means none
+	return a && b ? (a < b ? a : b) : a + b; // 0 means that there is no order
 }
 
-// True for a cut-off of a pause. A pause makes its cut-offs one after the other; the first makes
-// earlier enables of all tools void.
+// True for an energy cut-off of a pause. A pause cuts off the tools one after the other, and the
+// first cut-off makes earlier enables of all tools void.
 static bool is_cut_of_pause(world *w)
 {
 	uint64_t pause = oldest(w->paused, waits(w, CAU_ASK_PAUSE, ""));
@@ -432,8 +432,8 @@ static bool is_cut_of_pause(world *w)
 	return true;
 }
 
-// True for a cut-off of a step or a resume that ends lock-step. Which of the two it is becomes
-// known when it is decided.
+// True for an energy cut-off of a session.step or session.resume that ends lock-step. Which of the
+// two orders made the cut-off is known only when that order is decided.
 static bool is_cut_of_leaving(world *w)
 {
 	if (strcmp(w->action.drive.cut_cause, "lock-step has ended") != 0)
@@ -511,7 +511,7 @@ static void note_advance(world *w, ticket_book *ticket)
 			note_enable(w, oracle_book(w, part->tool), ticket, part->limit);
 	}
 	ticket->stepping = true;
-	if (ticket->voided) // its client was lost while the core took the advance
+	if (ticket->voided) // the client of the advance was lost while the core took it
 		return;
 	w->lockstep = (int)ticket->asked.asker.client;
 	w->advance_tick = w->tick;
@@ -584,8 +584,8 @@ static void note_change(world *w, const ticket_book *ticket)
 		change_driver(w, ticket, to && ticket->came < w->gone[to] ? 0 : to);
 }
 
-// Energy is off when the order is decided. An off for this tick, or one that waited for the disk,
-// also ends an enable that came later but took effect earlier.
+// Energy is off when the order is decided. An energy-off for this tick, or one that waited for the
+// disk, also ends an enable that arrived later but took effect earlier.
 static void note_off(world *w, const ticket_book *ticket)
 {
 	tool_book *tool = oracle_book(w, ticket->asked.tool);
@@ -594,8 +594,8 @@ static void note_off(world *w, const ticket_book *ticket)
 	cut(tool, ticket->came);
 }
 
-// A pause, a step or a resume ends lock-step when it is decided. This also holds if it is refused
-// after its energy cut-offs.
+// A pause, a step or a resume ends lock-step when the order is decided. This also holds if the
+// order is refused after its energy cut-offs.
 static void note_left(world *w, const ticket_book *ticket, bool orders)
 {
 	cau_ask ask = ticket->asked.ask;

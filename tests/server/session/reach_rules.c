@@ -90,8 +90,8 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 		                                                        .later = (uint8_t)e->later};
 }
 
-// Prepares the state for comparison: `before`, with the energy of drivers off that were silent by
-// now.
+// Prepares the state for comparison: `scratch` becomes `before` with the energy off of drivers that
+// were silent by now.
 static void expect_silence_cut(reach_move *m)
 {
 	cau_effects ignored;
@@ -208,8 +208,8 @@ static void check_step(reach_move *m)
 		m->books.steps--;
 }
 
-// Checks that the worker rests only if there is nothing to do. After the end it only has answers to
-// give.
+// Checks that the worker rests only if there is nothing to do. After the session's end, the worker
+// only gives answers.
 static void check_rest(reach_move *m)
 {
 	for (int i = 0; i < m->books.tool_count && !m->logic->ended; i++) {
@@ -267,8 +267,8 @@ static void check_decision(reach_move *m)
 }
 
 // Notes energy that goes off when the worker begins a change of driver or a pause, even if the
-// asker is gone before that ends. Energy also goes off if the worker finds a silence before the
-// watchdog does.
+// client that asked is gone before the order ends. Energy also goes off if the worker finds a
+// silence before the watchdog does.
 static void note_cut_begun(reach_move *m)
 {
 	int place = reach_head(&m->books);
@@ -279,7 +279,7 @@ static void note_cut_begun(reach_move *m)
 		bool by_order = pauses || (changes && order->tool == i);
 		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled || has_left(m))
 			continue;
-		if (m->books.pause_place) // this pause is not among the orders
+		if (m->books.pause_place) // this pause has no entry among the orders
 			reach_darken_before(&m->books, i, m->books.pause_place);
 		else if (by_order)
 			reach_darken_before(&m->books, i, place);
@@ -352,7 +352,8 @@ static void note_order_done(reach_move *m, bool done)
 		reach_darken_before(&m->books, order.tool, place);
 	} else if (order.ask == CAU_ASK_GO || order.ask == CAU_ASK_PAUSE) {
 		for (int i = 0; i < m->books.tool_count; i++)
-			reach_darken_before(&m->books, i, place); // enables that came later count
+			// enables that came after the order stay valid
+			reach_darken_before(&m->books, i, place);
 	} else if (order.ask == CAU_ASK_STEP) {
 		m->books.steps = order.ticks;
 	} else if (order.ask == CAU_ASK_DESTROY) {
@@ -379,8 +380,8 @@ static cau_outcome_kind outcome_of(reach_what what)
 	return what == REACH_DONE ? CAU_DONE : what == REACH_NOT_DONE ? CAU_NOT_DONE : CAU_POSTPONED;
 }
 
-// Checks lock-step after an order. An advance may have lost its client meanwhile; then no ticks are
-// computed for it.
+// Checks lock-step after an order. If the client of an advance was lost meanwhile, no ticks are
+// computed for the advance.
 static void note_lockstep_done(reach_move *m, const reach_order *order)
 {
 	bool ends = order->ask == CAU_ASK_PAUSE || order->ask == CAU_ASK_RESUME ||

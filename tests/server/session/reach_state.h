@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session's machine in 16 bytes. They hold everything that its decisions depend on, and nothing
-// else, so machines with equal behaviour are one state. A moment becomes a place among the orders
-// that are not decided yet. A time becomes fresh or silent, and a tick becomes its distance from
-// the present tick. Names, causes and tickets are left out. A state can be decoded into a machine
-// again.
+// A session's machine in 16 bytes. The bytes hold everything that the machine's decisions depend
+// on, and nothing else, so machines with equal behaviour are one state. A moment becomes a place
+// among the orders that are not decided yet. A time becomes fresh or silent, and a tick becomes its
+// distance from the present tick. Names, causes and tickets are left out. A state can be decoded
+// into a machine again.
 #pragma once
 
 #include "session/logic.h"
 
 enum { REACH_TOOLS = 2, REACH_CLIENTS = 2, REACH_QUEUE = 2 };
 
-// Arbitrary values: a state only stores which times are fresh at REACH_NOW_S, and which orders are
-// for a tick after REACH_TICK.
+// Arbitrary values of a present time, s, and a present tick. A state only stores which times are
+// fresh at REACH_NOW_S, and which orders are for a tick after REACH_TICK.
 #define REACH_NOW_S 100.0
-#define REACH_TICK_S 101.0 // time of the next tick; a driver that is fresh now is fresh then
+// time of the next tick, s; a driver that is fresh now is still fresh at this time
+#define REACH_TICK_S 101.0
 #define REACH_DEADLINE_S 8.0
 enum { REACH_TICK = 1000, REACH_STEP_TICKET = 60 };
-#define REACH_STEP_S REACH_DEADLINE_S // in lock-step a deadline has the length of one tick
+// length of a tick, s; in lock-step, a deadline then has the length of one tick
+#define REACH_STEP_S REACH_DEADLINE_S
 enum { REACH_ON = 1, REACH_OFF };
 
 // The members of the structs below, and the bits of each member in a packed state. Searches keep

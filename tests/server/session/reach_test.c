@@ -48,7 +48,8 @@ enum {
 	LOCKSTEP = 2048,   // session.advance
 	EVENTS_MOST = 128,
 	STATES_OF_PART = 10000000,
-	STATES_HELD = 200000000, // limit of a search that should close; reaching it is a failure
+	// most states of a search that should close; a search that reaches the limit fails
+	STATES_HELD = 200000000,
 };
 
 typedef struct search {
@@ -221,7 +222,8 @@ static void fail(const reach_found *found, uint32_t number, const reach_event *l
 	print_event(last);
 }
 
-// Chooses one of a state and the state with the tools exchanged, always the same one.
+// Chooses between a state and the same state with the tools exchanged. The choice is the same for
+// both.
 static void choose(const reach_state *state, reach_packed *chosen)
 {
 	reach_state swapped;

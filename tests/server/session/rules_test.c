@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One value of a machine is corrupted. In every build the session is then faulted, its tool's
-// energy is cut off, and every request is answered. The session works again after a rewind.
+// Tests a machine of which one value is corrupted. In every build the session is then faulted, its
+// tool's energy is cut off, and every request is answered. The session works again after a rewind.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -249,7 +249,7 @@ static void acts_out_of_order_are_found(void **state)
 {
 	(void)state;
 	spoilt s = begin();
-	cau_logic_done(s.logic, s.now_s, CAU_DONE, &s.effects); // no act was under way
+	cau_logic_done(s.logic, s.now_s, CAU_DONE, &s.effects); // a call although no act is under way
 	expect_safe(&s, true);
 	s = begin();
 	s.now_s += 1;

@@ -9,7 +9,7 @@
 
 #include "server/session/oracle.h"
 
-#define TICK_S 0.0625 // a power of two, so that sums are exact
+#define TICK_S 0.0625 // length of a tick, simulated s; a power of two, so that sums are exact
 
 const char *const world_tool_names[TOOLS] = {"hook", "jaws"};
 const char *const world_ask_names[CAU_ASK_COUNT] = {
@@ -157,7 +157,8 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	if (ask == CAU_ASK_ENERGY_OFF && now && !w->tools[tool].there && !w->ended)
 		oracle_note_off_of_none(w, world_tool_names[tool], ticket->came);
 	note_off_parts(w, ticket);
-	// the queue is full, so the off takes effect at once
+	// The order was answered at once because the queue is full, so the energy-off takes effect at
+	// once.
 	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers)
 		oracle_darken(&w->tools[tool], ticket->came);
 	if (ask == CAU_ASK_PAUSE && ticket->answers && !w->ended)
@@ -220,8 +221,8 @@ static void store(world *w, bool takes)
 
 // ---- the worker ---------------------------------------------------------------------------------
 
-// Exchanges the presence of the jaws: the state after a rewind has them if the present has not, and
-// the reverse.
+// Exchanges the presence of the jaws. If the present state has the jaws, the state after a rewind
+// has none, and the reverse.
 static void exchange_jaws(world *w)
 {
 	tool_book *jaws = &w->tools[1];
@@ -391,8 +392,8 @@ static void end_work(world *w, uint32_t more)
 	bool pauses = w->action.act == CAU_ACT_LOOK && is_pause(w);
 	cau_logic_done(w->logic, w->now_s, outcome, &w->effects);
 	take_effects(w);
-	// A tick may begin while a pause waits for the disk. The oracle does not model this, so it
-	// commits.
+	// A tick may begin while a pause waits for the disk. The oracle does not model this, so the
+	// test commits the pause here.
 	if (outcome == CAU_POSTPONED && (pauses || more % 16 == 1))
 		take(w, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
 }

@@ -16,12 +16,12 @@ enum {
 	CLIENTS = 3, // clients 1 and 2 have the role operate, client 3 is an admin
 	QUEUE = 6,
 	TICKETS = 256,
-	WORLD_WORKS = 20,    // codes modulo 32 from this on: the worker continues
-	WORLD_ADVANCES = 28, // codes modulo 32 from this on: a client advances
+	WORLD_WORKS = 20,    // with codes of at least this, modulo 32, the worker continues
+	WORLD_ADVANCES = 28, // except that with this code, modulo 32, a client advances
 };
 
-#define DEADLINE_S 0.25      // deadline of every driver
-enum { DEADLINE_TICKS = 4 }; // deadline in lock-step
+#define DEADLINE_S 0.25      // deadline of every driver, s
+enum { DEADLINE_TICKS = 4 }; // deadline in lock-step, ticks
 
 // What the oracle knows about a tool.
 typedef struct tool_book {
@@ -41,7 +41,7 @@ typedef struct ticket_book {
 	uint64_t came; // number of its arrival; 0: unused
 	cau_asked asked;
 	int answers;
-	bool kept;     // the order was not refused on arrival
+	bool kept;     // false: the order was refused on arrival
 	bool stepping; // its ticks are being computed
 	bool voided;   // the order has become void: it must be refused
 	bool doubted;  // the worker may have found silence: the order may be done or refused
@@ -64,7 +64,8 @@ typedef struct world {
 	uint64_t advance_tick;
 	int64_t advance_left;
 	int64_t steps_left; // remaining ticks of session.step
-	bool leaving;       // session.step or session.resume has ended lock-step, and is decided next
+	// session.step or session.resume has ended lock-step, and this order is decided next
+	bool leaving;
 	bool store_takes, working, going, ended;
 	uint64_t tick, going_since;
 	int state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A copy is taken while commands arrive. The copy has a complete beginning of the log.
+// Tests a copy that is taken while commands arrive. The copy has a complete beginning of the log.
 #include "store_fixture.h"
 
 #include <pthread.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches copy their arguments. They refuse what cannot be stored, and stay unchanged.
+// Tests that batches copy their arguments, refuse what cannot be stored, and then stay unchanged.
 #include "store_fixture.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The budget of the whole store: the oldest checkpoint of all sessions is removed first, marked
-// states stay, and the daemon is notified.
+// Tests the budget of the whole store: the oldest checkpoint of all sessions is removed first,
+// marked states stay, and the daemon is notified.
 #include <string.h>
 #include <unistd.h>
 
@@ -37,8 +37,8 @@ static bool has(cau_store *store, const char *session, uint64_t tick)
 }
 
 // Makes a store with checkpoints of two sessions at ticks 0 to 6000, alternating between the
-// sessions. That of "knee" at tick 1000 is marked. The checkpoints have 1.4 MB, the tables and
-// indices 0.1 MB.
+// sessions. The checkpoint of "knee" at tick 1000 is marked. The checkpoints have 1.4 MB, the
+// tables and indices 0.1 MB.
 static cau_store *fill(struct fixture *fixture)
 {
 	cau_store *store = retention_open(fixture);
@@ -57,7 +57,8 @@ static void of_all_sessions_the_oldest_goes_first(void **state)
 	cau_store *store = fill(fixture);
 	fixture->config.store_bytes = 1100000;
 	store = retention_retire(fixture, store, &removal);
-	assert_int_equal(removal.budget.dropped, 5); // down to 1,045 kB, so that a twentieth is free
+	// the rest is 1,045 kB, so that a twentieth of the budget is free
+	assert_int_equal(removal.budget.dropped, 5);
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
 	assert_in_range(removal.budget.bytes, 945000, 1045000);
 	for (uint64_t tick = 0; tick <= 6000; tick += 1000) {
@@ -92,7 +93,8 @@ static void after_checkpoints_the_log_of_the_biggest_goes(void **state)
 	retention_log(store, 0, 0, 6000); // log of "knee"
 	fixture->config.store_bytes = 750000;
 	store = retention_retire(fixture, store, &removal);
-	// 7 of 14 are left: of each session the first and the newest two, and the marked one
+	// 7 of 14 checkpoints are left: of each session the first and the newest two, and the marked
+	// one
 	assert_int_equal(removal.budget.dropped, 7);
 	int left = read_ticks(store, "knee", 0, 0, 6000, ticks, 6000);
 	// the log is removed from one checkpoint to the next, and the newest stays
@@ -152,7 +154,7 @@ static void answers_beyond_their_share_go_before_checkpoints(void **state)
 	struct fixture *fixture = *state;
 	struct removal removal;
 	cau_store *store = fill(fixture);
-	for (int i = 0; i < 20; i++) { // 2 MB in all
+	for (int i = 0; i < 20; i++) { // the answers have 2 MB in all
 		put_answers(store, "anna", 1 + 100 * (uint64_t)i, 100);
 		retention_clock_ms += 1000;
 	}
@@ -161,7 +163,7 @@ static void answers_beyond_their_share_go_before_checkpoints(void **state)
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
 	assert_int_equal(removal.budget.dropped, 0);
 	assert_true(removal.budget.bytes <= 2500000);
-	// noted as forgotten: a resend must not act again
+	// The removed answer is noted as forgotten: a resend must not act again.
 	assert_int_equal(look_for(store, "anna", 1), CAU_ALREADY_EXISTS);
 	assert_int_equal(look_for(store, "anna", 2000), CAU_OK);
 	assert_int_equal(look_for(store, "anna", 2001), CAU_NOT_FOUND);
@@ -176,7 +178,7 @@ static void answers_within_their_share_stay(void **state)
 	struct fixture *fixture = *state;
 	struct removal removal;
 	cau_store *store = fill(fixture);
-	put_answers(store, "anna", 1, 200); // 0.2 MB in all
+	put_answers(store, "anna", 1, 200); // the answers have 0.2 MB in all
 	fixture->config.store_bytes = 1300000;
 	store = retention_retire(fixture, store, &removal);
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures how long a checkpoint of 4 MB takes from submission to its answer, and a small request
-// submitted with it.
+// Measures the time from submission to answer of a checkpoint of 4 MB, and of a small request that
+// is submitted with the checkpoint.
 #include "store_fixture.h"
 
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which checkpoints thinning keeps over days, and which ticks can be reached if the log has holes.
+// Tests which checkpoints thinning keeps over days, and which ticks can be reached if the log has
+// holes.
 #include "store_fixture.h"
 
 #include <stdlib.h>
@@ -22,8 +23,8 @@ static void thin(struct cau_store_course *course)
 	}
 }
 
-// Checks the replay between any two neighbours: its length is at most a quarter of its age, or the
-// distance at which checkpoints were made.
+// Checks the replay between any two neighbouring checkpoints. Its length is at most a quarter of
+// the later checkpoint's age, or the distance at which checkpoints were made.
 static void check_replays(const struct cau_store_course *course, int64_t cadence)
 {
 	const struct cau_store_point *point = course->point;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A kill -9 at any moment loses nothing that was acknowledged. A child process writes batches, and
-// sends the tick of each acknowledged one through a pipe. The parent kills the child and checks the
-// store.
+// Tests that a kill -9 at any moment loses nothing that was acknowledged. A child process writes
+// batches, and sends the tick of each acknowledged batch through a pipe. The parent kills the child
+// and checks the store.
 #include "store_fixture.h"
 
 #include <pthread.h>
@@ -18,11 +18,11 @@ enum {
 	ROUNDS = 20,
 	IN_FLIGHT = 32,      // batches that the child keeps waiting
 	SNAPSHOT_EVERY = 16, // batches between two snapshots
-	// so large that many kills occur during a long write or a fold of the log
+	// bytes of a snapshot; so large that many kills occur during a long write or a fold of the log
 	SNAPSHOT_BYTES = 300000,
-	MOST_ACKS = 400, // acknowledgements that the parent waits for in a round, at most
-	// longest delay before the kill, so that kills also occur at other moments than right after an
-	// acknowledgement
+	MOST_ACKS = 400, // most acknowledgements that the parent waits for in a round
+	// longest delay before the kill, us, so that kills also occur at other moments than right after
+	// an acknowledgement
 	MOST_DELAY_US = 3000,
 	MAX_TICKS = 100000,
 };
@@ -134,8 +134,8 @@ static cau_status see_answer(void *user, const cau_store_answer *answer)
 	return CAU_OK;
 }
 
-// Checks that every command before `acknowledged` is in the store, in order, and that later ones
-// have no holes. Returns the number of commands.
+// Checks that every command before `acknowledged` is in the store, in order, and that no command is
+// missing among the later commands. Returns the number of commands.
 static uint64_t check_store(const cau_store_config *config, uint64_t acknowledged)
 {
 	static uint64_t ticks[MAX_TICKS];
@@ -163,8 +163,8 @@ static void kill_9_loses_nothing_acknowledged(void **state)
 	uint64_t count = 0, acknowledged_sum = 0;
 	print_message("CAU_TEST_SEED=%u\n", seed);
 	fixture->config.commit_delay_ms = 1;
-	fixture->config.wal_bytes = 1000000;       // folded every few snapshots
-	fixture->config.retention_bytes = 3000000; // so that retention works too
+	fixture->config.wal_bytes = 1000000;       // the log is folded every few snapshots
+	fixture->config.retention_bytes = 3000000; // this limit is small, so that retention works too
 	fixture->config.retention_interval_ms = 1;
 	cau_store *store = open_store(&fixture->config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);

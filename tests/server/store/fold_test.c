@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The write-ahead log stays near its bound during writing without a pause.
+// Tests that the write-ahead log stays near its bound during writing without a pause.
 #include "store_fixture.h"
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
@@ -8,7 +8,8 @@ enum {
 	BOUND_BYTES = 500000,
 	SNAPSHOT_BYTES = 100000,
 	COUNT = 200,
-	// Commits wait for a fold from four times the bound on. The last group may go beyond that.
+	// Most bytes of the write-ahead log. Commits wait for a fold from four times the bound on, and
+	// the last group may go beyond that.
 	MOST_BYTES = 4 * BOUND_BYTES + 10 * SNAPSHOT_BYTES,
 };
 

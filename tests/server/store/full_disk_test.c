@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A disk that is really full: a small tmpfs in a mount namespace of the test, filled by a ballast
-// file. Needs root; skipped otherwise.
+// Tests a disk that is really full: a small tmpfs in a mount namespace of the test, filled by a
+// ballast file. The test needs root and is skipped otherwise.
 #include "store_fixture.h"
 
 #include <errno.h>
@@ -18,7 +18,7 @@
 enum {
 	SNAPSHOT_BYTES = 500000,
 	RETRY_MS = 20,
-	PATIENCE_S = 20, // a recovery takes a few RETRY_MS
+	PATIENCE_S = 20, // longest wait for a recovery, s; a recovery takes a few RETRY_MS
 };
 
 // ---- the disk -------------------------------------------------------------------------
@@ -169,11 +169,11 @@ static void a_full_disk_refuses_and_recovers(void **state)
 	cau_store_metrics before, after;
 	double start_s = cau_store_monotonic_s();
 	cau_store_get_metrics(store, &before);
-	do // until a few more attempts have been made
+	do // the loop ends once a few more attempts have been made
 		cau_store_get_metrics(store, &after);
 	while (after.full_attempts < before.full_attempts + 5);
 	double took_s = cau_store_monotonic_s() - start_s;
-	// 0.9: the first attempt may have been under way
+	// 0.9, because the first attempt may have been under way
 	assert_true(took_s > 4 * 1e-3 * RETRY_MS * 0.9);
 	assert_int_equal(after.full_count, 1);
 
@@ -199,7 +199,7 @@ static void a_full_disk_can_fill_again_and_a_full_store_can_be_closed(void **sta
 	for (int round = 0; round < 3; round++) {
 		fill_disk(fixture);
 		uint64_t first = 100 * (uint64_t)round;
-		// batches that still fitted into the log
+		// The count includes batches that still fitted into the log.
 		count += (int)(write_until_full(store, first) - first);
 		await_state(&watch, CAU_STORE_FULL);
 		free_disk(fixture);

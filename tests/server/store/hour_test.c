@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A store that takes 2,000 requests a second stays within its budget. All its records count, the
-// answers too. The test has its own clock; requests are written as fast as the disk takes them. The
-// argument is the number of minutes: two by default, one under sanitizers.
+// Tests that a store that takes 2,000 requests a second stays within its budget. All its records
+// count, also the answers. The test has its own clock; requests are written as fast as the disk
+// takes them. The argument is the number of minutes: two by default, one under sanitizers.
 #include <semaphore.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,10 +11,10 @@
 enum {
 	REQUESTS_PER_S = 2000,
 	TICKS_PER_S = 60,
-	CHECKPOINT_S = 10, // the same as the daemon's setting
+	CHECKPOINT_S = 10, // time between two checkpoints, as in the daemon's settings
 	CLIENTS = 8,
 	BUDGET_BYTES = 20000000,
-	WAL_BYTES = 1000000, // small, so that the file's size shows what is in use
+	WAL_BYTES = 1000000, // limit of the log; small, so that the file's size shows what is in use
 };
 
 static int minutes = CAU_TEST_SANITIZED ? 1 : 2;
@@ -81,7 +81,8 @@ static void the_budget_holds_for_an_hour_of_requests(void **state)
 	cau_store_metrics metrics;
 	fixture->config.store_bytes = BUDGET_BYTES;
 	fixture->config.wal_bytes = WAL_BYTES;
-	fixture->config.queue_batches = TICKS_PER_S / 6; // each commit has a tenth of a second of ticks
+	// at most ten ticks wait for a commit
+	fixture->config.queue_batches = TICKS_PER_S / 6;
 	fixture->config.wall_clock_ms = test_clock_ms;
 	cau_store *store = open_store(&fixture->config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
@@ -101,7 +102,8 @@ static void the_budget_holds_for_an_hour_of_requests(void **state)
 	              (unsigned long long)number, 1e-6 * (double)most, 1e-6 * BUDGET_BYTES);
 	assert_int_equal(failed, 0);
 	assert_true((double)most <= 1.2 * BUDGET_BYTES);
-	// The newest request still has its answer; the oldest is known to have acted.
+	// The answer to the newest request is still stored. The oldest request has no answer, but is
+	// known to have acted.
 	char client[32];
 	snprintf(client, sizeof client, "client-%u", (unsigned)(number % CLIENTS));
 	assert_int_equal(cau_store_read_answer(store, client, number, ignore_answer, NULL, NULL),

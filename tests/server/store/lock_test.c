@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A store is open in one process only, and only once in that process.
+// Tests that a store is open in one process only, and only once in that process.
 #include "store_fixture.h"
 
 #include <signal.h>
@@ -52,7 +52,7 @@ static void a_hard_link_is_the_same_store(void **state)
 	config.path = name;
 	assert_int_equal(cau_store_open(&config, &second, &error), CAU_BAD_STATE);
 	assert_non_null(strstr(error.reason, "another name"));
-	// The first store has lost nothing, such as SQLite's locks.
+	// The first store still has SQLite's locks.
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	cau_store_close(store);
 	// After an orderly close the file is complete and has no log, so any name of the file can be
@@ -136,7 +136,7 @@ a_hard_link_is_refused_while_another_process_lives_and_while_its_log_is_needed(v
 	assert_int_equal(waitpid(child, NULL, 0), child);
 	assert_int_equal(cau_store_open(&config, &store, &error), CAU_BAD_STATE);
 	assert_non_null(strstr(error.reason, fixture->path));
-	// by its own name it opens at once, with everything that was committed
+	// by its own name, the store opens at once, with everything that was committed
 	store = open_store(&fixture->config);
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_ALREADY_EXISTS);
 	cau_store_close(store);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A store in memory: it keeps the same records, has no file, and leaves nothing when it is closed.
+// Tests a store in memory: it keeps the same records, has no file, and leaves nothing when it is
+// closed.
 #include "store_fixture.h"
 
 #include <dirent.h>
@@ -62,7 +63,7 @@ static void two_know_nothing_of_each_other_and_make_no_file(void **state)
 	while (readdir(folder))
 		files++;
 	closedir(folder);
-	assert_int_equal(files, 2); // only . and ..
+	assert_int_equal(files, 2); // the folder has only . and ..
 	cau_store_close(one);
 	cau_store_close(other);
 }

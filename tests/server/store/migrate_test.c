@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stores with older schemas are migrated with all their records. The old layouts are written here
-// as they were: they must not follow later changes of the schema.
+// Tests that stores with older schemas are migrated with all their records. The old layouts are
+// written here as they were: they must not follow later changes of the schema.
 #include "store_fixture.h"
 
 #include <sqlite3.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session moves from one store to another in pieces. All records arrive, each once, whatever is
-// added between the two readings. The records of moves keep their promises.
+// Tests a session that moves from one store to another in pieces. All records arrive, each once,
+// whatever is added between the two readings. The records of moves stay valid.
 #include "store_fixture.h"
 
 #include <stdlib.h>
@@ -13,7 +13,8 @@
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
 enum { PATIENCE_MS = 30000 };
-enum { PIECE_BYTES = 300 }; // so small that a session takes several pieces
+// limit of a piece's bytes; so small that a session takes several pieces
+enum { PIECE_BYTES = 300 };
 
 static void put_request(cau_store_batch *batch, uint64_t tick, uint64_t sequence)
 {
@@ -230,7 +231,7 @@ static void a_session_goes_in_the_transaction_that_says_where(void **state)
 	assert_int_equal(count_all(store, &sessions), 1);
 	assert_int_equal(sessions, 0);
 	cau_store_close(store);
-	store = open_store(&fixture->config); // still so after the store is opened again
+	store = open_store(&fixture->config); // the same holds after the store is opened again
 	assert_int_equal(count_all(store, &sessions), 1);
 	assert_int_equal(sessions, 0);
 	cau_store_close(store);
@@ -322,7 +323,7 @@ static void answers_of_a_session_that_comes_back_stay(void **state)
 	cau_store_close(store);
 }
 
-// For a session that returns, the old record of its move counts until it is accepted here.
+// If a session returns, the record that it moved away is valid until the session is accepted here.
 static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state)
 {
 	struct fixture *fixture = *state;
@@ -348,7 +349,7 @@ static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state
 	cau_store_close(store);
 }
 
-// Whatever a piece contains, only its own batch fails, and the store stays sound.
+// A piece with rows that the store has already fails only its own batch, and the store stays sound.
 static void rows_that_come_twice_fail_their_batch_alone(void **state)
 {
 	struct fixture *fixture = *state;
@@ -376,7 +377,7 @@ static void rows_that_come_twice_fail_their_batch_alone(void **state)
 	cau_store_close(store);
 }
 
-// The batch must fail by itself: otherwise it would be answered as if it were on the disk.
+// The batch must fail by itself: otherwise the batch would be answered as if it were on the disk.
 static void a_piece_of_no_session_fails_its_batch(void **state)
 {
 	struct fixture *fixture = *state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that are not a sound store of a known schema are refused with the reason. Neither they nor
-// their folder change.
+// Tests that files that are not a sound store of a known schema are refused with the reason.
+// Neither the files nor their folder change.
 #include "store_fixture.h"
 
 #include <dirent.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Groups, order of answers, and the bound on waiting batches. A callback that waits at a gate stops
-// the store thread, so that the test knows exactly which batches wait behind it.
+// Tests groups, the order of answers, and the bound on waiting batches. A callback that waits at a
+// gate stops the store thread, so that the test knows exactly which batches wait behind it.
 #include "store_fixture.h"
 
 #include <pthread.h>
@@ -87,7 +87,7 @@ static void what_queues_up_is_one_commit_answered_in_order(void **state)
 	for (int i = 0; i < 500; i++)
 		assert_int_equal(order.status[i], CAU_OK);
 	assert_int_equal(after.commits, before.commits + 1);
-	// this bucket is for 257 to 512 batches
+	// bucket 9 is for groups of 257 to 512 batches
 	assert_int_equal(after.group_size[9], before.group_size[9] + 1);
 	assert_int_equal(after.batches, 501);
 	assert_int_equal(after.records, 501);
@@ -248,7 +248,7 @@ static void many_threads_submit_flush_and_look(void **state)
 		submitter[i] = (struct submitter){store, 1000 * (uint64_t)i};
 		assert_int_equal(pthread_create(&thread[i], NULL, submit_many, &submitter[i]), 0);
 	}
-	for (int i = 0; i < 20; i++) { // meanwhile the main thread reads
+	for (int i = 0; i < 20; i++) { // the main thread reads while the four threads submit
 		cau_store_metrics metrics;
 		cau_store_get_metrics(store, &metrics);
 		assert_true(read_ticks(store, "knee", 0, 0, 10000, ticks, 800) <= 800);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads return what was written: sessions, answers to resends, branches with their shared past,
-// events.
+// Tests that reads return what was written: sessions, answers to resends, branches with their
+// shared past, events.
 #include "store_fixture.h"
 
 #include <string.h>
@@ -203,7 +203,7 @@ static void a_request_on_its_way_to_the_disk_is_known(void **state)
 	assert_int_equal(cau_store_submit(store, session_batch("knee"), submit_two, &pending, NULL),
 	                 CAU_OK);
 	cau_store_flush(store); // commits the session
-	cau_store_flush(store); // commits the two batches that its callback submitted
+	cau_store_flush(store); // commits the two batches that the session's callback submitted
 	assert_int_equal(pending.inside, CAU_BAD_STATE);
 	assert_int_equal(cau_store_read_answer(store, "browser-1", 2, see_answer, &seen, NULL), CAU_OK);
 	assert_string_equal(seen.result, "two");
@@ -290,7 +290,8 @@ static void a_branch_sees_its_past_and_not_its_siblings(void **state)
 	expect_checkpoint(store, 1, 99, "root 50");
 	expect_checkpoint(store, 1, 49, NULL);
 	expect_checkpoint(store, 0, 1000, "root 150");
-	put_checkpoint(store, 0, 150, "root 150 again"); // replaces the first one
+	// this checkpoint replaces the earlier checkpoint of tick 150
+	put_checkpoint(store, 0, 150, "root 150 again");
 	expect_checkpoint(store, 0, 160, "root 150 again");
 	cau_store_close(store);
 }
@@ -323,7 +324,8 @@ static void a_fork_before_the_parents_start_finds_the_owner(void **state)
 	assert_int_equal(cau_store_read_branches(store, "knee", see_branch, &seen, NULL), CAU_OK);
 	assert_int_equal(seen.count, 3);
 	assert_int_equal(seen.branch[0].parent, -1);
-	assert_int_equal(seen.branch[2].parent, 0); // not branch 1, which starts at tick 100
+	// the parent is not branch 1, which starts at tick 100
+	assert_int_equal(seen.branch[2].parent, 0);
 	assert_int_equal(seen.branch[2].fork_tick, 40);
 	assert_true(seen.branch[0].left_ms > 0 && seen.branch[1].left_ms > 0);
 	assert_int_equal(seen.branch[2].left_ms, 0);
@@ -335,9 +337,9 @@ static void a_fork_before_the_parents_start_finds_the_owner(void **state)
 static void a_long_log_is_read_in_pieces_and_whole(void **state)
 {
 	cau_store *store = open_with_knee(state);
-	log_ticks(store, 0, 0, 1537); // six pieces and one entry more
+	log_ticks(store, 0, 0, 1537); // the log has six pieces and one entry more
 	expect_log(store, 0, 0, 1000000, 1537);
-	expect_log(store, 0, 256, 768, 512); // exactly two pieces
+	expect_log(store, 0, 256, 768, 512); // these ticks are exactly two pieces
 	assert_int_equal(cau_store_read_log(store, "knee", 5, 0, 10, NULL, NULL, NULL), CAU_NOT_FOUND);
 	assert_int_equal(cau_store_read_log(store, "hip", 0, 0, 10, NULL, NULL, NULL), CAU_NOT_FOUND);
 	cau_store_close(store);
@@ -471,7 +473,7 @@ static void a_branch_sees_the_events_of_its_line(void **state)
 	put_events(store, 0, 1, 5);
 	put_branch(store, 1, 0, 3);
 	put_events(store, 1, 3, 4);
-	put_branch(store, 2, 1, 2); // its parent is branch 0, which owns that tick
+	put_branch(store, 2, 1, 2); // the parent becomes branch 0, which owns that tick
 	put_events(store, 2, 7, 7);
 	const char *whole = "5:0:cut:a 4:0:cut:a 3:0:cut:a 2:0:cut:a 1:0:cut:a ";
 	expect_timeline(store, 0, 0, UINT64_MAX, 99, whole);

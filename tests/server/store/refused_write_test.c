@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes that the system refuses for another reason than a full disk: a limit on file size, which
-// the process sets for itself and removes again. Also a file that is damaged under a running store.
+// Tests writes that the system refuses for another reason than a full disk: a limit on file size,
+// which the process sets for itself and removes again. Also tests a file that is damaged under a
+// running store.
 #include "store_fixture.h"
 
 #include <fcntl.h>
@@ -48,7 +49,8 @@ static void count_status(void *user, cau_status status, const char *reason)
 static void a_refused_write_fails_what_waits_and_recovers(void **state)
 {
 	struct fixture *fixture = *state;
-	static const double patience_s = 20.0; // the recovery takes a few of the 10 ms between attempts
+	// longest wait for a recovery, s; a recovery takes a few of the 10 ms between attempts
+	static const double patience_s = 20.0;
 	struct tally tally = {0};
 	cau_store_health health;
 	uint64_t ticks[64];
@@ -58,7 +60,7 @@ static void a_refused_write_fails_what_waits_and_recovers(void **state)
 	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
 	assert_int_equal(write_batch(store, checkpoint_batch(1), NULL), CAU_OK);
 
-	limit_files(150000); // less than one snapshot, even when the log is empty
+	limit_files(150000); // this is less than one snapshot, even when the log is empty
 	int accepted = 0;
 	for (uint64_t tick = 2; tick < 12; tick++) {
 		cau_store_batch *batch = checkpoint_batch(tick);
@@ -137,6 +139,7 @@ int main(void)
 		TEST(a_refused_write_fails_what_waits_and_recovers),
 		TEST(damage_found_while_running_is_final),
 	};
-	signal(SIGXFSZ, SIG_IGN); // so that the write returns EFBIG instead
+	// a write beyond the limit then returns EFBIG, and no signal ends the process
+	signal(SIGXFSZ, SIG_IGN);
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What retention removes by age: left branches, answers, events, and the records of a deleted
+// Tests what retention removes by age: left branches, answers, events, and the records of a deleted
 // session.
 #include "retention_fixture.h"
 
@@ -26,11 +26,12 @@ static void a_left_branch_goes_after_its_time_and_no_sooner(void **state)
 
 	retention_clock_ms = RETENTION_START_MS + 24 * RETENTION_HOUR_MS;
 	store = retention_retire(fixture, store, &removal);
-	// the commands from tick 400 on, and the checkpoint at 900
+	// the removed rows are the commands from tick 400 on, and the checkpoint at 900
 	assert_int_equal(removal.rows, 600 + 1);
 	assert_true(removal.most <= 256);
 	assert_int_equal(retention_count_log(store, 0), 400);
-	assert_int_equal(retention_count_log(store, 1), 500); // complete: the shared past stayed
+	// the log is complete, because the shared past stayed
+	assert_int_equal(retention_count_log(store, 1), 500);
 	assert_int_equal(retention_newest_checkpoint(store, 1, 450), 400);
 	assert_int_equal(retention_newest_checkpoint(store, 0, 1000), 400);
 	assert_int_equal(retention_count_branches(store), 2);
@@ -85,9 +86,10 @@ static void old_answers_and_events_go(void **state)
 		retention_clock_ms += 20 * RETENTION_HOUR_MS;
 	}
 	store =
-		retention_retire(fixture, store, &removal); // 40 h after the first, 20 h after the second
+		// the clock is 40 h after the first answer, 20 h after the second
+		retention_retire(fixture, store, &removal);
 	assert_int_equal(cau_store_read_answer(store, "c", 0, ignore_answer, NULL, NULL),
-	                 CAU_ALREADY_EXISTS); // forgotten: a resend must not act again
+	                 CAU_ALREADY_EXISTS); // the answer is forgotten: a resend must not act again
 	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL), CAU_OK);
 	assert_int_equal(cau_store_read_answer(store, "c", 2, ignore_answer, NULL, NULL),
 	                 CAU_NOT_FOUND);
@@ -119,7 +121,8 @@ static void old_answers_and_events_go(void **state)
 static void the_thread_removes_a_deleted_session(void **state)
 {
 	struct fixture *fixture = *state;
-	static const double patience_s = 20.0; // the removal takes some milliseconds
+	// longest wait for the removal, s, which takes some milliseconds
+	static const double patience_s = 20.0;
 	cau_store_metrics metrics;
 	cau_store_close(retention_open(fixture));
 	fixture->config.retention_interval_ms = 1;
@@ -138,7 +141,8 @@ static void the_thread_removes_a_deleted_session(void **state)
 		assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
 		cau_store_get_metrics(store, &metrics);
 		assert_true(cau_store_monotonic_s() < end_s);
-	} while (metrics.retired_rows < 700 + 1 + 1 + 1); // log, checkpoint, branch, session
+		// rows of the log, of the checkpoint, the branch and the session
+	} while (metrics.retired_rows < 700 + 1 + 1 + 1);
 	cau_store_close(store);
 }
 

@@ -78,7 +78,7 @@ int retention_count_log(cau_store *store, int64_t branch)
 	static uint64_t ticks[5000];
 	int count = read_ticks(store, "knee", branch, 0, 100000, ticks, 5000);
 	for (int i = 0; i < count; i++)
-		assert_int_equal(ticks[i], i); // complete from the start
+		assert_int_equal(ticks[i], i); // the log is complete from the start
 	return count;
 }
 

@@ -23,7 +23,7 @@ cau_store *retention_retire(struct fixture *fixture, cau_store *store, struct re
 
 // Logs a command at each tick from `from` on, before `before`.
 void retention_log(cau_store *store, int64_t branch, uint64_t from, uint64_t before);
-// with a snapshot of 100 kB
+// Adds a checkpoint with a snapshot of 100 kB.
 void retention_put_checkpoint(cau_store *store, int64_t branch, uint64_t tick);
 cau_status retention_open_branch(cau_store *store, int64_t branch, int64_t parent,
                                  uint64_t fork_tick);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The present line of a big session: checkpoints are thinned and the oldest log is removed, in
-// small steps. Everything that a replay of the rest needs stays, and so do marked states.
+// Tests retention of the present line of a big session: checkpoints are thinned and the oldest log
+// is removed, in small steps. Everything that a replay of the rest needs stays, and so do marked
+// states.
 #include "retention_fixture.h"
 
 #include <sqlite3.h>
@@ -45,7 +46,8 @@ static void a_big_session_loses_left_branches_first(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
-	fixture->config.retention_bytes = 900000; // eight checkpoints of this test, and some log
+	// limit of a session's bytes: eight checkpoints of this test, and some log
+	fixture->config.retention_bytes = 900000;
 	cau_store *store = retention_open(fixture);
 	retention_log(store, 0, 0, 60);
 	for (uint64_t tick = 0; tick < 6; tick++)
@@ -54,7 +56,8 @@ static void a_big_session_loses_left_branches_first(void **state)
 	for (uint64_t tick = 3; tick < 7; tick++)
 		retention_put_checkpoint(store, 1, 1000 * tick);
 	store = retention_retire(fixture, store, &removal);
-	assert_int_equal(removal.rows, 2); // the removal of 5000 and 4000 of the left branch was enough
+	// removing the left branch's checkpoints at 5000 and 4000 was enough
+	assert_int_equal(removal.rows, 2);
 	assert_int_equal(retention_newest_checkpoint(store, 0, 10000), 3000);
 	assert_int_equal(retention_newest_checkpoint(store, 1, 2999), 2000);
 	assert_int_equal(retention_newest_checkpoint(store, 1, 10000), 6000);
@@ -121,8 +124,8 @@ static void put_mark(cau_store *store, int64_t branch, uint64_t tick)
 	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
 }
 
-// One marked state has a checkpoint of its own; another is reached by the log, on a branch that was
-// left long ago.
+// One marked state has a checkpoint of its own. Another marked state is reached by the log, on a
+// branch that was left long ago.
 static void marked_states_and_their_events_stay(void **state)
 {
 	struct fixture *fixture = *state;
@@ -218,8 +221,8 @@ static void what_could_not_be_stored_is_a_gap(void **state)
 	cau_store_close(store);
 }
 
-// Sixty hours without commands: the daemon then makes one checkpoint in 256 checkpoint_s, here
-// every 153,600 ticks. README.md states the bounds.
+// Sixty hours without commands, with one checkpoint every 153,600 ticks. server/README.md states
+// the bounds on the number of checkpoints.
 static void an_untouched_weekend_is_small(void **state)
 {
 	static const uint64_t cadence = 153600, end = 60ull * 3600 * 60;
@@ -245,7 +248,7 @@ static void an_untouched_weekend_is_small(void **state)
 	print_message("%d checkpoints of %d written, %d pages\n", (int)count, (int)(end / cadence) + 1,
 	              (int)pages);
 	assert_in_range(count, 3, 40);
-	// checkpoints have 100 kB each: freed pages were used again
+	// at most the bytes of 41 checkpoints of 100 kB, because freed pages were used again
 	assert_in_range(pages * 4096, 1, 41 * 105000);
 	sqlite3_close(database);
 	cau_store_close(store);
@@ -265,7 +268,7 @@ static void read_count(sqlite3 *database, int session, int64_t *counted, int64_t
 	assert_int_equal(cau_store_integer(database, sql, logged, NULL), CAU_OK);
 }
 
-// Writes `ticks` ticks of each session's log. After every third one comes a batch that fails. The
+// Writes `ticks` ticks of each session's log. After every third tick comes a batch that fails. The
 // first record of that batch is rolled back, and must not be counted.
 static void write_logs(cau_store *store, int sessions, uint64_t ticks)
 {
@@ -285,7 +288,7 @@ static void write_logs(cau_store *store, int sessions, uint64_t ticks)
 // Runs with one session, and with more sessions than there are slots for uncounted bytes.
 static void a_log_is_counted_but_for_its_newest_page(void **state)
 {
-	enum { MANY = 20, TICKS = 60 }; // each tick has 72 bytes
+	enum { MANY = 20, TICKS = 60 }; // enough sessions to exceed the slots; each tick has 72 bytes
 	for (int sessions = 1; sessions <= MANY; sessions += MANY - 1) {
 		struct fixture *fixture = *state;
 		char id[16];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces of a moving session: what is written is read again, and bytes that are no piece are
+// Tests pieces of a moving session: what is written is read again, and bytes that are no piece are
 // refused, wherever they end and whatever they contain.
 #include "store_fixture.h"
 
@@ -68,7 +68,7 @@ static void one_that_ends_too_soon_is_refused(void **state)
 	int whole = 0;
 	for (size_t count = 0; count <= piece.byte_count; count++)
 		whole += check_copy(piece.bytes, count) == CAU_OK;
-	assert_int_equal(whole, 4); // complete pieces: the head alone, and the piece after each row
+	assert_int_equal(whole, 4); // complete pieces are the head alone, and the piece after each row
 	free(piece.bytes);
 }
 
