@@ -12,7 +12,7 @@ enum {
 	TOOL_FORCE_BYTES = 28,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
 	STATISTICS_RECORD_BYTES = 112,
-	// size without the members after refused_commands, as the first servers sent it
+	// smallest size of the record: the first servers sent no member after `refused_commands`
 	STATISTICS_LEAST_BYTES = 88,
 };
 

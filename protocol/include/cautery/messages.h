@@ -58,7 +58,7 @@ typedef struct cau_wire_list {
 	CAU_NEED_##need(field) cau_wire_list field;
 #define INTEGERS(o, field, need, count_max, least, most, unit, meaning)                            \
 	CAU_NEED_##need(field) cau_wire_list field;
-// Borrowed. Readers fill the scene, or skip the member if it is NULL.
+// The scene is borrowed. Readers fill it, or skip the member if the pointer is NULL.
 #define SCENE(o, field, need, meaning) CAU_NEED_##need(field) cau_scene_def *field;
 #include "cautery/messages.def"
 #undef CAU_NEED_R

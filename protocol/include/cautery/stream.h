@@ -32,9 +32,9 @@ extern "C" {
 #endif
 
 enum {
-	CAU_STREAM_PROFILES_MAX = 4,       // profiles of one session
+	CAU_STREAM_PROFILES_MAX = 4,       // largest number of profiles of a session
 	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // largest number of vertices or faces
-	CAU_STREAM_STAGES = 8,             // stages of a step, see CAU_STAGE_TABLE in the README
+	CAU_STREAM_STAGES = 8, // number of stages of a step, see CAU_STAGE_TABLE in the README
 };
 
 // Flags in a frame's header.
@@ -69,9 +69,10 @@ typedef struct cau_channel_info {
 	const char *name; // name in messages
 	int section;      // section number in frames
 	bool by_default;  // included if a client names no channels
-	// CAU_SCALAR_*, or -1 for a channel with its own layout, without the members below
+	// CAU_SCALAR_*, or -1 for a channel with its own layout, which does not use the members below
 	int scalar;
-	// in `unit`: a transmitted n means least + step * n; if step is 0, the stream definition has it
+	// a transmitted number n means the value least + step * n, in `unit`; if `step` is 0, the
+	// stream definition has the step
 	double least, step;
 	uint32_t most;              // the largest n
 	const char *unit, *meaning; // unit and description for people
@@ -149,7 +150,8 @@ typedef struct cau_stream_sample {
 	uint64_t published_us;  // time on the server's monotonic clock
 	uint16_t flags;         // CAU_FRAME_*
 	const double *position; // m, (vertex_count x 3)
-	// (vertex_count), 1 for a vertex of a drawn face; NULL if all are
+	// (vertex_count), 1 for a vertex of a drawn face, else 0; NULL if all vertices are of drawn
+	// faces
 	const uint8_t *vertex_visible;
 	const uint32_t *face_mask;               // ((face_count + 31) / 32), a set bit means not drawn
 	CAU_SCALAR_MEMBERS(const float);         // (vertex_count) each, in the channel's unit
