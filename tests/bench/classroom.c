@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A class: many sessions of one scene in real time, a few of them driven, on a few workers. There
-// is no daemon. So this is the largest number of sessions if only steps took time.
+// Measures a class: many sessions of one scene in real time, a few of them driven, on a few
+// workers. There is no daemon, so only steps take time. A daemon can serve this number of sessions
+// at most.
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>

@@ -12,7 +12,8 @@
 
 enum {
 	CONVERGED_ITERATIONS = 1000,
-	// the diagonal solver takes hundreds of iterations to halve the error
+	// Iterations of a converged step of the diagonal solver, which takes hundreds of iterations to
+	// halve the error.
 	CONVERGED_DIAGONAL = 10000,
 	SAMPLES = 10,
 	MOST_SAMPLES = 64

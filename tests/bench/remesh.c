@@ -17,10 +17,11 @@
 #include "session/session_internal.h"
 
 enum { MOST_CORNERS = 4, VERTEX_BYTES = 12, INDEX_BYTES = 4, GROWTH = 4 };
-// A vertex is in the plane if it is within this share of its element's longest edge.
+// Largest distance from the plane at which a vertex is in the plane, as a share of the longest edge
+// of its element.
 static const double NEAR_PLANE = 0.05;
-// An element is ill-shaped if its area or volume is below this share of that of a regular element
-// with the same longest edge.
+// Least area or volume of a well-shaped element, as a share of the area or volume of a regular
+// element with the same longest edge.
 static const double ILL_SHAPED = 0.05;
 
 typedef struct remesh {

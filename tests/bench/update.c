@@ -14,7 +14,7 @@
 #include "bench/bench.h"
 #include "session/session_internal.h"
 
-enum { ROUNDS = 5 }; // each time is the smallest of these rounds
+enum { ROUNDS = 5 }; // number of rounds; each result is the smallest time of these rounds
 
 typedef struct ranked {
 	double distance_m;
