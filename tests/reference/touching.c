@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// share of the radius; points within this distance may come to push
+// Largest distance from the ball at which a point may come to push, as a share of the ball's
+// radius.
 static const double near = 0.01;
 
 static double dot(const double a[3], const double b[3])
