@@ -7,11 +7,12 @@
 
 enum { UPPER, LOWER, JAWS };
 enum { ITERATIONS = 200 };
-static const double reach_m = 5e-3; // range of the current around the electrodes
+static const double reach_m = 5e-3; // range of the current around the electrodes, m
 static const double residual_most = 1e-5;
 static const double spark_v = 200;
 
-// Loss of collagen's birefringence, as in core/vessel/vessels.c (Maitland and Walsh 1997).
+// Rate of collagen's fusion, measured by the loss of birefringence (Maitland and Walsh 1997). The
+// values are those of core/vessel/vessels.c: log of the rate, and activation energy.
 static const double fusion_log_rate = 130, fusion_energy_j_mol = 89 * 4184.0;
 static const double gas_j_molk = 8.314462618, zero_k = 273.15;
 
@@ -91,7 +92,8 @@ static void touch(section_state *section, int32_t x, int32_t z, int jaw)
 	cau_bioheat *bioheat = &section->cells.bioheat;
 	cau_current *current = &section->cells.current;
 	int32_t cell = find(section, x, z);
-	double over = 2 * bioheat->cells.side_m; // area of a cell's side over half a cell
+	// Area of a cell's side over half the length of a cell, m.
+	double over = 2 * bioheat->cells.side_m;
 	bioheat->contact[bioheat->contact_count++] =
 		(cau_contact_cell){.blade = jaw, .cell = cell, .over_length_m = over};
 	current->electrode[current->electrode_count++] = (cau_electrode_cell){
