@@ -7,7 +7,8 @@
 #include "load/samples.h"
 
 enum {
-	LOAD_OPEN_COMMANDS = 256, // commands that are sent and not yet shown by a frame
+	// largest number of commands that are sent and not yet shown by a frame
+	LOAD_OPEN_COMMANDS = 256,
 	LOAD_ACKNOWLEDGED_MAX = 65536,
 };
 

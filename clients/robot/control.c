@@ -7,9 +7,9 @@
 #include <string.h>
 #include <time.h>
 
-#define LEAST_APPROACH_S 0.2 // minimum time, so that the server sees energy off first
+#define LEAST_APPROACH_S 0.2 // least time of the approach, so that the server first sees energy off
 #define ANSWER_S 1.0         // timeout for becoming the driver, or for energy to turn on
-// speed along the shaft, away from the tissue if the force is too high, and later back
+// Speed along the shaft: away from the tissue if the force is too high, and later back.
 #define BACK_OFF_M_S 0.02
 #define BACK_OFF_MOST_M 0.03
 

@@ -228,7 +228,7 @@ struct cau_client_stream {
 	cau_topology_arrays topology;            // faces and rest shape
 	bool has_topology;                       // a topology frame was received
 	bool ended;                              // the client left, or the session ended
-	uint64_t frames, key_frames, bytes;      // received
+	uint64_t frames, key_frames, bytes;      // numbers of received frames, key frames and bytes
 	uint64_t gaps;                           // number of breaks in the chain of deltas
 	uint64_t skipped;                        // frames that do not follow the present state
 	uint64_t damaged;                        // frames that could not be decoded

@@ -36,8 +36,8 @@
 extern "C" {
 #endif
 
-#define CAU_HAPTICS_SLEW_N_S 300.0 // newtons per second: 0.3 N in a millisecond
-#define CAU_HAPTICS_SILENCE_S 0.1  // seconds without a record after which the force is 0
+#define CAU_HAPTICS_SLEW_N_S 300.0 // largest change of the force, N/s: 0.3 N in a millisecond
+#define CAU_HAPTICS_SILENCE_S 0.1  // time from the last record until the force is 0, s
 
 typedef struct cau_haptics cau_haptics; // renderer for one device that drives one tool; opaque
 

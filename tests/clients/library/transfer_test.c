@@ -4,7 +4,7 @@
 #include "cautery/sha256.h"
 #include "clients/library/fixture.h"
 
-// The file has several chunks, because the script sends chunks of 100,000 bytes.
+// The file has several chunks, because the script uses chunks of 100,000 bytes.
 enum { FILE_BYTES = 700000, TRANSFER = 12 };
 
 typedef struct filing {
