@@ -4,7 +4,8 @@
 
 #include "cautery/frame_codec.h"
 
-// Writes CAU_FRAME_HEADER_BYTES. The version is always CAU_FRAME_VERSION, not that of *header.
+// Writes a header of CAU_FRAME_HEADER_BYTES. The written version is always CAU_FRAME_VERSION,
+// whatever header->version is.
 void cau_frame_header_write(uint8_t *out, const cau_frame_header *header);
 
 // Writes a section's head; `payload_bytes` is a multiple of 4.

@@ -99,10 +99,10 @@ typedef enum cau_method {
 
 // Who sends a method, and whether it is answered.
 typedef enum cau_method_form {
-	CAU_FORM_REQUEST,    // from the client, with an id, always answered
-	CAU_FORM_EITHER_WAY, // from the client, answered if it has an id
-	CAU_FORM_NOTICE,     // from the client, never answered
-	CAU_FORM_PUSH,       // from the server, never answered
+	CAU_FORM_REQUEST,    // sent by the client with an id, always answered
+	CAU_FORM_EITHER_WAY, // sent by the client, answered if it has an id
+	CAU_FORM_NOTICE,     // sent by the client, never answered
+	CAU_FORM_PUSH,       // sent by the server, never answered
 } cau_method_form;
 
 // Whether a request counts against the quotas of expensive requests.

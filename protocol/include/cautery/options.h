@@ -53,7 +53,7 @@ typedef enum cau_option_kind {
 
 // One option of a program.
 typedef struct cau_option {
-	const char *name;           // without the dashes
+	const char *name;           // the option's name without the dashes
 	const char *argument;       // name of the value in --help; NULL if the option takes no value
 	cau_option_kind kind;       // kind of the value
 	size_t member;              // offset of the member that gets the value
