@@ -23,7 +23,7 @@ enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 12 };
 typedef struct cli cli;
 
 typedef struct cli_option {
-	const char *name;     // without the dashes; NULL marks the end of a table
+	const char *name;     // the option's name without the dashes; NULL marks the end of a table
 	const char *argument; // name of the option's value in --help; NULL for a flag
 	const char *meaning;
 } cli_option;
@@ -69,7 +69,7 @@ struct cli {
 
 // Reads the command line. Reports a mistake on c->complaints and returns false.
 bool cli_read(cli *c, int argument_count, char **arguments);
-// Reads the words of the command line as cli_read does, but accepts an incomplete one.
+// Reads the words of the command line as cli_read does, but accepts an incomplete command line.
 bool cli_read_words(cli *c, int argument_count, char **arguments);
 // Returns the number of common options, including the all-zero entry at the end.
 int cli_common_options(const cli_option **options);

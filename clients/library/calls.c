@@ -17,7 +17,7 @@ typedef struct writing { // the content of one message
 	int64_t id;          // negative for a notification
 	cau_method method;
 	const void *params;
-	const cau_rpc_envelope *envelope; // only for a command
+	const cau_rpc_envelope *envelope; // session and sequence of a command, or NULL
 	const cau_command *command;       // NULL if it is not a command
 } writing;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asks which daemons are behind an address, with one GET of /api/fleet. The proxy in front of
-// several daemons answers with their labels. A single daemon answers that it is alone; an older one
-// answers 404. The request has no token.
+// several daemons answers with their labels. A single daemon answers that it is alone; an older
+// daemon answers 404. The request has no token.
 #include <stdlib.h>
 #include <string.h>
 
