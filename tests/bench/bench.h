@@ -107,8 +107,8 @@ typedef struct bench_classroom_result {
 	int32_t elements_removed;     // elements that all tools removed
 } bench_classroom_result;
 int bench_classroom(const bench_options *options, bench_classroom_result *result);
-// steps.c: the tools of plain steps. One is above the tissue with energy on, the other pressed into
-// the tissue.
+// steps.c: places the tools of plain steps. One tool is above the tissue with energy on, the other
+// tool is pressed into the tissue.
 void bench_place_tools(cau_session *session);
 
 // limit.c: the time of a step if it only had to move its bytes through one core.

@@ -150,7 +150,8 @@ static double proportional_bytes(void)
 	return 1024 * kib;
 }
 
-// Creates a session. The first one settles; the others start from its state.
+// Creates a session. If `first` is NULL, the session steps until its tissue has settled. Else the
+// session starts from the state of `first`.
 static cau_session *seat(const cau_scene_def *scene, const cau_session *first)
 {
 	cau_session_def def = cau_default_session_def();

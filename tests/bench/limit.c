@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time of a step if only its bytes mattered: the bytes that K iterations read and write, each
-// array once a pass, over the rate at which one core reads a block of this size repeatedly. So the
-// block comes from the cache that would hold it.
+// Computes the time of a step if only the transfer of bytes took time. The bytes are those that K
+// iterations read and write, with each array once a pass. They are divided by the rate at which one
+// core reads a block of the size of one iteration repeatedly. So the block comes from the cache
+// that would hold this iteration's arrays.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Describes the machine of a measurement and the other load on it. Otherwise results of two
-// machines, or of a busy and an idle machine, could be compared by mistake.
+// Describes the machine of a measurement and the other load on this machine. Without the
+// description, results of two machines, or of a busy and an idle machine, could be compared by
+// mistake.
 #pragma once
 
 #include <stdio.h>

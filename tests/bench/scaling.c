@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Step time over the number of elements. The slab grows in its plane from its own size to eight
-// times as many cells. The exponent is fitted to the logarithms by least squares. The time of a
-// size is the smallest median of several runs.
+// Measures the step time over the number of elements. The slab grows in its plane from its own size
+// to eight times as many cells. The exponent is fitted to the logarithms by least squares. The time
+// of a size is the smallest median of several runs.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
