@@ -88,7 +88,7 @@ static void deformation(const double *position, const int32_t v[4], double shape
 // The deformation gradient F, and the coefficients (Pa) of dP, the change of stress.
 typedef struct tangent {
 	bool stvk;
-	double plain, outer, volume, bulge; // for stvk, mu is `plain` and lambda is `volume`
+	double plain, outer, volume, bulge; // for stvk, `plain` is mu and `volume` is lambda
 	double f[3][3], cofactor[3][3];
 	double second[3][3]; // second Piola-Kirchhoff stress, for stvk
 } tangent;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A body of linear tetrahedra, stable neo-Hookean or StVK, with a rigid ball pressed into it. The
 // static equilibrium is found by Newton's method with the exact Hessian and an active set, in
-// double. It is an oracle that is independent of core: energy, system, contact and convergence are
-// its own.
+// double. This solver is an oracle that shares nothing with core: energy, system, contact and
+// convergence are computed here.
 #pragma once
 
 #include <stdbool.h>
