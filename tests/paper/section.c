@@ -245,7 +245,7 @@ static double deepest_mm(const section_state *section)
 	return deepest * section->def->cell_mm;
 }
 
-// Returns the fusion of the seal. It is that of the coldest part of the wall, at the best place
+// Returns the fusion of the seal: the fusion of the coldest part of the wall, at the best place
 // along the jaws (core/vessel/vessels.c).
 static double best_fusion(const section_state *section)
 {
