@@ -39,7 +39,7 @@ static const cau_instrument_mode *mode_of(const cau_instrument *instrument, cons
 }
 
 // Checks the peaks and crest factors of all profiles. The mean voltage of a mode is at most that of
-// cut. A mode that must not spark stays below 200 V.
+// the mode `cut`. A mode that must not spark stays below 200 V.
 static void every_profile_is_read(void **state)
 {
 	(void)state;

@@ -39,8 +39,8 @@ typedef struct figures {
 	double encode_us, decode_us; // mean time of a frame
 } figures;
 
-// Counts vertices that moved by a step or more. Frames also carry a few other vertices between
-// them.
+// Counts vertices that moved by a step or more. Frames also carry a few vertices between the moved
+// vertices.
 static int32_t count_moved(const cau_frame_decoder *decoder, const int32_t *before, int32_t count)
 {
 	const int32_t *now = cau_frame_decoder_state(decoder)->quantised;

@@ -169,7 +169,8 @@ static void test_hostile_topology_is_refused(void **unused)
 	free_fixture(of);
 }
 
-// With a known frame, other profile, epoch and step, the bytes are the same as without it.
+// With a known frame of another profile, epoch and step, the encoder writes the same bytes as
+// without a known frame.
 static void test_a_known_frame_is_used(void **unused)
 {
 	(void)unused;
