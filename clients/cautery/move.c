@@ -148,7 +148,7 @@ static cli_exit forget(courier *m, const char *release)
 }
 
 // Asks the source about the outcome of the move. Passes the outcome to the target if the target
-// knows the move. *moved: the session now belongs to the target.
+// knows the move. *moved is true if the session now belongs to the target.
 static cli_exit settle(courier *m, bool known_there, bool *moved)
 {
 	cau_wire_move_decision decision = {0};

@@ -74,7 +74,7 @@ static bool heed_force(control *c, double period_s)
 	return !high;
 }
 
-// Returns the pose of this period. *energy: energy is wanted in this period.
+// Returns the pose of this period. *energy is true if energy is wanted in this period.
 static robot_pose next_pose(control *c, double now_s, double period_s, bool *energy)
 {
 	robot_pose start = robot_trajectory_at(c->trajectory, 0);

@@ -52,8 +52,8 @@ static void open_cut(cut_state *cut, const cut_def *def, cau_bioheat_material ti
 	                         .cooling_w_k = def->upper_w_k / HALVES};
 }
 
-// Finds the cells that sparks reach, and among them the cells that metal touches. All cells that an
-// arc reaches share its spot.
+// Finds the cells that sparks reach, and among these cells those that the metal touches. All cells
+// that an arc reaches share the arc's spot.
 static void find_contacts(cut_state *cut, double at_m)
 {
 	cau_bioheat *bioheat = &cut->cells.bioheat;

@@ -42,9 +42,9 @@
 	X(pause_open)   /* 1: the jaws are open in the pause */                                        \
 	X(hold_s)       /* time that the jaws stay closed after energy */                              \
 	X(cool_s)       /* time that the jaws are open after hold_s */                                 \
-	X(parted_water) /* share of water: energy ends when no cell between the jaws has more */       \
+	X(parted_water) /* share of water: energy ends when no cell between the jaws has more water */ \
 	X(reaction_s)   /* time from the moment of parted_water to the end of energy */                \
-	X(rise)         /* energy ends when the load is this multiple of its least value */
+	X(rise)         /* load at which energy ends, as a multiple of its least value */
 
 #define MEASURED_NUMBER(name) double name;
 
@@ -93,7 +93,7 @@ section_found section_run(const section_def *def, cau_bioheat_material tissue);
 	X(crest)                                                                                       \
 	X(upper_j_k)                                                                                   \
 	X(upper_w_k)                                                                                   \
-	X(parted_water) /* share of water: a cell that sparks reach parts when it has no more */       \
+	X(parted_water) /* share of water at which a cell that sparks reach parts */                   \
 	X(cool_s)
 
 typedef struct cut_def {

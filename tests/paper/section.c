@@ -218,8 +218,8 @@ static void cool(section_state *section)
 	}
 }
 
-// Returns the time until the blade has cooled to to_c. The blade is in gas, so T - gas falls with
-// exp(-cooling t / capacity).
+// Returns the time until the blade has cooled to to_c. The blade is in gas, so its temperature
+// above that of the gas falls with exp(-cooling t / capacity).
 static double seconds_to(const section_state *section, double to_c)
 {
 	const cau_blade *blade = &section->blade[UPPER];

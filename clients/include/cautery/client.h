@@ -80,7 +80,7 @@ typedef enum cau_client_condition {
 
 // A received frame, after decoding.
 typedef struct cau_client_frame {
-	cau_frame_header header; // header as decoded
+	cau_frame_header header; // header of the frame
 	const void *bytes;       // borrowed for the duration of the call
 	size_t byte_count;       // size of `bytes`
 	cau_status status; // result of decoding: CAU_BAD_STATE means skipped, CAU_CORRUPT means damaged

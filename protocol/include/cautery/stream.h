@@ -97,12 +97,13 @@ typedef struct cau_stream_tool {
 	double torque_nm[3];       // about the tip, filtered, force_max_n * tip_length_m at most
 	// false if the sender does not send the next three members, which are 0 then
 	bool has_raw_force;
-	double raw_force_n[3];     // force of the frame's tick, without filter and bound
-	double raw_torque_nm[3];   // torque of the frame's tick, without filter and bound
-	double force_filter_s;     // time constant of the filter, or 0 without a filter
-	double tip_temperature_c;  // temperature of the hot part
-	double energy_j;           // estimate of the heat that tissue took up
-	double delivered_w;        // power delivered to tissue in the last step, with energy `tissue`
+	double raw_force_n[3];    // force of the frame's tick, without filter and bound
+	double raw_torque_nm[3];  // torque of the frame's tick, without filter and bound
+	double force_filter_s;    // time constant of the filter, or 0 without a filter
+	double tip_temperature_c; // temperature of the hot part
+	double energy_j;          // estimate of the heat that tissue took up
+	// power delivered to tissue in the last step, for a tool with energy `tissue`
+	double delivered_w;
 	double load_ohm;           // load of the tool's generator, or 0 without current
 	uint64_t sequence;         // sequence of the last applied command
 	uint32_t driver;           // the driving client's number, or 0 without a driver
@@ -111,8 +112,8 @@ typedef struct cau_stream_tool {
 	bool slipping;             // some of the grasped tissue slid in the last step
 	bool frozen;               // the watchdog fired: the tool stays at its pose until a new command
 	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
-	uint16_t grasped_vertices; // saturates at the largest number
-	uint16_t contact_vertices; // saturates at the largest number
+	uint16_t grasped_vertices; // number of grasped vertices, 65535 at most
+	uint16_t contact_vertices; // number of vertices in contact, 65535 at most
 	uint16_t touched_layers;   // one bit per layer
 } cau_stream_tool;
 
