@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `tool_contact`. README.md in protocol/ has the layout.
+// Writes and reads the section of the channel `tool_contact` in frames. README.md in protocol/ has
+// the layout.
 #include "wire/contact_records.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers of frames, and heads of sections.
+// Writes the headers of frames and the heads of sections, and iterates over the sections of a
+// frame.
 #pragma once
 
 #include "cautery/frame_codec.h"

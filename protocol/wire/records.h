@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections of frames that consist of records: tool names, tools and statistics.
+// Writes and reads the sections of frames that consist of records: tool names, tools and
+// statistics.
 #pragma once
 
 #include "cautery/stream.h"

@@ -19,9 +19,11 @@ static const double gas_j_molk = 8.314462618, zero_k = 273.15;
 typedef struct section_state {
 	const section_def *def;
 	measured_cells cells;
-	int32_t across, inside, outside, beside; // numbers of cells: half of a jaw's width, and tissue
-	int32_t below;                           // index of the lowest layer between the jaws
-	double share;                            // share of all power and metal that the half slice has
+	// numbers of cells: half of a jaw's width, tissue's thickness between and beside the jaws, and
+	// the width of the tissue beside the jaws
+	int32_t across, inside, outside, beside;
+	int32_t below; // index of the lowest layer between the jaws
+	double share;  // share of all power and metal that the half slice has
 	cau_blade blade[JAWS];
 	double *fusion; // (cells) damage of collagen
 	double least_ohm;

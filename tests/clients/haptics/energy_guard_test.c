@@ -43,7 +43,7 @@ static void the_worst_push_gets_the_reserve_at_most(void **state)
 				energy_guard_account(&guard, place);
 				most = fmax(most, guard.given_j);
 				energy_guard_bound(&guard, velocity, force);
-				// first the hand holds the device, then it pushes
+				// The hand first holds the device against the force, and then pushes it.
 				double push = step < wait ? -force[0] : def.hand_n;
 				double a = (force[0] + push) / def.mass_kg;
 				place[0] += velocity[0] * def.period_s + a * def.period_s * def.period_s / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connecting, calling, losing the connection and reconnecting.
+// Tests connecting, calling, losing the connection and reconnecting.
 #include "clients/library/fixture.h"
 
 // ---- hello -------------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joining streams, gaps, damaged frames, and joining again.
+// Tests joining streams, gaps in streams, damaged frames, and joining again.
 #include "clients/library/fixture.h"
 
 typedef struct streaming {

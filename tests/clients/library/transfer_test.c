@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Uploads and downloads of files.
+// Tests uploads and downloads of files.
 #include "cautery/chunk_codec.h"
 #include "cautery/sha256.h"
 #include "clients/library/fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profiles of instruments, and scenes and commands with tools that name an instrument.
+// Tests profiles of instruments, and scenes and commands with tools that name an instrument.
 #include "json/instrument.h"
 
 #include <math.h>

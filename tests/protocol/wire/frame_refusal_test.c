@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors of encoder and decoder, and their states afterwards.
+// Tests the errors of encoder and decoder, and their states after an error.
 #include "cautery/frame_codec.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size and cost of a stream with the default channels, for a grid of 3,136 vertices like the
-// fascia.
+// Measures the size and cost of a stream with the default channels, for a grid of 3,136 vertices
+// like the fascia.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
