@@ -137,7 +137,7 @@ static cli_exit read_token(cli *c, const char *file, cli_daemon *daemon)
 	return cau_client_read_token(file, daemon->token, &c->error) ? cli_fail_file(c) : CLI_DONE;
 }
 
-// Chooses the daemon's only session, for a command line that names none.
+// Chooses the daemon's only session, for a command line that names no session.
 static cli_exit only_session(cli *c)
 {
 	cli_exit code = CLI_DONE;
@@ -174,7 +174,7 @@ static cli_exit choose_session(cli *c)
 }
 
 // Returns the URL of the daemon. --url comes first, then --context, then CAUTERYD_URL, then the
-// current context. The caller leaves `context` empty unless it applies.
+// current context. The caller leaves `context` empty unless the context applies.
 static const char *choose_url(const cli *c, const cli_context *context)
 {
 	const char *url = getenv("CAUTERYD_URL");

@@ -23,8 +23,8 @@ enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 12 };
 typedef struct cli cli;
 
 typedef struct cli_option {
-	const char *name;     // without the dashes; NULL marks the end of a table
-	const char *argument; // its name in --help; NULL for a flag
+	const char *name;     // the option's name without the dashes; NULL marks the end of a table
+	const char *argument; // name of the option's value in --help; NULL for a flag
 	const char *meaning;
 } cli_option;
 
@@ -41,8 +41,8 @@ typedef struct cli_command {
 	cli_exit (*run)(cli *c);
 } cli_command;
 
-static const double cli_tick_max =
-	9007199254740991.0; // largest tick that a message can carry: 2^53 - 1
+// Largest tick that a message can carry: 2^53 - 1.
+static const double cli_tick_max = 9007199254740991.0;
 
 struct cli {
 	FILE *out, *complaints;
@@ -54,28 +54,30 @@ struct cli {
 	const char *values[CLI_OPTIONS_MAX]; // values of the command's options: NULL if not given, ""
 	                                     // for a flag
 	const char *url, *token_file, *context; // NULL if not given
-	const char *label;                      // one label; `ls` takes several
+	const char *label;                      // label of a daemon; `ls` takes several labels
 	double timeout_s;
 	bool json, help, version;
-	cau_client_def
-		def; // definition for cli_connect; a command may set callbacks before it connects
-	char daemon_url[CLI_CONTEXT_TEXT_BYTES],
-		token[CAU_CLIENT_TOKEN_BYTES]; // strings of `def`, or ""
+	// definition for cli_connect; a command may set callbacks before it connects
+	cau_client_def def;
+	// strings that `def` points to; the token is "" if there is none
+	char daemon_url[CLI_CONTEXT_TEXT_BYTES], token[CAU_CLIENT_TOKEN_BYTES];
 	cau_loop *loop;
 	cau_client *client;
-	char session[CAU_NAME_BYTES]; // set by cli_connect
+	char session[CAU_NAME_BYTES]; // the session's id; cli_connect sets it
 	cau_error error;
 };
 
 // Reads the command line. Reports a mistake on c->complaints and returns false.
 bool cli_read(cli *c, int argument_count, char **arguments);
-// Reads the words of the command line as cli_read does, but accepts an incomplete one.
+// Reads the words of the command line as cli_read does, but accepts an incomplete command line.
 bool cli_read_words(cli *c, int argument_count, char **arguments);
 // Returns the number of common options, including the all-zero entry at the end.
 int cli_common_options(const cli_option **options);
-void cli_help(const cli *c); // Prints help for c->command, or for the program if there is none.
+// Prints help for c->command, or for the program if no command is given.
+void cli_help(const cli *c);
 
-const char *cli_value(const cli *c, const char *option); // Returns NULL if the option is not given.
+// Returns the option's value, "" for a flag, or NULL if the option is not given.
+const char *cli_value(const cli *c, const char *option);
 // Returns the value of a numeric option, or `otherwise` if it is not given. Sets *bad and complains
 // if the value is not a number or is out of bounds.
 double cli_number(const cli *c, const char *option, double least, double most, double otherwise,
@@ -89,14 +91,15 @@ cli_exit cli_connect(cli *c);
 // Connects to the daemon that has `session`, or to the daemon of `label`. Either may be NULL.
 // Closes the earlier connection first.
 cli_exit cli_connect_to(cli *c, const char *session, const char *label);
-// Finds the labels of the daemons behind the address. There are none if a single daemon answers.
-// Leaves no connection open.
+// Finds the labels of the daemons behind the address. A single daemon has no labels. Leaves no
+// connection open.
 cli_exit cli_find_fleet(cli *c, cau_fleet *fleet);
 void cli_finish(cli *c);
 
 // Prints c->error and returns the exit code for it.
 cli_exit cli_fail(cli *c);
-cli_exit cli_fail_file(cli *c); // prints c->error; always CLI_FILE
+// Prints c->error and returns CLI_FILE.
+cli_exit cli_fail_file(cli *c);
 // Reports that this program is out of memory. It is inline so that the analyzer sees that the
 // result is not CLI_DONE.
 static inline cli_exit cli_fail_memory(cli *c)

@@ -9,7 +9,7 @@
 
 enum { SESSIONS_MAX = 4096, SCENES_MAX = 256 };
 
-#define PATIENCE_S 1.0 // how long the shell waits for the daemon after the Tab key
+#define PATIENCE_S 1.0 // longest wait for the daemon after the Tab key, s
 
 static void offer(const cli *c, const char *word, const char *begin)
 {
@@ -106,7 +106,7 @@ static void offer_arguments(cli *c, const cli *line, const char *begin)
 
 static cli_exit run_complete(cli *c)
 {
-	// the words before the cursor, read as a command line
+	// The words before the cursor are read as a command line.
 	cli line = {.out = c->out, .complaints = fopen("/dev/null", "w"), .commands = c->commands};
 	char *before[CLI_ARGUMENTS_MAX + 1] = {(char *)(uintptr_t) "cautery"};
 	int count = c->argument_count;

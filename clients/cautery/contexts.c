@@ -14,8 +14,8 @@
 enum { FILE_BYTES_MAX = 1 << 20 };
 
 // ---- the file -----------------------------------------------------------------------------------
-// True if there is a folder for contexts. A service or a cron job may have neither variable; then
-// there are no contexts.
+// True if there is a folder for contexts. A service or a cron job may have neither XDG_CONFIG_HOME
+// nor HOME. Then there are no contexts.
 static bool has_folder(void)
 {
 	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
@@ -25,8 +25,8 @@ static bool has_folder(void)
 static cau_status find_folder(char *folder, size_t bytes, cau_error *error)
 {
 	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
-	bool set =
-		config && config[0] == '/'; // The XDG specification says that a relative path is ignored.
+	// By the XDG specification, a relative path is ignored.
+	bool set = config && config[0] == '/';
 	if (!has_folder())
 		return cau_fail(error, CAU_IO, NULL, "neither XDG_CONFIG_HOME nor HOME is set");
 	int length =

@@ -53,7 +53,7 @@ static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
 }
 
 // Discards the uploads, because the session has its own copies. An older server does not know this
-// request. It discards the uploads when the connection closes.
+// request, but discards the uploads when the connection closes.
 static void discard_meshes(cli *c, const cau_scene_def *scene)
 {
 	for (int32_t i = 0; i < scene->mesh_count; i++)

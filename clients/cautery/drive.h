@@ -10,5 +10,5 @@ cli_exit cli_join_tools(cli *c, cau_client_stream **stream);
 // Becomes the driver of the tool, if the tool exists and this client does not drive it already.
 cli_exit cli_take(cli *c, const cau_client_stream *stream, const char *tool);
 
-// Returns NULL if there is no such tool.
+// Returns the newest state of a tool, or NULL if there is no such tool.
 const cau_stream_tool *cli_find_tool(const cau_client_stream *stream, const char *tool);

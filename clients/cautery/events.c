@@ -7,7 +7,7 @@
 #include "cautery/commands.h"
 #include "cautery/words.h"
 
-enum { EVENTS_MAX = 4096 }; // events in one answer
+enum { EVENTS_MAX = 4096 }; // largest number of events in one answer
 
 static void print_event_json(const cli *c, const cau_wire_timeline_event *e)
 {
@@ -64,10 +64,10 @@ typedef struct follower {
 	cli *c;
 	cau_wire_timeline timeline;
 	bool answered; // the answer with the earlier events has come
-	bool asks;     // asks for missed events; the answer also has those that happen meanwhile
+	bool asks; // missed events were requested; the answer also has the events that happen meanwhile
 	cau_error failure;
 	int64_t last_tick; // tick of the last printed event
-	int32_t at_last;   // how many printed events have that tick
+	int32_t at_last;   // number of printed events that have the tick `last_tick`
 } follower;
 
 static void note(follower *f, int64_t tick)
@@ -215,7 +215,8 @@ static cli_exit run(cli *c)
 	f.timeline.events =
 		(cau_wire_list){calloc(EVENTS_MAX, sizeof(cau_wire_timeline_event)), 0, EVENTS_MAX};
 	cli_exit code = f.timeline.events.items ? tell(&f, &params, seconds) : cli_fail_memory(c);
-	if (c->client) // An answer that arrives later must not find the list freed.
+	// Closes the connection first, because a later answer would be written into the freed list.
+	if (c->client)
 		cau_client_close(c->client);
 	free(f.timeline.events.items);
 	return code;

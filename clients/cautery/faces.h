@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts faces that appear and disappear. Removed fat bares its inner faces. Counts are relative to
-// the first state that was seen of an epoch.
+// Counts faces that appear and disappear, relative to the first state that was seen in an epoch.
+// When fat is removed, inner faces appear: they are bared.
 #pragma once
 
 #include <stdint.h>
@@ -8,7 +8,7 @@
 #include "cautery/stream.h"
 
 typedef struct cli_faces {
-	uint32_t *first; // face mask of the first state, or NULL before it
+	uint32_t *first; // face mask of the first state, or NULL before the first state
 	uint64_t epoch;
 	int64_t drawn; // faces drawn now
 	int64_t gone;  // faces drawn at first and not now

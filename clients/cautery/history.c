@@ -76,7 +76,7 @@ static cli_exit run_snapshot(cli *c)
 	return code;
 }
 
-enum { SNAPSHOTS_MAX = 64 }; // snapshots of one session
+enum { SNAPSHOTS_MAX = 64 }; // largest number of snapshots of a session
 
 static cli_exit run_snapshots(cli *c)
 {

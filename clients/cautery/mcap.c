@@ -12,7 +12,8 @@ enum {
 	MESSAGE_HEAD_BYTES = 2 + 4 + 8 + 8,   // channel, sequence, log time, publish time
 	CHUNK_HEAD_BYTES = 8 * 3 + 4 * 2 + 8, // times, sizes, CRC, the compression's empty name
 	INDEX_BYTES = 2 + 4 + 8 + 8,          // channel, bytes of the array, time, offset in the chunk
-	SMALL_RECORD_BYTES = 256, // larger than every record except schemas, messages and chunks
+	// capacity that is larger than every record except schemas, messages and chunks
+	SMALL_RECORD_BYTES = 256,
 	FIRST_CHUNKS = 64,
 };
 
@@ -104,7 +105,7 @@ static void emit_channel(cli_mcap *mcap)
 	put(&r, SCHEMA_ID, 2);
 	put_text(&r, "/scene");
 	put_text(&r, "json");
-	put(&r, 0, 4); // no metadata
+	put(&r, 0, 4); // size of the channel's metadata, which is empty
 	emit_record(mcap, CHANNEL, &r, 0);
 }
 
@@ -116,7 +117,7 @@ cau_status cli_mcap_create(cli_mcap *mcap, const char *name, cau_error *error)
 	if (!mcap->file)
 		return cau_fail(error, CAU_IO, NULL, "%s", strerror(errno));
 	emit(mcap, magic, sizeof magic);
-	put_text(&header, ""); // empty profile
+	put_text(&header, ""); // the file's profile, which is empty
 	put_text(&header, "cautery");
 	emit_record(mcap, HEADER, &header, 0);
 	emit_schema(mcap);
@@ -148,7 +149,7 @@ cau_status cli_mcap_message(cli_mcap *mcap, uint64_t time_ns, const void *json, 
 	put(&chunk, time_ns, 8); // time of the chunk's first message
 	put(&chunk, time_ns, 8); // time of the chunk's last message
 	put(&chunk, record_bytes, 8);
-	put(&chunk, 0, 4); // no CRC
+	put(&chunk, 0, 4); // CRC; 0: not computed
 	put_text(&chunk, "");
 	put(&chunk, record_bytes, 8);
 	emit_record(mcap, CHUNK, &chunk, record_bytes);
@@ -184,7 +185,7 @@ static void emit_chunk_index(cli_mcap *mcap, const cli_mcap_chunk *chunk)
 	put(&r, CHANNEL_ID, 2);
 	put(&r, chunk->offset + chunk->bytes, 8);
 	put(&r, RECORD_HEAD_BYTES + INDEX_BYTES, 8);
-	put_text(&r, ""); // not compressed
+	put_text(&r, ""); // name of the compression; empty: not compressed
 	put(&r, content_bytes, 8);
 	put(&r, content_bytes, 8);
 	emit_record(mcap, CHUNK_INDEX, &r, 0);
@@ -216,7 +217,7 @@ static void emit_statistics(cli_mcap *mcap)
 static void emit_summary(cli_mcap *mcap)
 {
 	record end = {.count = 0}, footer = {.count = 0};
-	put(&end, 0, 4); // no CRC
+	put(&end, 0, 4); // CRC; 0: not computed
 	emit_record(mcap, DATA_END, &end, 0);
 	uint64_t start = mcap->bytes;
 	emit_schema(mcap);
@@ -225,8 +226,8 @@ static void emit_summary(cli_mcap *mcap)
 	for (uint32_t i = 0; i < mcap->messages; i++)
 		emit_chunk_index(mcap, &mcap->chunks[i]);
 	put(&footer, start, 8);
-	put(&footer, 0, 8); // no summary offsets
-	put(&footer, 0, 4); // no CRC
+	put(&footer, 0, 8); // position of the summary offsets; 0: the file has none
+	put(&footer, 0, 4); // CRC; 0: not computed
 	emit_record(mcap, FOOTER, &footer, 0);
 	emit(mcap, magic, sizeof magic);
 }

@@ -112,7 +112,8 @@ static cli_exit fail_reading(cli *c, const char *file)
 	return cli_fail(c);
 }
 
-// Requests the report and prints it. `options`: the user gave options, so errors name options.
+// Requests the report and prints it. `options` is true if the user gave options; then error texts
+// name options.
 static cli_exit read_mesh(cli *c, const char *file, const cau_wire_mesh_read *params, bool options,
                           cau_scene_def *scene)
 {

@@ -15,13 +15,13 @@ typedef struct courier {
 	cli *c;
 	cau_client *to; // connection to the target daemon; c->client is connected to the source
 	const char *label;
-	cau_wire_move_ref from_ref,
-		to_ref; // the move, with the session's id on the source and on the target
+	// the move, with the session's id on the source (`from_ref`) and on the target (`to_ref`)
+	cau_wire_move_ref from_ref, to_ref;
 	bool exact;
 	double bytes;
 	bool arrives;     // the target daemon has at least one piece
 	char receipt[65]; // receipt of the last delivered piece
-	double stood_s;   // time at which the session was suspended
+	double stood_s;   // time at which the session was suspended, s
 	char token[CAU_CLIENT_TOKEN_BYTES];
 } courier;
 
@@ -97,7 +97,8 @@ static cli_exit connect_target(courier *m)
 	if (url)
 		def.url = url;
 	def.session = NULL;
-	def.label = url ? NULL : m->label; // Behind a proxy, one address leads to all daemons.
+	// Without --to-url, one proxy leads to both daemons, and the label chooses the target.
+	def.label = url ? NULL : m->label;
 	if (cau_client_create(c->loop, &def, &m->to, &c->error) || cau_client_connect(m->to, &c->error))
 		return fail_to(m);
 	return check_daemon(m, m->to, "--to-url");
@@ -148,8 +149,8 @@ static cli_exit forget(courier *m, const char *release)
 	return CLI_DONE;
 }
 
-// Asks the source about the outcome of the move, and passes it to the target if the target knows
-// the move. *moved: the session now belongs to the target.
+// Asks the source about the outcome of the move. Passes the outcome to the target if the target
+// knows the move. *moved is true if the session now belongs to the target.
 static cli_exit settle(courier *m, bool known_there, bool *moved)
 {
 	cau_wire_move_decision decision = {0};
@@ -162,9 +163,9 @@ static cli_exit settle(courier *m, bool known_there, bool *moved)
 	return known_there ? forget(m, decision.release) : CLI_DONE;
 }
 
-// Finds the unfinished move of this session in the list of `client`'s daemon. Its name is "" if
-// there is none. `id` is the session's id on that daemon. If `id` is "", `other` is the session's
-// id on the other daemon.
+// Finds the unfinished move of this session in the list of `client`'s daemon. If there is none,
+// found->move is "". `id` is the session's id on that daemon. If `id` is "", `other` is the
+// session's id on the other daemon.
 static cau_status find_move(courier *m, cau_client *client, const char *id, const char *other,
                             cau_wire_move_entry *found)
 {
@@ -345,7 +346,8 @@ static cli_exit move(courier *m)
 		code = hand_over(m);
 	if (!code)
 		return tell_moved(m);
-	cli_exit settled = settle(m, m->arrives, &moved); // Perhaps only the answer was lost.
+	// The target may have the session already, if only an answer was lost.
+	cli_exit settled = settle(m, m->arrives, &moved);
 	return !settled && moved ? tell_moved(m) : code;
 }
 
@@ -353,7 +355,8 @@ static cli_exit run(cli *c)
 {
 	courier m = {.c = c, .label = c->arguments[1], .exact = true};
 	const char *session = c->arguments[0];
-	c->def.follow = false; // Both connections stay with their own daemon.
+	// Neither connection may follow the session to the other daemon.
+	c->def.follow = false;
 	cli_exit code = check_label(&m, session);
 	if (!code)
 		code = name_target(&m, session);

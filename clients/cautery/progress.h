@@ -16,7 +16,7 @@ typedef struct cli_progress {
 	bool terminal;
 	const char *what;
 	int tenth;      // tenth of the last line, -1 before the first line
-	double drawn_s; // when a terminal's line was last drawn
+	double drawn_s; // time at which a terminal's line was last drawn
 } cli_progress;
 
 void cli_progress_begin(cli_progress *progress, FILE *out, const char *what);

@@ -13,10 +13,11 @@
 
 enum {
 	SCRIPT_BYTES_MAX = 1 << 28,
-	LEAD_TICKS = 8, // Commands are sent this many ticks before they are due.
-	OUTSTANDING_MAX =
-		64, // largest number of unanswered requests; that many commands may wait for later ticks
-	TOLD_MAX = 10, // number of refusals that are printed
+	LEAD_TICKS = 8, // largest number of ticks from sending a command to the tick at which it acts
+	// largest number of unanswered requests; the server keeps as many commands of a client for
+	// later ticks
+	OUTSTANDING_MAX = 64,
+	TOLD_MAX = 10, // largest number of refusals that are printed
 };
 
 typedef struct script_line {
@@ -115,7 +116,7 @@ static void take_answer(void *user, const cau_rpc_message *answer, const cau_err
 		return;
 	}
 	if (cau_client_get_condition(r->c->client) != CAU_CLIENT_READY) {
-		r->lost = true; // reported once, at the end
+		r->lost = true; // the loss is reported once, at the end
 		return;
 	}
 	if (r->refused++ < TOLD_MAX)
@@ -282,14 +283,15 @@ static cli_exit run(cli *c)
 		code = cli_fail_file(c);
 	cli_watch_signals();
 	c->def.user = &r;
-	c->def.follow =
-		false; // A move turns energy off, so the rest of the script would no longer act as written.
+	// A move turns energy off, so the rest of the script would no longer act as written.
+	c->def.follow = false;
 	c->def.on_notification = take_notification;
 	if (!code)
 		code = cli_connect(c);
 	if (!code)
 		code = join_and_play(&r);
-	if (c->client) // An answer that arrives later must not find the script freed.
+	// Closes the connection first, because a later answer would use the freed script.
+	if (c->client)
 		cau_client_close(c->client);
 	cli_faces_finish(&r.faces);
 	free(r.lines);

@@ -13,8 +13,8 @@ static const double shaft_m = 0.06, shaft_diameter_m = 0.002, tip_diameter_m = 0
 
 enum { LAYER_COLORS = 4, LAYERS_MAX = 256 };
 
-// By layer: pearly fascia, a pink membrane, fat. All other layers have the colour of what lies
-// under the fat.
+// Colours by the index of the layer, in the usual order: pearly fascia, a pink membrane, fat. All
+// further layers have the last colour, that of the tissue under the fat.
 static const char *const layer_color[LAYER_COLORS] = {
 	"{\"r\":0.9,\"g\":0.82,\"b\":0.76,\"a\":1}",
 	"{\"r\":0.85,\"g\":0.58,\"b\":0.5,\"a\":1}",

@@ -300,7 +300,7 @@ static cli_exit run(cli *c)
 	const cau_stream_tool *found = cli_find_tool(h.stream, h.tool);
 	if (found) {
 		h.pose = found->asked_pose;
-		// A grasp counts as open jaws, because its release leaves the jaws open.
+		// During a grasp the jaws are taken as open, because a release leaves them open.
 		h.jaw = found->grasping ? 1 : found->asked_jaw;
 		h.sequence = (int64_t)found->sequence;
 	}

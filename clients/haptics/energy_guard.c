@@ -42,7 +42,7 @@ void energy_guard_account(energy_guard *guard, const double place_m[3])
 	memcpy(guard->place_m, place_m, sizeof guard->place_m);
 }
 
-// Limits the change of a force from the last one to slew_n.
+// Limits the change of a force from the last force to slew_n.
 static void bound_change(const energy_guard *guard, double force_n[3])
 {
 	double change[3];
@@ -63,9 +63,9 @@ static bool pays(const energy_guard *guard, const double velocity_m_s[3], const 
 
 bool energy_guard_bound(energy_guard *guard, const double velocity_m_s[3], double force_n[3])
 {
-	enum {
-		HALVINGS = 10
-	}; // bisections, to about a thousandth of the interval, which is 2 slew_n at most
+	// Number of bisections. They reduce the interval, which is 2 slew_n at most, to about a
+	// thousandth.
+	enum { HALVINGS = 10 };
 	bool bound = false;
 	bound_change(guard, force_n);
 	if (!pays(guard, velocity_m_s, force_n)) {

@@ -13,7 +13,8 @@
 #include "haptics/mailbox.h"
 #include "haptics/vector.h"
 
-enum { LATE_PERIODS = 2 }; // one period until a render sees an arrived record, and one to spare
+// Periods of delay: one until a render sees an arrived record, and one to spare.
+enum { LATE_PERIODS = 2 };
 
 struct cau_haptics {
 	cau_haptics_def def;
@@ -22,7 +23,8 @@ struct cau_haptics {
 	local_contact contact;
 	energy_guard guard;
 	bool begun;
-	double now_s, taken_s; // time of the last render; time at which it took the newest record
+	// time of the last render; time of the render that took the newest record
+	double now_s, taken_s;
 	double jump_n[3];   // the old contact's force minus the new contact's force at the time of the
 	                    // last record
 	double slow_m_s[3]; // low-pass velocity of the device, below damping_hz

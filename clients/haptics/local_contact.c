@@ -15,12 +15,16 @@
 
 #include "haptics/vector.h"
 
-enum { SWEEPS = 32 }; // Gauss-Seidel sweeps over at most 8 planes, starting from the last forces
-static const double hertz = 1.5;    // exponent of the depth
-static const double most_share = 2; // multiple of the record's force up to which stiffness grows
-static const double settled = 1e-9; // N; iteration ends when no force changes by more
-static const double most_m = 100, most_n = 1e5,
-					most_m_n = 1e3; // largest accepted position, force and compliance
+// Largest number of Gauss-Seidel sweeps over the planes (8 at most). They start from the last
+// forces.
+enum { SWEEPS = 32 };
+static const double hertz = 1.5; // exponent of the depth in Hertz's law
+// Largest force for which the stiffness grows, over the record's force.
+static const double most_share = 2;
+// Largest change of a force in a sweep, N, with which the iteration ends.
+static const double settled = 1e-9;
+// Largest accepted position (m), force (N) and compliance (m/N).
+static const double most_m = 100, most_n = 1e5, most_m_n = 1e3;
 
 static double least_eigenvalue(const double m[6])
 {
@@ -53,7 +57,7 @@ static void invert(double to[6], const double m[6])
 static bool is_within(const double *values, int count, double most)
 {
 	for (int i = 0; i < count; i++)
-		if (!(fabs(values[i]) <= most)) // also false for a NaN
+		if (!(fabs(values[i]) <= most)) // the comparison is also false for a NaN
 			return false;
 	return true;
 }
@@ -145,7 +149,7 @@ static void bound_stiffness(local_contact *contact, double most)
 	couple_planes(contact);
 }
 
-// Makes the planes half as soft again along the record's force, and no softer across it. Their
+// Makes the planes 1.5 times as soft along the record's force, and no softer across it. The planes'
 // force at the record's position stays the same.
 static void round_tip(local_contact *contact)
 {
@@ -184,7 +188,8 @@ void local_contact_set(local_contact *contact, const cau_tool_contact *record,
 	add_scaled3(contact->force_n, record->force_n, -record->grasp_n_m, pull);
 	couple_planes(contact);
 	bound_stiffness(contact, stiffness_max_n_m);
-	if (contact->grasp_n_m > 0) // The spring gives the record's force at the record's position.
+	// The grasp's spring gives the record's force at the record's position.
+	if (contact->grasp_n_m > 0)
 		add_scaled3(contact->grasp_anchor_m, contact->place_m,
 		            record->grasp_n_m / contact->grasp_n_m, pull);
 	round_tip(contact);

@@ -21,7 +21,7 @@ typedef struct local_contact {
 	double friction, damping_ns_m, grasp_n_m, grasp_anchor_m[3];
 } local_contact;
 
-// Force on the device, with the values that its damping needs.
+// The force on the device, with the values that damping needs.
 typedef struct local_force {
 	double force_n[3];
 	double normal[3];    // unit normal of the contact; 0 without contact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes the newest record from one thread to another without waiting. There are three slots: one
-// for the writer, one for the reader, and one between that they exchange.
+// Passes the newest record from one thread to another without waiting. There are three slots. One
+// is the writer's, one is the reader's, and the third is between them: each of them exchanges its
+// own slot for it.
 #pragma once
 
 #include <stdatomic.h>
@@ -8,13 +9,14 @@
 
 #include "cautery/channels.h"
 
-enum { MAILBOX_FRESH = 4 }; // added to the number of the slot between while that slot is unread
+enum { MAILBOX_FRESH = 4 }; // flag in `between`: the record in the third slot is unread
 
 typedef struct mailbox {
 	cau_tool_contact slot[3];
-	_Atomic unsigned between; // number of the slot between, with MAILBOX_FRESH if it is unread
-	unsigned writing;         // the writer's slot; only the writer uses it
-	unsigned reading;         // the reader's slot; only the reader uses it
+	// number of the third slot, plus MAILBOX_FRESH if its record is unread
+	_Atomic unsigned between;
+	unsigned writing; // the writer's slot; only the writer uses it
+	unsigned reading; // the reader's slot; only the reader uses it
 } mailbox;
 
 static inline void mailbox_begin(mailbox *mail)

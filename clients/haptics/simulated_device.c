@@ -20,8 +20,8 @@
 
 static const char tool_name[] = "ball"; // name of the tool in the scene
 static const double period_s = 0.001;
-static const double above_m = 0.004,
-					below_m = -0.001; // height that the hand wants at first and at the end
+// Heights that the hand wants at first and at the end, m.
+static const double above_m = 0.004, below_m = -0.001;
 static const double press_s = 1, hold_s = 3, report_every_s = 0.5;
 enum { POSE_PERIODS = 4, LATE_PERIODS = 50 };
 
@@ -37,7 +37,7 @@ typedef struct program {
 	uint64_t sequence, tick; // sequence of the last command; tick of the last record
 	int record_count;
 	cau_haptics_device device;
-	double least_n, most_n; // along z in the last second
+	double least_n, most_n; // least and largest force along z in the last second
 } program;
 
 // Moves the device for one period under the force of its motors.

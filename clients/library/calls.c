@@ -17,7 +17,7 @@ typedef struct writing { // the content of one message
 	int64_t id;          // negative for a notification
 	cau_method method;
 	const void *params;
-	const cau_rpc_envelope *envelope; // only for a command
+	const cau_rpc_envelope *envelope; // session and sequence of a command, or NULL
 	const cau_command *command;       // NULL if it is not a command
 } writing;
 
@@ -85,11 +85,11 @@ static bool can_resend(cau_method method, const char *sent, size_t bytes)
 	cau_rpc_fault fault;
 	cau_rpc_envelope envelope = {0};
 	switch (method) {
-	case CAU_METHOD_UPLOAD_BEGIN: // files belong to their connection
+	case CAU_METHOD_UPLOAD_BEGIN: // a transfer ends with its connection
 	case CAU_METHOD_UPLOAD_END:
 	case CAU_METHOD_SESSION_EXPORT:
 	case CAU_METHOD_SESSION_LOG:
-	case CAU_METHOD_SESSION_JOIN: // the client joins again by itself
+	case CAU_METHOD_SESSION_JOIN: // the client joins again without the program
 		return false;
 	default:
 		break;

@@ -9,8 +9,9 @@
 enum {
 	FIRST_RETRY_US = 100000,
 	LAST_RETRY_US = 2000000,
-	FOLLOWS_MOST =
-		5, // attempts to follow a session, for a client that does not reconnect otherwise
+	// largest number of attempts to follow a session, for a client that does not reconnect
+	// otherwise
+	FOLLOWS_MOST = 5,
 };
 
 static void set_condition(cau_client *client, cau_client_condition condition)
@@ -139,7 +140,7 @@ static bool read_refusal(struct lws *wsi, char *text, size_t bytes)
 	static const char header[] = "cautery-reason:";
 	char reason[200];
 	unsigned status = wsi ? lws_http_client_http_response(wsi) : 0;
-	if (status < 200) // no answer, or an upgrade
+	if (status < 200) // there is no answer, or the answer is an upgrade
 		return false;
 	if (lws_hdr_custom_copy(wsi, reason, sizeof reason, header, sizeof header - 1) <= 0)
 		snprintf(reason, sizeof reason, "no reason given; is this a cauteryd?");
@@ -164,7 +165,7 @@ void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, 
 static void open_socket(cau_client *client)
 {
 	char host[280], path[16 + CAU_NAME_BYTES];
-	bool bare = strchr(client->url.host, ':') == NULL; // not an IPv6 address
+	bool bare = strchr(client->url.host, ':') == NULL; // false for an IPv6 address
 	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", client->url.host, client->url.port);
 	const char *name = *client->session ? client->session : client->label;
 	const char *query = *client->session ? "?session=" : *client->label ? "?label=" : "";

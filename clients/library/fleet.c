@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asks which daemons are behind an address, with one GET of /api/fleet. The proxy in front of
-// several daemons answers with their labels. A single daemon answers that it is alone; an older one
-// answers 404. The request has no token.
+// several daemons answers with their labels. A single daemon answers that it is alone; an older
+// daemon answers 404. The request has no token.
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,7 +60,7 @@ int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *
 		return take(q, in, bytes);
 	case LWS_CALLBACK_COMPLETED_CLIENT_HTTP:
 		q->done = true;
-		return -1; // stop after the one request
+		return -1; // closes the connection after the one request
 	case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
 		note_failure(q, in, in ? strlen(in) : 16);
 		return 0;
@@ -77,7 +77,7 @@ int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *
 static struct lws *ask(cau_loop *loop, const cau_url *url, question *q)
 {
 	char host[280];
-	bool bare = strchr(url->host, ':') == NULL; // not an IPv6 address
+	bool bare = strchr(url->host, ':') == NULL; // false for an IPv6 address
 	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", url->host, url->port);
 	struct lws_client_connect_info info = {
 		.context = loop->context,

@@ -9,8 +9,9 @@
 
 enum { PATTERN_BYTES = 16 + CAU_NAME_BYTES };
 
-#define ARRIVES_MOST_S                                                                             \
-	30. // longest time until the target daemon serves the session; after that its courier has died
+// Longest wait until the target daemon serves the session, s. After a longer time the program that
+// moves the session has died.
+#define ARRIVES_MOST_S 30.
 
 // ---- session ids in message texts ---------------------------------------------------------------
 
@@ -62,7 +63,7 @@ static void rename_pending(cau_client *client, const char *from, const char *to)
 
 // ---- whether to follow --------------------------------------------------------------------------
 
-// True if the client uses only this session. A connection leads to one daemon, so a client with
+// True if the client uses no other session. A connection leads to one daemon, so a client with
 // streams of other sessions does not follow.
 static bool is_about(const cau_client *client, const char *session)
 {
@@ -137,8 +138,8 @@ void cau_follow_when_answered(cau_client *client)
 	cau_socket_cut(client);
 }
 
-// The session has left its old daemon and is not served by the new daemon yet. Until it is found,
-// tools are resumed with the old daemon's resume token.
+// True if the new daemon does not serve the session yet, so the client asks again. Until the
+// session is found, tools are resumed with the old daemon's resume token.
 static bool goes_again(cau_client *client, const char *session, const cau_rpc_fault *fault)
 {
 	bool arrives = fault->code == CAU_RPC_NOT_HERE && *client->moved_to &&
@@ -182,8 +183,8 @@ bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const ca
 	if ((!moved && fault->code != CAU_RPC_NOT_HERE) || pending->method == CAU_METHOD_SESSION_JOIN)
 		return false;
 	session_of(client, pending, session);
-	pending->again = pending->resendable =
-		true; // The daemon refused the request, so it may be sent again.
+	// The daemon refused the request, so it may be sent again.
+	pending->again = pending->resendable = true;
 	cau_pending_add(client, pending);
 	if (moved ? cau_follow(client, session, fault->moved_to, fault->url)
 	          : goes_again(client, session, fault))
@@ -192,7 +193,8 @@ bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const ca
 	return false;
 }
 
-// All streams are joined again, so the refusal of one join needs no further handling.
+// True if the client follows the session or asks again. All streams are then joined again, so the
+// refused join needs no further handling.
 bool cau_follow_join(cau_client *client, const char *session, const cau_rpc_fault *fault)
 {
 	if (fault->code == CAU_RPC_MOVED && *fault->moved_to)

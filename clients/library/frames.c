@@ -4,10 +4,12 @@
 
 #include "library/internal.h"
 
-// Wait before the client asks for a key frame. The server sends one by itself if it knows of the
-// gap.
+// Wait from a gap to the request for a key frame, s. The server sends a key frame without a request
+// if it knows of the gap.
 static const double patience_s = 0.25;
-static const double ask_again_s = 1.0; // The server sends at most one requested key frame a second.
+// Wait from one request for a key frame to the next, s. The server sends at most one requested key
+// frame a second.
+static const double ask_again_s = 1.0;
 
 static cau_client_slot *find_slot(cau_client *client, const cau_frame_header *header)
 {

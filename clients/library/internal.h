@@ -9,16 +9,16 @@
 #include "library/url.h"
 
 enum {
-	CAU_CLIENT_TEXT_MAX = 64 << 20,  // bytes in a text message from the server
-	CAU_CLIENT_BINARY_MAX = 1 << 30, // bytes in a frame or chunk
-	CAU_CLIENT_TICK_US =
-		100000, // largest interval between heartbeats, acknowledgements and requests for key frames
+	CAU_CLIENT_TEXT_MAX = 64 << 20,  // largest size of a text message from the server
+	CAU_CLIENT_BINARY_MAX = 1 << 30, // largest size of a frame or chunk
+	// largest interval between heartbeats, acknowledgements and requests for key frames
+	CAU_CLIENT_TICK_US = 100000,
 	CAU_CLIENT_CLOSE_WAIT_US = 1000000,
 };
 
 struct cau_loop {
 	struct lws_context *context;
-	lws_sorted_usec_list_t wake; // ends a wait
+	lws_sorted_usec_list_t wake; // timer that ends a wait
 };
 
 // A request that has no answer yet.
@@ -57,12 +57,12 @@ typedef struct cau_client_incoming {
 
 struct cau_client {
 	cau_loop *loop;
-	cau_client_def def; // its strings point at the arrays below
+	cau_client_def def; // its strings are in the arrays below
 	char session[CAU_NAME_BYTES], label[CAU_NAME_BYTES], token[513], name[65], client_id[65];
 	cau_url url;
 	struct lws *wsi;
 	cau_client_condition condition;
-	bool closing; // closed by this program
+	bool closing; // this program closes the connection
 	int close_code;
 	char close_reason[128];
 	cau_error trouble;
@@ -76,16 +76,15 @@ struct cau_client {
 	uint64_t connections;
 	int attempts;    // number of attempts to connect since the last hello
 	bool keep_alive; // see cau_client_keep_alive
-	bool following;  // connecting to the session's new daemon
+	bool following;  // the client is connecting to the session's new daemon
 	int ways;        // number of attempts that found the session not yet served by the new daemon
 	double arrives_until_s;
 	char kept_resume[65]; // resume token of the old daemon until the session is found, then ""
-	char moved_from[CAU_NAME_BYTES],
-		moved_to[CAU_NAME_BYTES]; // the id that the program knows, and the present id; "" if the
-	                              // session has not moved
+	// the id that the program knows, and the present id; "" if the session has not moved
+	char moved_from[CAU_NAME_BYTES], moved_to[CAU_NAME_BYTES];
 	lws_sorted_usec_list_t tick, retry, deadline;
 	cau_client_slot *slots[CAU_CLIENT_STREAMS_MAX];
-	cau_client_incoming *incoming; // one at a time
+	cau_client_incoming *incoming; // the file that is arriving, or NULL; only one at a time
 };
 
 // fleet.c
@@ -94,8 +93,8 @@ int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *
                        size_t bytes);
 
 // send.c
-void cau_socket_cut(
-	cau_client *client); // closes the connection soon; cau_client_lost is called then
+// Closes the connection soon. cau_client_lost is called then.
+void cau_socket_cut(cau_client *client);
 cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,
                            const void *body, size_t body_bytes, cau_error *error);
 
@@ -131,8 +130,8 @@ cau_client_pending *cau_pending_take(cau_client *client, int64_t id);
 
 // calls.c
 void cau_calls_answered(cau_client *client, const cau_rpc_message *message);
-void cau_calls_lost(cau_client *client,
-                    bool all); // fails the requests that cannot be sent again, or all
+// Fails all requests, or only those that cannot be sent again.
+void cau_calls_lost(cau_client *client, bool all);
 void cau_calls_resend(cau_client *client);
 void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error);
 
@@ -143,7 +142,8 @@ char *cau_follow_text(const char *from, const char *to, const char *text, size_t
 // Starts to follow a session. Returns false if this client does not follow it.
 bool cau_follow(cau_client *client, const char *from, const char *to, const char *url);
 void cau_follow_when_answered(cau_client *client);
-void cau_follow_found(cau_client *client); // the daemon has answered about the session
+// Call it when the daemon has answered about the session.
+void cau_follow_found(cau_client *client);
 // Keeps a request that was answered with `moved` to send it again. Returns false if the program
 // must get the error.
 bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const cau_rpc_fault *fault);

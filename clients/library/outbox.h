@@ -7,9 +7,9 @@
 
 #include "cautery/status.h"
 
-enum {
-	CAU_OUTBOX_BYTES_MAX = 8 << 20
-}; // A message that would exceed this is refused with CAU_LIMIT.
+// Largest size of all queued messages. A message that would exceed this size is refused with
+// CAU_LIMIT.
+enum { CAU_OUTBOX_BYTES_MAX = 8 << 20 };
 
 typedef struct cau_outbox_message {
 	struct cau_outbox_message *next;

@@ -106,7 +106,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
                     size_t bytes)
 {
 	cau_client *client = user;
-	if (!client) // a destroyed client, or an event of the context itself
+	if (!client) // the client is destroyed, or the event is of the context itself
 		return 0;
 	switch (reason) {
 	case LWS_CALLBACK_CLIENT_ESTABLISHED:

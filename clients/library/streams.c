@@ -84,7 +84,7 @@ static cau_status take_description(cau_client_slot *slot, const cau_rpc_message 
 	def->plain = d.has_plain && d.plain;
 	def->stress_step_pa = d.stress_step_pa;
 	slot->stream.ended = false;
-	slot->gap_s = cau_client_now(); // waits for a key frame
+	slot->gap_s = cau_client_now(); // from now on a key frame is missing
 	status = make_decoder(slot, error);
 	return status ? status : make_topology(&slot->stream, error);
 }

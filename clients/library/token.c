@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads tokens from files. On a command line every user of the machine could see them.
+// Reads tokens from files. Every user of the machine could read a token on a command line.
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

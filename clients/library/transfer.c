@@ -119,7 +119,7 @@ void cau_chunk_received(cau_client *client, const void *bytes, size_t byte_count
 	cau_client_incoming *incoming = client->incoming;
 	if (!incoming || cau_chunk_read(bytes, byte_count, &chunk, NULL) ||
 	    chunk.transfer != incoming->transfer)
-		return; // a chunk of an abandoned download
+		return; // the chunk belongs to no download, or to an abandoned one
 	if (chunk.offset != incoming->received ||
 	    chunk.byte_count > incoming->byte_count - incoming->received) {
 		incoming->broken = true;

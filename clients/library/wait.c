@@ -39,7 +39,7 @@ static bool wait_once(cau_client *client, const bool *done)
 	return cau_client_wait_for(client, done, cau_client_now() + client->def.timeout_s);
 }
 
-// True if the server answers a heartbeat.
+// Sends a heartbeat. Returns true if the server answers it in time.
 static bool is_heard(cau_client *client)
 {
 	waiting w = {.method = CAU_METHOD_HEARTBEAT};

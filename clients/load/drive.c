@@ -9,7 +9,8 @@
 #include "cautery/defaults.h"
 #include "load/fleet.h"
 
-// The interval is not a multiple of the tick, so commands arrive at every phase of the tick.
+// Interval between two moves, s. It is not a multiple of the tick, so commands arrive at every
+// phase of the tick.
 static const double move_every_s = 0.0173;
 static const double request_every_s = 0.5;
 
@@ -83,7 +84,7 @@ void load_note_command(load_session *session, double decoded_s)
 		if (strcmp(state->tools[i].name, session->tool) == 0)
 			applied = (int64_t)state->tools[i].sequence;
 	if (applied > driver->sequence)
-		return; // a command of an earlier run
+		return; // the frame shows a command of an earlier run
 	int64_t oldest = driver->sequence - LOAD_OPEN_COMMANDS + 1;
 	for (int64_t s = driver->shown + 1; s <= applied; s++)
 		if (fleet->measuring && s >= oldest)

@@ -193,7 +193,8 @@ static int64_t count_behind(const load_fleet *fleet)
 	for (int32_t s = 0; s < fleet->options->sessions; s++) {
 		const load_session *session = &fleet->sessions[s];
 		uint64_t tick = session->viewers[0].stream->state->tick;
-		uint64_t slack = 30; // Half a second of ticks, because frames are still on their way.
+		// Largest accepted lag, in ticks: half a second, because frames are still on their way.
+		uint64_t slack = 30;
 		for (int32_t v = 1; v < fleet->options->viewers; v++)
 			behind += !in_step(&session->viewers[v], tick > slack ? tick - slack : 0);
 	}

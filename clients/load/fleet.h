@@ -7,7 +7,8 @@
 #include "load/samples.h"
 
 enum {
-	LOAD_OPEN_COMMANDS = 256, // commands that are sent and not yet shown by a frame
+	// largest number of commands that are sent and not yet shown by a frame
+	LOAD_OPEN_COMMANDS = 256,
 	LOAD_ACKNOWLEDGED_MAX = 65536,
 };
 
@@ -19,7 +20,7 @@ typedef struct load_viewer {
 	cau_client *client;
 	cau_client_stream *stream;
 	bool slow, reading;
-	double turn_s; // when a slow viewer starts or stops reading
+	double turn_s; // time at which a slow viewer starts or stops reading
 	double gap_s;  // time since which frames do not fit the state, or 0
 } load_viewer;
 
@@ -33,7 +34,7 @@ typedef struct load_driver {
 	double sent_s[LOAD_OPEN_COMMANDS];
 	int64_t shown; // last sequence that a frame has shown
 	double due_s, request_due_s;
-	double start_s;        // when the motion began
+	double start_s;        // time at which the motion began
 	int64_t *acknowledged; // sequences of acknowledged requests
 	int32_t acknowledged_count;
 } load_driver;

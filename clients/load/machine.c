@@ -16,7 +16,7 @@ enum { PAGE_BYTES_MAX = 1 << 22, WAIT_S = 10 };
 
 static const char metric[] = "\ncautery_resident_bytes ";
 
-enum { CPU_FIELDS = 8 }; // user nice system idle iowait irq softirq steal
+enum { CPU_FIELDS = 8 }; // number of fields: user nice system idle iowait irq softirq steal
 
 // Reads the first line of /proc/stat: `cpu` and at least CPU_FIELDS numbers.
 static bool read_fields(const char *line, double field[CPU_FIELDS])

@@ -27,8 +27,8 @@ typedef struct load_options {
 	double slow_pct; // percentage of the viewers that do not drive
 	double rate_hz;
 	bool json, help, version;
-	const volatile sig_atomic_t
-		*interrupted; // if not 0: end the measurement now, report, and remove the sessions
+	// if not 0: end the measurement now, report, and remove the sessions
+	const volatile sig_atomic_t *interrupted;
 } load_options;
 
 // Reads the command line. Prints a mistake on `complaints` and returns false.

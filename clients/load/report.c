@@ -5,7 +5,8 @@
 
 #include "cautery/json_writer.h"
 
-// If a session's frames stop for longer than this, its realtime factor counts the silence.
+// Longest silence of a session's frames, s, that the realtime factor leaves out. A longer silence
+// counts as wall time.
 static const double silence_s = 0.25;
 
 double load_realtime_factor(const load_session *session, double end_s)

@@ -9,7 +9,8 @@ typedef struct load_result {
 	double realtime_factor_min;
 	double steal_pct;      // stolen share of this machine's processor time; NAN if unknown
 	double load_cpu_pct;   // processor time of this program, percent of one core
-	double rss_per_viewer; // bytes; NAN if unknown or without added viewers
+	double rss_per_viewer; // memory of the daemon for each added viewer, bytes; NAN if unknown or
+	                       // without added viewers
 	double rss_before, rss_after;
 	int64_t lost_acknowledged; // negative if the log could not be read
 	int64_t acknowledged;

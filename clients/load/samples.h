@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { LOAD_SAMPLES_MAX = 1 << 26 }; // 256 MiB; further values are only counted in `lost`
+// Largest number of values, in 256 MiB. Further values are only counted in `lost`.
+enum { LOAD_SAMPLES_MAX = 1 << 26 };
 
 typedef struct load_samples {
 	float *value;

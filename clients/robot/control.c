@@ -7,9 +7,9 @@
 #include <string.h>
 #include <time.h>
 
-#define LEAST_APPROACH_S 0.2 // minimum time, so that the server sees energy off first
+#define LEAST_APPROACH_S 0.2 // least time of the approach, so that the server first sees energy off
 #define ANSWER_S 1.0         // timeout for becoming the driver, or for energy to turn on
-// speed along the shaft, away from the tissue if the force is too high, and later back
+// Speed along the shaft: away from the tissue if the force is too high, and later back.
 #define BACK_OFF_M_S 0.02
 #define BACK_OFF_MOST_M 0.03
 
@@ -74,7 +74,7 @@ static bool heed_force(control *c, double period_s)
 	return !high;
 }
 
-// Returns the pose of this period. *energy: energy is wanted in this period.
+// Returns the pose of this period. *energy is true if energy is wanted in this period.
 static robot_pose next_pose(control *c, double now_s, double period_s, bool *energy)
 {
 	robot_pose start = robot_trajectory_at(c->trajectory, 0);

@@ -11,7 +11,7 @@ typedef struct robot_report {
 	uint64_t missed;        // number of periods without a command
 	double force_most_n;    // largest force
 	double backed_off_m;    // largest retreat
-	bool took_over;         // in standby, this program became the driver
+	bool took_over;         // true if this program waited in standby and then became the driver
 	const char *lost;       // why the loop ended early, or NULL
 	robot_histogram jitter; // how late the loop woke
 } robot_report;

@@ -22,7 +22,8 @@ static int64_t wall_ns(void)
 	return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-// Opens the writer of commands. It offers a deadline. It proves that it is alive only by writing.
+// Opens the writer of commands. The writer offers a deadline, and only by writing does it prove
+// that it is alive.
 static dds_entity_t open_writer(robot_link *link, const dds_qos_t *partition, double deadline_s)
 {
 	dds_qos_t *qos = dds_create_qos();

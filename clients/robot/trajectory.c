@@ -132,7 +132,8 @@ robot_pose robot_pose_between(const robot_pose *a, const robot_pose *b, double s
 		pose.position_m[i] = a->position_m[i] + share * (b->position_m[i] - a->position_m[i]);
 	for (int i = 0; i < 4; i++)
 		dot += a->rotation[i] * b->rotation[i];
-	for (int i = 0; i < 4; i++) // interpolate the shorter way round
+	// Interpolates along the shorter of the two ways between the rotations.
+	for (int i = 0; i < 4; i++)
 		pose.rotation[i] =
 			(1 - share) * a->rotation[i] + (dot < 0 ? -share : share) * b->rotation[i];
 	normalise(pose.rotation);

@@ -24,8 +24,9 @@
 static const double cut_from_m[3] = {-0.01, 0.0, 0.0};
 static const double cut_to_m[3] = {0.01, 0.0, 0.0};
 static const double cut_speed_m_s = 0.004;
-static const double dwell_s = 3.0; // an edge inside this hook parts after 2.35 s
-static const double wait_s = 0.1;  // longest wait for a frame
+// Rest with energy on, s. An edge inside the hook parts after 2.35 s.
+static const double dwell_s = 3.0;
+static const double wait_s = 0.1; // longest wait for a frame
 static const double report_every_s = 0.5;
 
 static const char tool_name[] = "hook"; // name of the tool in the scene

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worked examples, produced by the codecs themselves: three vertices, one face, one tool.
+// Writes examples.md, the worked examples of the protocol. The codecs produce them, for a session
+// with three vertices, one face and one tool.
 #include <stdlib.h>
 #include <string.h>
 

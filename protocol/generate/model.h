@@ -25,7 +25,7 @@ typedef struct property {
 	const char *name;
 	property_kind kind;
 	bool required;
-	const char *unless; // a member without which this one is required, or NULL
+	const char *unless; // name of another member, without which this property is required; or NULL
 	double least, most;
 	int32_t count, least_count;
 	const cau_choices *choices;

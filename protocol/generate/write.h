@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writers of the generated files. They use the model; the examples use the codecs.
+// Functions that write the generated files. They use the model; only write_examples uses the
+// codecs.
 #pragma once
 
 #include <stdio.h>

@@ -44,8 +44,8 @@ int cau_material_parts(int layer_kind, cau_sheet_material *sheet, cau_fat_materi
 // Lists all parts of a command and returns their number: its head, then the parts of its kind. For
 // SET_MATERIAL, the material's kind must already be set.
 int cau_command_parts(cau_command *command, cau_part parts[CAU_MAX_PARTS]);
-// Lists the parts of a command to write. A part that older builds do not know is left out if it has
-// no effect: the limit of an enable without a limit.
+// Lists the parts of a command to write. For an enable without a limit, the part with the limit is
+// left out, because older builds do not know this part.
 int cau_command_parts_to_write(cau_command *command, cau_part parts[CAU_MAX_PARTS]);
 // Returns the selection of a command, or NULL if it has none.
 cau_selection *cau_command_selection(cau_command *command);

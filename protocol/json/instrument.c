@@ -10,8 +10,8 @@
 
 enum { PROFILE_BYTES = 1 << 16, INSTRUMENTS = 64, NUMBERS = 64 };
 
-// The settings of a tool that a mode may set, besides the range of its power. They have the ranges
-// of a tool's members.
+// Names of the members of a tool that a mode may set. Their ranges are those of a tool's members. A
+// mode also has the range of its power.
 static const char *const settings[] = {"power_w", "peak_v", "crest_factor", "current_max_a",
                                        "load_rise_off"};
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
@@ -48,7 +48,6 @@ static RECORD(mode_record, "a mode", mode_fields, NULL)
 	// clang-format on
 
 	// ---- sources
-    // ------------------------------------------------------------------------------------
 
 	// The limits of a range need no source, because the number inside the range has one.
 	static bool has_source(const cJSON *member)

@@ -10,9 +10,9 @@ typedef struct cau_choice_names {
 } cau_choice_names;
 
 typedef struct cau_tool_choice {
-	cau_choice_names names; // names as the object has them
+	cau_choice_names names; // the names in the object
 	bool chosen;
-	cau_instrument_mode mode; // only if chosen
+	cau_instrument_mode mode; // the mode that the object names; only if `chosen`
 } cau_tool_choice;
 
 extern const cau_record cau_instrument_record; // cau_choice_names
@@ -25,7 +25,7 @@ void cau_begin_tool(cau_reader *reader, const cJSON *object, cau_tool_def *tool,
 // range.
 void cau_end_tool(cau_reader *reader, const cau_tool_def *tool, const cau_tool_choice *choice);
 
-// The profiles in the build, sorted by name.
+// A profile in the build. The profiles are sorted by name.
 typedef struct cau_instrument_file {
 	const char *name; // file name without its ending
 	const char *text;

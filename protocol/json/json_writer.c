@@ -10,7 +10,8 @@
 #include "cautery/assert.h"
 #include "cautery/utf8.h"
 
-static const double integer_bound = 9007199254740992.0; // 2^53
+// Bound of integers, 2^53: a double represents every smaller integer.
+static const double integer_bound = 9007199254740992.0;
 
 void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reason)
 {

@@ -9,7 +9,8 @@
 
 enum {
 	LONGEST = 63,
-	// a word of three letters may have one slip, a word of six letters two
+	// number of letters for each allowed slip: one slip in a word of three letters, two in a word
+	// of six
 	LETTERS_PER_SLIP = 3,
 };
 
@@ -53,7 +54,8 @@ const char *cau_nearest(const char *word, const char *const *words, size_t count
 	size_t length = strlen(word);
 	if (length > LONGEST)
 		return NULL;
-	// The limit is at most the number of letters, because any other word is within that distance.
+	// The slips must be fewer than the letters: with as many slips as letters, any word of this
+	// length would be near.
 	int fewest = least((int)length, ((int)length + LETTERS_PER_SLIP - 1) / LETTERS_PER_SLIP + 1);
 	for (size_t i = 0; i < count; i++) {
 		size_t other = strlen(words[i]);

@@ -33,13 +33,14 @@ typedef struct cau_field {
 	cau_field_type type;
 	size_t offset; // offset of the member in the struct
 	int32_t count; // for a NUMBER or INTEGER: 0 for a scalar, else the length of the array
-	// smallest accepted length of the array; values that are not given stay. 0: only `count`
+	// smallest accepted length of an array; values beyond a shorter array stay unchanged. 0: the
+	// length must be `count`
 	int32_t least_count;
 	double least, most;         // range of each NUMBER or INTEGER
 	const cau_choices *choices; // words of a CHOICE
 	unsigned kinds;             // bits of the kinds that have this field; 0 means all
 	bool required;
-	const char *unless; // a member that makes this one optional, or NULL
+	const char *unless; // name of another member, with which this field is optional; or NULL
 	const char *unit, *meaning;
 } cau_field;
 
@@ -47,15 +48,17 @@ typedef struct cau_record {
 	const char *title;
 	const cau_field *fields;
 	int field_count;
-	const cau_choices
-		*kinds; // names of the bits of cau_field.kinds, which fields[0] chooses; or NULL
+	// names of the kinds, one for each bit of cau_field.kinds; fields[0] has the kind. NULL: no
+	// kinds
+	const cau_choices *kinds;
 } cau_record;
 
 // A struct to read or write. One JSON object may consist of several parts.
 typedef struct cau_part {
 	const cau_record *record;
 	void *base;
-	int kind; // the bit's index, if the record has kinds
+	int kind; // kind of the struct, an index into the record's `kinds`; unused if the record has no
+	          // kinds
 } cau_part;
 
 enum { CAU_MAX_PARTS = 6 };

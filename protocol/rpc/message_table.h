@@ -25,12 +25,12 @@ typedef enum cau_wire_type {
 typedef struct cau_wire_field {
 	const char *name;
 	const char *unit, *meaning;
-	double least, most;         // INTEGER, NUMBER, VECTOR, NUMBERS, INTEGERS
-	const cau_choices *choices; // CHOICE, CHOICES
+	double least, most;         // range of an INTEGER, NUMBER, VECTOR, NUMBERS or INTEGERS
+	const cau_choices *choices; // words of a CHOICE or CHOICES
 	size_t offset;              // offset of the member in the C type
 	size_t has_offset;          // offset of the bool has_<name>, if the member is optional
 	cau_wire_type type;
-	cau_wire_object object; // PART, LIST
+	cau_wire_object object; // type of a PART, or of a LIST's items
 	int32_t count;          // VECTOR: length; TEXT: most bytes; LIST, NUMBERS, INTEGERS: most items
 	bool required;
 } cau_wire_field;

@@ -34,7 +34,7 @@ void cau_rpc_fault_of_error(cau_rpc_fault *fault, const cau_error *error)
 
 // ---- the envelope -------------------------------------------------------------------------------
 
-// 2^53 - 1, up to which a double represents every integer
+// Largest integer that is read, 2^53 - 1: up to here a double represents every integer.
 static const double whole_most = 9007199254740991.0;
 
 static bool read_id(const cJSON *value, cau_rpc_id *id)

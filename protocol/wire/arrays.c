@@ -3,8 +3,8 @@
 
 #include "cautery/assert.h"
 
-// The other channels (positions, mask, tools, statistics, vessels, contacts of tools) have cases of
-// their own in this file, the encoder and the decoder.
+// The six channels that are no scalars (positions, mask, tools, statistics, vessels, contacts of
+// tools) have cases of their own in this file, the encoder and the decoder.
 _Static_assert(CAU_CHANNEL_COUNT - CAU_SCALAR_COUNT == 6, "a channel is a scalar or has cases");
 
 int cau_channel_of_section(int type)

@@ -7,7 +7,7 @@
 #include "cautery/frame_codec.h"
 #include "wire/elements.h"
 
-enum { POSITION_LIMIT = 1 << 30 }; // steps from the origin
+enum { POSITION_LIMIT = 1 << 30 }; // largest distance from the origin along an axis, in steps
 
 static inline bool cau_stream_has(const cau_stream_def *def, int channel)
 {
@@ -26,6 +26,7 @@ typedef struct array_shape {
 
 array_shape cau_array_shape_of(const cau_stream_def *def, int channel);
 
-// Total words of all arrays, and the largest scratch memory that an array needs.
+// Returns the number of words of all arrays.
 size_t cau_arrays_words(const cau_stream_def *def);
+// Returns the largest scratch memory that an array needs.
 size_t cau_arrays_scratch_bytes(const cau_stream_def *def);

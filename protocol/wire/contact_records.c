@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `tool_contact`. README.md in protocol/ has the layout.
+// Writes and reads the section of the channel `tool_contact` in frames. README.md in protocol/ has
+// the layout.
 #include "wire/contact_records.h"
 
 #include <math.h>
@@ -9,14 +10,15 @@
 #include "cautery/name.h"
 #include "wire/bytes.h"
 
-// Sizes of a record without its name and planes, and of a plane. Numbers are floats.
+// Sizes of a record without its name and planes (RECORD_BYTES), and of a plane (PLANE_BYTES).
+// Numbers are floats.
 enum {
 	HEAD_BYTES = 4,
 	NUMBERS = 29,
 	PLANE_NUMBERS = 5,
 	RECORD_BYTES = HEAD_BYTES + 4 * NUMBERS,
 	PLANE_BYTES = 4 * PLANE_NUMBERS,
-	VALID = 1, // bit of the flags
+	VALID = 1, // flag of a valid contact
 };
 _Static_assert(4 + CAU_MAX_TOOLS *
                            (RECORD_BYTES + CAU_NAME_BYTES + 3 + CAU_CONTACT_PLANES * PLANE_BYTES) <=

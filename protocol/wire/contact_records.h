@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `tool_contact`.
+// Writes and reads the section of the channel `tool_contact` in frames.
 #pragma once
 
 #include <stddef.h>

@@ -7,11 +7,11 @@
 #include "wire/bytes.h"
 
 enum {
-	// Up to this number of unchanged elements between two changed elements are written. A new run
-	// costs two bytes or more, an unchanged element about half a byte.
+	// Largest number of unchanged elements between two changed elements that are written within one
+	// run. A new run costs two bytes or more, an unchanged element about half a byte.
 	MERGED_GAP = 3,
-	RUN_BYTES_MAX = 10, // two LEB128 numbers of 32 bits
-	LENGTH_BYTES = 4,   // length field before meshoptimizer's output
+	RUN_BYTES_MAX = 10, // largest size of a run's head: two LEB128 numbers of 32 bits
+	LENGTH_BYTES = 4,   // size of the length field before meshoptimizer's output
 };
 
 static size_t stride_bytes(uint32_t components, uint32_t width)

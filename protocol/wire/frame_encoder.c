@@ -148,10 +148,9 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 	           : cau_fail(error, CAU_NUMERICAL, "time_s", "the time is not finite");
 }
 
-// True if a vertex keeps its old position and scalars because no drawn face uses it. Such vertices
-// are not visible, and in fat most vertices are such. There is nothing to keep in the epoch's first
-// frame. In a stream without the mask no vertex is kept, because readers cannot know which vertices
-// are drawn.
+// True if a vertex keeps its old position and scalars, because no drawn face uses the vertex. In
+// fat, most vertices are hidden in this way. The epoch's first frame has nothing to keep. In a
+// stream without the mask no vertex is kept, because readers cannot know which vertices are drawn.
 static bool is_kept(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
                     int32_t vertex)
 {

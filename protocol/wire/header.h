@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers of frames, and heads of sections.
+// Writes the headers of frames and the heads of sections, and iterates over the sections of a
+// frame.
 #pragma once
 
 #include "cautery/frame_codec.h"
 
-// Writes CAU_FRAME_HEADER_BYTES. The version is always CAU_FRAME_VERSION, not that of *header.
+// Writes a header of CAU_FRAME_HEADER_BYTES. The written version is always CAU_FRAME_VERSION,
+// whatever header->version is.
 void cau_frame_header_write(uint8_t *out, const cau_frame_header *header);
 
 // Writes a section's head; `payload_bytes` is a multiple of 4.

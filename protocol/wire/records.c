@@ -14,7 +14,8 @@ enum {
 	TOOL_SLIPPING = 1 << 3,
 	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
 	STATISTICS_COUNTS = 10,
-	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and six more words
+	// number of words in the record: floats, counts and six more
+	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4,
 };
 _Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
                    STATISTICS_FLOATS + STATISTICS_COUNTS + 6 == STATISTICS_WORDS,

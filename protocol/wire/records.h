@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections of frames that consist of records: tool names, tools and statistics.
+// Writes and reads the sections of frames that consist of records: tool names, tools and
+// statistics.
 #pragma once
 
 #include "cautery/stream.h"
@@ -12,7 +13,7 @@ enum {
 	TOOL_FORCE_BYTES = 28,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
 	STATISTICS_RECORD_BYTES = 112,
-	// size without the members after refused_commands, as the first servers sent it
+	// smallest size of the record: the first servers sent no member after `refused_commands`
 	STATISTICS_LEAST_BYTES = 88,
 };
 

@@ -6,8 +6,8 @@
 #include "cautery/frame_codec.h"
 
 _Static_assert(CAU_CHANNEL_COUNT <= 31, "a stream's channels are the bits of one word");
-// A client that names no channels gets the channels of its version's default, so the default must
-// not change.
+// A client that names no channels gets the default channels of its version. So these channels must
+// not change within a version.
 _Static_assert(CAU_FRAME_VERSION != 1 || CAU_CHANNELS_BY_DEFAULT == 0x2f,
                "within a version no channel is added to those of a stream by default");
 

@@ -28,7 +28,7 @@ size_t cau_topology_bytes_max(const cau_stream_def *def)
 	       cau_elements_bytes_max(shape.vertices, 3);
 }
 
-// Scratch memory for the values of one section and for coding them.
+// Returns the size of the scratch memory for the values of one section and for coding these values.
 size_t cau_topology_scratch_bytes(const cau_stream_def *def)
 {
 	topology_shape shape = shape_of(def);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `vessels`. README.md in protocol/ has the layout.
+// Writes and reads the section of the channel `vessels` in frames. README.md in protocol/ has the
+// layout.
 #include "wire/vessel_records.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 #include "cautery/name.h"
 #include "wire/bytes.h"
 
-// Sizes of a vessel without its name and points, and of a point.
+// Sizes of a vessel without its name and points, and of one of its points.
 enum { VESSEL_BYTES = 20, POINT_BYTES = 16 };
 _Static_assert(4 + CAU_MAX_VESSELS * (VESSEL_BYTES + CAU_NAME_BYTES + 3 +
                                       CAU_VESSEL_SHOWN_POINTS * POINT_BYTES) <=

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section of the channel `vessels`.
+// Writes and reads the section of the channel `vessels` in frames.
 #pragma once
 
 #include <stddef.h>

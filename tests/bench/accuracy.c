@@ -96,7 +96,7 @@ static int measure_rest(turns *t, bench_accuracy_result *result)
 	for (int32_t i = 0; i < RESTING_TICKS; i++)
 		cau_session_step(t->session, NULL);
 	result->rest_core_share = (bench_now_s() - start) / (RESTING_TICKS * t->session->solver.step_s);
-	// after this, both sessions are awake and start from rest
+	// After the copy, both sessions are awake and start from rest.
 	bench_copy_state(t->fixed, t->session);
 	return 0;
 }

@@ -10,10 +10,11 @@
 typedef struct bench_options {
 	const char *scene, *scenes_directory;
 	int32_t threads, iterations, steps, repeat;
-	int solver, precision; // -1 for the scene's own
-	double accuracy;       // 0: accuracy is not measured
+	int solver, precision; // -1: the solver and precision of the scene
+	double accuracy;       // wanted accuracy; 0: accuracy is not measured
 	bool cut, error, scaling, rest, update, remesh, classroom, json, help;
-	int32_t sessions, driven, workers; // numbers for a classroom
+	// numbers of sessions, driven sessions and workers of a classroom
+	int32_t sessions, driven, workers;
 	const char *instruction_set;
 } bench_options;
 
@@ -49,7 +50,7 @@ typedef struct bench_steps_result {
 	double frame_over_cholmod, cholmod_ms, allocations_per_step, bytes_session;
 	int32_t vertices, tetrahedra, triangles, contacts;
 	uint64_t hash;
-	char instruction_set[16]; // used by the session
+	char instruction_set[16]; // instruction set that the session used
 } bench_steps_result;
 int bench_steps(const bench_options *options, bench_steps_result *result);
 
@@ -106,15 +107,15 @@ typedef struct bench_classroom_result {
 	int32_t elements_removed;     // elements that all tools removed
 } bench_classroom_result;
 int bench_classroom(const bench_options *options, bench_classroom_result *result);
-// steps.c: the tools of plain steps. One is above the tissue with energy on, the other pressed into
-// the tissue.
+// steps.c: places the tools of plain steps. One tool is above the tissue with energy on, the other
+// tool is pressed into the tissue.
 void bench_place_tools(cau_session *session);
 
 // limit.c: the time of a step if it only had to move its bytes through one core.
 typedef struct bench_limit_result {
-	double bytes_step;    // size of the arrays of K iterations, counted once a pass
-	double bandwidth_b_s; // one core reading a block of the size of one iteration repeatedly
-	double limit_ms;      // bytes_step / bandwidth_b_s / threads
+	double bytes_step;    // bytes that K iterations read and write, with each array once a pass
+	double bandwidth_b_s; // rate at which one core reads a block of one iteration's size repeatedly
+	double limit_ms;      // least time of a step: bytes_step / bandwidth_b_s / threads
 } bench_limit_result;
 int bench_limit(const bench_options *options, bench_limit_result *result);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A class: many sessions of one scene in real time, a few of them driven, on a few workers. There
-// is no daemon. So this is the largest number of sessions if only steps took time.
+// Measures a class: many sessions of one scene in real time, a few of them driven, on a few
+// workers. There is no daemon, so only steps take time. A daemon can serve this number of sessions
+// at most.
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
@@ -149,7 +150,8 @@ static double proportional_bytes(void)
 	return 1024 * kib;
 }
 
-// Creates a session. The first one settles; the others start from its state.
+// Creates a session. If `first` is NULL, the session steps until its tissue has settled. Else the
+// session starts from the state of `first`.
 static cau_session *seat(const cau_scene_def *scene, const cau_session *first)
 {
 	cau_session_def def = cau_default_session_def();

@@ -2,7 +2,8 @@
 // The cutting run. The scene's tool dwells with energy on and is then moved across at the scene's
 // speed, for as many steps as needed. Cutting steps are the steps that removed an element, and
 // those with a pending downdate before or after them. Repeated runs have the same bits. So the
-// smallest time of a step is nearest to its own cost, and the rest is other load on the machine.
+// smallest time of a step over the runs is nearest to the step's own cost. Longer times come from
+// other load on the machine.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,7 +68,7 @@ static int32_t ticks_across(const cut_run *run)
 	return (int32_t)ceil(sqrt(squared) / (cut->speed_m_s * run->step_s));
 }
 
-// Time of each step, the smallest of the runs so far.
+// Times of the steps, ms. Each is the smallest time of this step in the runs so far.
 typedef struct cut_times {
 	double plain[PLAIN_STEPS], *drawn;
 	uint8_t *cuts; // true for a drawn step that is a cutting step
@@ -161,7 +162,9 @@ int bench_cut(const bench_options *options, bench_cut_result *result)
 
 // ---- errors during the cut
 
-enum { SAMPLE_EVERY = 24 }; // steps; a converged step takes some hundred iterations
+// Number of steps from one sample to the next. A sample is expensive, because its converged step
+// takes some hundred iterations.
+enum { SAMPLE_EVERY = 24 };
 
 typedef struct along_run {
 	cut_run cut;
@@ -214,8 +217,8 @@ static void sum_up_along(along_run *run, bench_along_result *result)
 	result->ms_p99 = bench_quantile(run->ms, n, 0.99);
 }
 
-// Dwells and moves the tool across, with PLAIN_STEPS before, and PLAIN_STEPS after while the wound
-// settles.
+// Takes PLAIN_STEPS plain steps, dwells with energy on, and moves the tool across. Then takes
+// PLAIN_STEPS more steps, in which the wound settles.
 static int draw_along(along_run *run, const cau_scene_def *scene, bench_along_result *result)
 {
 	int32_t dwell = (int32_t)(scene->cut.dwell_s / run->cut.step_s);

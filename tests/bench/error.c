@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of a step of K iterations under the scene's pull. A session in double precision repeats
-// each measured step from the same state and iterates to convergence. The error is the distance
-// between both results relative to the step's own motion, over all free vertices, in the mass norm.
+// Measures the error of a step of K iterations under the scene's pull. A session in double
+// precision repeats each measured step from the same state and iterates to convergence. The error
+// is the distance between both results relative to the step's own motion, over all free vertices,
+// in the mass norm.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,8 @@
 
 enum {
 	CONVERGED_ITERATIONS = 1000,
-	// the diagonal solver takes hundreds of iterations to halve the error
+	// Iterations of a converged step of the diagonal solver, which takes hundreds of iterations to
+	// halve the error.
 	CONVERGED_DIAGONAL = 10000,
 	SAMPLES = 10,
 	MOST_SAMPLES = 64
@@ -184,7 +186,8 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 }
 
 // Turns tearing off. A trial repeats a step many times from one state, and each repetition would
-// count as a tick towards a tear. Its tissue would soon differ from that of the converged step.
+// count as a tick towards a tear. The trial's tissue would soon differ from the tissue of the
+// converged step.
 static void tear_nothing(cau_scene_def *scene)
 {
 	for (int32_t l = 0; l < scene->layer_count; ++l) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time of a step if only its bytes mattered: the bytes that K iterations read and write, each
-// array once a pass, over the rate at which one core reads a block of this size repeatedly. So the
-// block comes from the cache that would hold it.
+// Computes the time of a step if only the transfer of bytes took time. The bytes are those that K
+// iterations read and write, with each array once a pass. They are divided by the rate at which one
+// core reads a block of the size of one iteration repeatedly. So the block comes from the cache
+// that would hold this iteration's arrays.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,16 +12,16 @@
 
 enum { PASSES = 40, RUNS = 5 };
 
-// Reals and indices that one evaluation of an element of each kind reads and writes
+// Numbers of reals and indices that one evaluation of an element of each kind reads and writes
 // (constraint/elements.h). Values that a pair of elements shares are read once. Records stay in the
-// nearest cache while contributions are added. They count when they are written and when they are
-// summed.
+// nearest cache while contributions are added. So a record is counted only when it is written and
+// when it is summed.
 enum {
 	SHEET_REALS = 4 + 6 + 1 + 3 + 2 * 6,
 	FAT_REALS = 9 + 1,
 	FAT_LIMIT_REALS = 2 * 4,
 	FAT_TARGET_REALS = 6,
-	FAT_SHRUNK_REALS = 1, // weight of its limit, for fat without other limits
+	FAT_SHRUNK_REALS = 1, // the weight of the limit of fat that has no limit except by shrinkage
 	FAT_PLASTIC_REALS = 6,
 	LINK_REALS = 3 + 1 + 1,
 	HINGE_REALS = 4 + 3 + 1 + 1,
@@ -52,8 +53,8 @@ static double bytes_of_elements(const cau_elements *e)
 	double places =
 		(double)e->sheet.slot_count * SHEET_INDICES + (double)e->fat.slot_count * FAT_INDICES +
 		(double)e->link.slot_count * LINK_INDICES + (double)e->hinge.slot_count * HINGE_INDICES;
-	// The index of a record's vertex is read for the displacement. The index of a vertex's record
-	// is read for the sum.
+	// Two indices are read for each record: the index of its vertex, to fetch the displacement, and
+	// the index of the record, to sum the forces of the vertex.
 	double names = 2.0 * e->record_count;
 	return reals * real_bytes + places * sizeof(uint16_t) + names * sizeof(int32_t);
 }

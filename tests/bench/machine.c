@@ -11,7 +11,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum { PATH_BYTES = 512, LINE_BYTES = 8192 }; // x86 lists its features in one long line
+// LINE_BYTES is large, because x86 lists its features in one line.
+enum { PATH_BYTES = 512, LINE_BYTES = 8192 };
 
 static FILE *open_under(const char *root, const char *path)
 {
@@ -72,10 +73,10 @@ static void take_line(bench_machine *m, arm_revision *arm, const char *key, cons
 		{"CPU variant", NULL, 0, &arm->variant},
 		{"CPU revision", NULL, 0, &arm->revision},
 		{"model name", m->name, sizeof m->name, NULL},
-		{"Model", m->name, sizeof m->name, NULL},    // boards
-		{"Hardware", m->name, sizeof m->name, NULL}, // older ARM kernels
-		{"uarch", m->name, sizeof m->name, NULL},    // RISC-V
-		{"cpu", m->name, sizeof m->name, NULL},      // POWER
+		{"Model", m->name, sizeof m->name, NULL},    // the name on boards
+		{"Hardware", m->name, sizeof m->name, NULL}, // the name on older ARM kernels
+		{"uarch", m->name, sizeof m->name, NULL},    // the name on RISC-V
+		{"cpu", m->name, sizeof m->name, NULL},      // the name on POWER
 	};
 	for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
 		if (strcmp(known[i].key, key) != 0)
@@ -189,7 +190,7 @@ bench_disturbance bench_disturbance_between(const bench_cpu_time *before,
 	bench_disturbance d = {before->load, -1, -1};
 	double total = after->total - before->total;
 	if (before->total <= 0 || total <= 0)
-		return d; // unknown, or shorter than a tick
+		return d; // the time between the readings is unknown, or shorter than a tick
 	double own = (after->own_s - before->own_s) * ticks_per_s;
 	// The kernel counts whole ticks, so the difference may be slightly negative.
 	d.others = fmin(fmax((after->busy - before->busy - own) / total, 0), 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Describes the machine of a measurement and the other load on it. Otherwise results of two
-// machines, or of a busy and an idle machine, could be compared by mistake.
+// Describes the machine of a measurement and the other load on this machine. Without the
+// description, results of two machines, or of a busy and an idle machine, could be compared by
+// mistake.
 #pragma once
 
 #include <stdio.h>
@@ -30,7 +31,7 @@ void bench_machine_read(const char *root, bench_machine *machine);
 // Processor time of all cores since boot, in kernel ticks, and of this program in seconds.
 typedef struct bench_cpu_time {
 	double total, busy; // `busy` excludes steal; total 0 means unknown
-	double steal;       // taken by the host from a virtual machine; -1 if unknown
+	double steal;       // time that the host took from this virtual machine; -1 if unknown
 	double own_s;
 	double load; // mean number of runnable programs in the last minute; -1 if unknown
 } bench_cpu_time;

@@ -161,7 +161,7 @@ static void others_and_steal_are_shares_of_all_cores(void **state)
 	after.own_s = before.own_s + 0.5; // 0.5 s are half of the 100 busy ticks, at 100 ticks a second
 	bench_disturbance d = bench_disturbance_between(&before, &after, 100);
 	assert_true(d.load_before == 0.75);
-	assert_float_equal(d.others, 50. / 200, 1e-12); // the limit is for rounding
+	assert_float_equal(d.others, 50. / 200, 1e-12); // the tolerance is for rounding
 	assert_float_equal(d.steal, 10. / 200, 1e-12);
 	after.own_s = before.own_s + 1.01; // ticks are whole numbers, but the share is never below 0
 	assert_true(bench_disturbance_between(&before, &after, 100).others == 0);
@@ -178,7 +178,7 @@ static void a_kernel_without_steal_says_nothing_of_it(void **state)
 	after.own_s = before.own_s;
 	bench_disturbance d = bench_disturbance_between(&before, &after, 100);
 	assert_true(d.steal == -1);
-	assert_float_equal(d.others, 0.5, 1e-12); // the limit is for rounding
+	assert_float_equal(d.others, 0.5, 1e-12); // the tolerance is for rounding
 }
 
 int main(void)

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Section 7.1: the same cut by a method that changes the topology, and by Cautery's method.
+// Measures a cut by a method that changes the topology, and the same cut by Cautery's method
+// (section 7.1).
 //
-// The other method follows the tip along the scene's line of cut, with the vertical plane through
-// the line. Behind the tip it refines elements that the plane crosses. It bisects their crossed
-// edges at the plane, in all elements around the edge, so that the mesh stays conforming. Vertices
-// in the plane behind the tip are doubled, and the elements on one side take the double. After each
-// change the method must assemble, order, analyse and factorise the system of the new size. It must
-// also write vertex and index buffers of new sizes. The system has only elements of the cut layer,
-// without pins and links, which favours this method.
+// The method that changes the topology follows the tip along the scene's line of cut, with the
+// vertical plane through the line. Behind the tip it refines elements that the plane crosses. It
+// bisects their crossed edges at the plane, in all elements around the edge, so that the mesh stays
+// conforming. Vertices in the plane behind the tip are doubled, and the elements on one side take
+// the double. After each change the method must assemble, order, analyse and factorise the system
+// of the new size. It must also write vertex and index buffers of new sizes. The system has only
+// elements of the cut layer, without pins and links, which favours this method.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,10 +18,11 @@
 #include "session/session_internal.h"
 
 enum { MOST_CORNERS = 4, VERTEX_BYTES = 12, INDEX_BYTES = 4, GROWTH = 4 };
-// A vertex is in the plane if it is within this share of its element's longest edge.
+// Largest distance from the plane at which a vertex is in the plane, as a share of the longest edge
+// of its element.
 static const double NEAR_PLANE = 0.05;
-// An element is ill-shaped if its area or volume is below this share of that of a regular element
-// with the same longest edge.
+// Least area or volume of a well-shaped element, as a share of the area or volume of a regular
+// element with the same longest edge.
 static const double ILL_SHAPED = 0.05;
 
 typedef struct remesh {

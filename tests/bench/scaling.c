@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Step time over the number of elements. The slab grows in its plane from its own size to eight
-// times as many cells. The exponent is fitted to the logarithms by least squares. Each size takes
-// the smallest median of several runs.
+// Measures the step time over the number of elements. The slab grows in its plane from its own size
+// to eight times as many cells. The exponent is fitted to the logarithms by least squares. The time
+// of a size is the smallest median of several runs.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -78,7 +78,7 @@ int bench_scaling(const bench_options *options, bench_scaling_result *result)
 {
 	memset(result, 0, sizeof *result);
 	result->count = 4;
-	// interleaved, so that other load on the machine affects all sizes alike
+	// The sizes alternate, so that other load on the machine affects all sizes alike.
 	for (int32_t r = 0; r < options->repeat; ++r)
 		for (int doubled = 0; doubled < result->count; ++doubled)
 			if (measure(options, doubled, result))

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cost of updating the matrix after a cut (section 7.2), over the number of removed elements.
-// There are three ways. Exact downdates of the factor are for cuts of a few elements. A numeric
-// factorisation with the present pattern is for cuts of many elements. A method whose cuts change
-// the topology, and so the pattern, must order, analyse and factorise again. Each time includes all
-// work before the next solve (packing), and excludes the steps between cuts.
+// Measures the cost of updating the matrix after a cut (section 7.2), over the number of removed
+// elements. There are three ways. Exact downdates of the factor are for cuts of a few elements. A
+// numeric factorisation with the present pattern is for cuts of many elements. A method whose cuts
+// change the topology, and so the pattern, must order, analyse and factorise again. Each time
+// includes all work before the next solve (packing), and excludes the steps between cuts.
 //
 // A cut removes the elements nearest to the scene's line of cut.
 #include <math.h>
@@ -14,7 +14,7 @@
 #include "bench/bench.h"
 #include "session/session_internal.h"
 
-enum { ROUNDS = 5 }; // each time is the smallest of these rounds
+enum { ROUNDS = 5 }; // number of rounds; each result is the smallest time of these rounds
 
 typedef struct ranked {
 	double distance_m;

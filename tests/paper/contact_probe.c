@@ -16,7 +16,8 @@
 
 // ---- press
 static const double thick_m = 16e-3;
-// cells are equal within this many radii of the largest contact patch
+// Half width of the area with equal cells, as a multiple of the radius of the largest contact
+// patch.
 static const double even = 1.6;
 
 static double vertex_depth_m(const indent_stand *stand)
@@ -94,9 +95,9 @@ static void press(int count, char **text)
 }
 
 // ---- cost
-static const double run_m = 0.03;     // half the length of the motion to and fro
-static const double aside_m = 0.6e-3; // distance from the mesh's lines
-static const double away_m = 0.05;    // height of the ball that does not touch
+static const double run_m = 0.03;     // half the length of the motion to and fro, m
+static const double aside_m = 0.6e-3; // distance of the ball's path from the mesh's lines, m
+static const double away_m = 0.05;    // height of the ball that does not touch the tissue, m
 static const double tick_s = 1.0 / 60;
 enum { WARM_UP_TICKS = 60, STRETCH_TICKS = 20, STEP_ITERATIONS = 10 };
 

@@ -5,10 +5,12 @@
 
 #include "measured.h"
 
-// The constants of core/session/electrosurgery.c.
+// Constants with the names, values and meanings of core/session/electrosurgery.c: range of the
+// current, least peak voltage and field of a spark, radius of its spot, and residual of the
+// potential.
 static const double reach_m = 3e-3, spark_v = 200, spark_v_m = 3e6, spot_m = 1e-4;
 static const double residual_most = 1e-3;
-// length of the sheet before the start and beyond the end of the motion
+// Length of the sheet before the start and beyond the end of the motion, mm.
 static const double margin_mm = 2;
 enum { ITERATIONS = 60, HALVES = 2 };
 
@@ -50,8 +52,8 @@ static void open_cut(cut_state *cut, const cut_def *def, cau_bioheat_material ti
 	                         .cooling_w_k = def->upper_w_k / HALVES};
 }
 
-// Finds the cells that sparks reach, and among them the cells that metal touches. All cells that an
-// arc reaches share its spot.
+// Finds the cells that sparks reach, and among these cells those that the metal touches. All cells
+// that an arc reaches share the arc's spot.
 static void find_contacts(cut_state *cut, double at_m)
 {
 	cau_bioheat *bioheat = &cut->cells.bioheat;

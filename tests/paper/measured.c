@@ -35,7 +35,7 @@ int32_t measured_add(measured_cells *cells, int32_t x, int32_t y, int32_t z, dou
 	return cell;
 }
 
-// For tissue that does not boil: all power heats the cells, and they keep their water.
+// Heats tissue that does not boil: all power heats the cells, and the cells keep their water.
 static void warm_without_boiling(cau_bioheat *bioheat, double step_s)
 {
 	for (int32_t i = 0; i < bioheat->cells.count; i++) {
@@ -66,7 +66,8 @@ bool measured_parts(const measured_cells *cells, int32_t cell, double parted_wat
 
 bool measured_warm(const measured_cells *cells)
 {
-	static const double damage_from_c = 43; // the constant of core/bioheat/bioheat.c
+	// Temperature above which damage increases, degC, as in core/bioheat/bioheat.c.
+	static const double damage_from_c = 43;
 	for (int32_t i = 0; i < cells->bioheat.cells.count; i++)
 		if (cells->bioheat.temperature[i] > damage_from_c)
 			return true;

@@ -25,8 +25,8 @@
 	X(perfusion)  /* factor on the tissue's perfusion */                                           \
 	X(boiling)    /* factor on the tissue's water; 0: nothing boils, and water stays */            \
 	X(friction_w) /* heat of the upper blade */                                                    \
-	X(voltage_v)  /* root mean square, if given; else the generator decides */                     \
-	X(power_w)    /* of the generator */                                                           \
+	X(voltage_v)  /* root mean square of the voltage; 0: the generator decides */                  \
+	X(power_w)    /* power of the generator */                                                     \
 	X(peak_v)                                                                                      \
 	X(current_a)                                                                                   \
 	X(crest)                                                                                       \
@@ -40,11 +40,11 @@
 	X(pause_s)                                                                                     \
 	X(again_s)                                                                                     \
 	X(pause_open)   /* 1: the jaws are open in the pause */                                        \
-	X(hold_s)       /* time closed after energy */                                                 \
-	X(cool_s)       /* time open after that */                                                     \
-	X(parted_water) /* share of water: energy ends when no cell between the jaws has more */       \
-	X(reaction_s)   /* time from that moment to the end of energy */                               \
-	X(rise)         /* energy ends when the load is this multiple of its least value */
+	X(hold_s)       /* time that the jaws stay closed after energy */                              \
+	X(cool_s)       /* time that the jaws are open after hold_s */                                 \
+	X(parted_water) /* share of water: energy ends when no cell between the jaws has more water */ \
+	X(reaction_s)   /* time from the moment of parted_water to the end of energy */                \
+	X(rise)         /* load at which energy ends, as a multiple of its least value */
 
 #define MEASURED_NUMBER(name) double name;
 
@@ -53,7 +53,7 @@ typedef struct section_def {
 } section_def;
 
 #define SECTION_RESULTS(X)                                                                         \
-	X(necrosis_mm)  /* beside the jaws, after cooling down */                                      \
+	X(necrosis_mm)  /* width of dead tissue beside the jaws, after cooling down */                 \
 	X(blade_peak_c) /* highest temperature of the upper jaw */                                     \
 	X(tissue_peak_c)                                                                               \
 	X(off_c)    /* the upper jaw's temperature when energy ended */                                \
@@ -66,7 +66,7 @@ typedef struct section_def {
 	X(last_ohm)                                                                                    \
 	X(came_in_j)                                                                                   \
 	X(boiled_j)                                                                                    \
-	X(ledger_gap) /* share of the supplied energy */
+	X(ledger_gap) /* largest gap of the energy ledger, as a share of the supplied energy */
 
 typedef struct section_found {
 	SECTION_RESULTS(MEASURED_NUMBER)
@@ -80,9 +80,9 @@ section_found section_run(const section_def *def, cau_bioheat_material tissue);
 	X(cell_mm)                                                                                     \
 	X(step_s)                                                                                      \
 	X(thick_mm)                                                                                    \
-	X(wide_mm)   /* on one side, because it is symmetric */                                        \
+	X(wide_mm)   /* width of the sheet on one side; the other side is symmetric */                 \
 	X(way_mm)    /* length of the electrode's motion */                                            \
-	X(radius_mm) /* of the electrode, which passes through the sheet */                            \
+	X(radius_mm) /* radius of the electrode, which passes through the sheet */                     \
 	X(speed_mm_s)                                                                                  \
 	X(start_c)                                                                                     \
 	X(perfusion)                                                                                   \
@@ -93,7 +93,7 @@ section_found section_run(const section_def *def, cau_bioheat_material tissue);
 	X(crest)                                                                                       \
 	X(upper_j_k)                                                                                   \
 	X(upper_w_k)                                                                                   \
-	X(parted_water) /* share of water: a cell that sparks reach parts when it has no more */       \
+	X(parted_water) /* share of water at which a cell that sparks reach parts */                   \
 	X(cool_s)
 
 typedef struct cut_def {
@@ -101,7 +101,7 @@ typedef struct cut_def {
 } cut_def;
 
 #define CUT_RESULTS(X)                                                                             \
-	X(necrosis_mm) /* beside the cut, mean over the middle half of the motion */                   \
+	X(necrosis_mm) /* width of dead tissue beside the cut, mean over the middle half of the way */ \
 	X(kerf_mm)     /* mean width of the cut, both sides */                                         \
 	X(cut_share)   /* share of the middle line that has parted */                                  \
 	X(came_in_j)                                                                                   \
@@ -140,8 +140,8 @@ typedef struct needle_def {
 } needle_def;
 
 #define NEEDLE_RESULTS(X)                                                                          \
-	X(temperature_c) /* at the thermometer when energy ended */                                    \
-	X(dead_cm3)      /* after cooling down */                                                      \
+	X(temperature_c) /* temperature at the thermometer when energy ended */                        \
+	X(dead_cm3)      /* volume of dead tissue after cooling down */                                \
 	X(peak_c)                                                                                      \
 	X(first_ohm)                                                                                   \
 	X(last_ohm)                                                                                    \
@@ -158,7 +158,7 @@ typedef struct needle_found {
 needle_found needle_run(const needle_def *def, cau_bioheat_material tissue);
 
 // ---- shared
-static const double measured_gone = 1; // tissue is dead from this Omega on
+static const double measured_gone = 1; // least damage Omega of dead tissue
 
 typedef struct measured_cells {
 	cau_arena arena;
@@ -180,14 +180,14 @@ int32_t measured_add(measured_cells *cells, int32_t x, int32_t y, int32_t z, dou
 // 100 degC.
 bool measured_parts(const measured_cells *cells, int32_t cell, double parted_water);
 
-// Performs a step, in halves if stability requires it. There may be no blades.
+// Performs a step, in halves if stability requires it. `blade_count` may be 0.
 void measured_step(measured_cells *cells, cau_blade *blade, int32_t blade_count, double step_s);
 
 // True if some cell is so warm that damage increases.
 bool measured_warm(const measured_cells *cells);
 
-// Returns the largest gap of the energy ledger as a share of the supplied energy, which is stored
-// in *came_in_j.
+// Returns the largest gap of the energy ledger as a share of the supplied energy. Stores the
+// supplied energy in *came_in_j.
 double measured_gap(const measured_cells *cells, double *came_in_j);
 
 // Returns the depth of dead tissue from a border, in cells. `damage` has the cells from the border

@@ -6,7 +6,7 @@
 #include "measured.h"
 
 static const double pi = 3.14159265358979323846;
-static const double reach_m = 0.025; // range of the current around the electrode
+static const double reach_m = 0.025; // range of the current around the electrode, m
 static const double residual_most = 1e-4;
 enum { ITERATIONS = 200, HALVES = 2 };
 
@@ -30,9 +30,10 @@ static int32_t find(const needle_state *needle, int32_t x, int32_t z)
 	return cau_cells_find(&needle->cells.bioheat.cells, (int32_t[]){x, 0, z});
 }
 
-// A face between two rings is as large as the ring between their middles, but cells.h uses the area
-// of the emptier ring. The pull-back corrects this: the mean of both cells is 1 + h / (2 r), up to
-// h^4.
+// Corrects the area of the faces between the rings of the wedge. The true area is that of a ring
+// half way between the middles of two rings, but cells.h uses the area of the ring with less
+// tissue. The pull-back is a factor on the conduction: its mean over both cells is 1 + h / (2 r),
+// with an error of order h^4.
 static void widen(needle_state *needle, int32_t cell, int32_t x)
 {
 	double ratio = needle->cells.bioheat.cells.side_m / radius_of(needle, x);

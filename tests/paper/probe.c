@@ -32,7 +32,7 @@ static void heat(double grid_step_m, int32_t grid_cells)
 	cau_sheet_material *strip =
 		stage_add_sheet(scene, "strip", 2 * strip_m, 4 * lattice_m, along, 4)->sheet;
 	strip->heat.absorption_per_s = 0; // the strip absorbs no energy, so it stays whole
-	// Pins all vertices but one end, which cannot move either.
+	// Pins all vertices except those of one end, which cannot move either.
 	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){strip_m - lattice_m / 2, 1, 1});
 	cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0);
 	ball->hot_radius_m = ball_m;

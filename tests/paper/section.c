@@ -7,20 +7,23 @@
 
 enum { UPPER, LOWER, JAWS };
 enum { ITERATIONS = 200 };
-static const double reach_m = 5e-3; // range of the current around the electrodes
+static const double reach_m = 5e-3; // range of the current around the electrodes, m
 static const double residual_most = 1e-5;
 static const double spark_v = 200;
 
-// Loss of collagen's birefringence, as in core/vessel/vessels.c (Maitland and Walsh 1997).
+// Rate of collagen's fusion, measured by the loss of birefringence (Maitland and Walsh 1997). The
+// values are those of core/vessel/vessels.c: log of the rate, and activation energy.
 static const double fusion_log_rate = 130, fusion_energy_j_mol = 89 * 4184.0;
 static const double gas_j_molk = 8.314462618, zero_k = 273.15;
 
 typedef struct section_state {
 	const section_def *def;
 	measured_cells cells;
-	int32_t across, inside, outside, beside; // numbers of cells: half of a jaw's width, and tissue
-	int32_t below;                           // index of the lowest layer between the jaws
-	double share;                            // share of all power and metal that the half slice has
+	// numbers of cells: half of a jaw's width, tissue's thickness between and beside the jaws, and
+	// the width of the tissue beside the jaws
+	int32_t across, inside, outside, beside;
+	int32_t below; // index of the lowest layer between the jaws
+	double share;  // share of all power and metal that the half slice has
 	cau_blade blade[JAWS];
 	double *fusion; // (cells) damage of collagen
 	double least_ohm;
@@ -91,7 +94,8 @@ static void touch(section_state *section, int32_t x, int32_t z, int jaw)
 	cau_bioheat *bioheat = &section->cells.bioheat;
 	cau_current *current = &section->cells.current;
 	int32_t cell = find(section, x, z);
-	double over = 2 * bioheat->cells.side_m; // area of a cell's side over half a cell
+	// Area of a cell's side over half the length of a cell, m.
+	double over = 2 * bioheat->cells.side_m;
 	bioheat->contact[bioheat->contact_count++] =
 		(cau_contact_cell){.blade = jaw, .cell = cell, .over_length_m = over};
 	current->electrode[current->electrode_count++] = (cau_electrode_cell){
@@ -216,8 +220,8 @@ static void cool(section_state *section)
 	}
 }
 
-// Returns the time until the blade has cooled to to_c. The blade is in gas, so T - gas falls with
-// exp(-cooling t / capacity).
+// Returns the time until the blade has cooled to to_c. The blade is in gas, so its temperature
+// above that of the gas falls with exp(-cooling t / capacity).
 static double seconds_to(const section_state *section, double to_c)
 {
 	const cau_blade *blade = &section->blade[UPPER];
@@ -243,7 +247,7 @@ static double deepest_mm(const section_state *section)
 	return deepest * section->def->cell_mm;
 }
 
-// Returns the fusion of the seal. It is that of the coldest part of the wall, at the best place
+// Returns the fusion of the seal: the fusion of the coldest part of the wall, at the best place
 // along the jaws (core/vessel/vessels.c).
 static double best_fusion(const section_state *section)
 {

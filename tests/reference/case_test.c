@@ -15,10 +15,12 @@
 
 #include "reference/stress.h"
 
-// The files have nine digits, so displacements have errors of 5e-10 of their size. The errors of
-// forces are the elements' stiffness times that, which is below this share of the supports' forces.
+// Largest error of a force, relative to the supports' forces. The files have nine digits, so
+// displacements have errors of 5e-10 of their size. Forces have these errors times the elements'
+// stiffness.
 static const double FORCE_TOLERANCE = 1e-6;
-// Relative to the sphere's radius, because the files have nine digits.
+// Largest distance of a touching vertex from the sphere, relative to the sphere's radius. The files
+// have nine digits.
 static const double GAP_TOLERANCE = 1e-8;
 
 static const char *const NAMES[] = {

@@ -16,7 +16,8 @@
 #include "reference/touching.h"
 
 enum { MOST_POINTS = 1500, MOST_ITERATIONS = 60, MOST_CHANGES = 100 };
-// residual relative to the ball's force; gap relative to its radius
+// Largest residual of a converged solution, relative to the ball's force, and largest violation of
+// a gap, relative to the ball's radius.
 static const double converged = 1e-8;
 
 typedef struct solver {
@@ -24,7 +25,8 @@ typedef struct solver {
 	const cau_indenting_ball *ball;
 	double *position;
 	double *gradient; // N, (n x 3)
-	int32_t *unknown; // (n): index of its x among the unknowns, or -1 if fixed
+	int32_t *unknown; // (n): index of the vertex's x coordinate among the unknowns, or -1 if the
+	                  // vertex is fixed
 	int32_t unknown_count;
 	cau_touching_point *point;
 	int point_count;
@@ -83,9 +85,10 @@ static void deformation(const double *position, const int32_t v[4], double shape
 		}
 }
 
-typedef struct tangent { // F, and the coefficients of dP (Pa)
+// The deformation gradient F, and the coefficients (Pa) of dP, the change of stress.
+typedef struct tangent {
 	bool stvk;
-	double plain, outer, volume, bulge; // for stvk, mu is `plain` and lambda is `volume`
+	double plain, outer, volume, bulge; // for stvk, `plain` is mu and `volume` is lambda
 	double f[3][3], cofactor[3][3];
 	double second[3][3]; // second Piola-Kirchhoff stress, for stvk
 } tangent;
@@ -428,8 +431,8 @@ bool cau_indented_solve(const cau_indented_body *body, const cau_indenting_ball 
 		if (done || out->iterations == MOST_ITERATIONS)
 			break;
 		right = factorise(&s);
-		// Far from the solution the curvature of pushing points may make the Hessian indefinite. It
-		// is left out then.
+		// Far from the solution the curvature of pushing points may make the Hessian indefinite.
+		// Then the curvature is left out.
 		if (!right) {
 			assemble(&s, false);
 			right = factorise(&s);

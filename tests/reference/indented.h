@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A body of linear tetrahedra, stable neo-Hookean or StVK, with a rigid ball pressed into it. The
 // static equilibrium is found by Newton's method with the exact Hessian and an active set, in
-// double. It is an oracle that is independent of core: energy, system, contact and convergence are
-// its own.
+// double. This solver is an oracle that shares nothing with core: energy, system, contact and
+// convergence are computed here.
 #pragma once
 
 #include <stdbool.h>
@@ -23,7 +23,8 @@ typedef struct cau_indented_body {
 
 typedef struct cau_indenting_ball {
 	double centre_m[3], radius_m;
-	double dip_m; // vertices stay outside; a face may be this deep inside between its vertices
+	double dip_m; // largest depth of a face inside the ball between its vertices; the vertices stay
+	              // outside
 } cau_indenting_ball;
 
 typedef struct cau_indented {
@@ -45,6 +46,7 @@ bool cau_indented_solve(const cau_indented_body *body, const cau_indenting_ball 
 // Chadwick, "Determination of elastic moduli of thin layers of soft material using the atomic force
 // microscope", Biophysical Journal 82 (2002), 2798-2810. Its last term is the fourth power of
 // sqrt(radius depth) / thickness. The paper's number for nu = 0.5 has the opposite sign of its
-// general formula there. This is 0.6 % of the force if that ratio is 0.5.
+// general formula there. The difference is 0.6 % of the force if sqrt(radius depth) / thickness is
+// 0.5.
 double cau_indented_by_hertz(double young_modulus_pa, double poisson_ratio, double radius_m,
                              double depth_m, double thickness_m);

@@ -17,7 +17,8 @@
 #include "reference/case.h"
 #include "reference/indented.h"
 
-static const double same = 1e-5; // relative to the force: the digits of the files
+// Largest relative error of displacements and forces, from the digits of the files.
+static const double same = 1e-5;
 
 // Lowers the ball in stages, because a single stage would invert elements.
 static void solve(const cau_reference_case *reference, const cau_indented_body *body,
@@ -101,7 +102,7 @@ static void hertz_is_as_printed(void **state)
 	double factor = 1 + 1.133 * x + 1.283 * x * x + 0.769 * x * x * x;
 	double found = cau_indented_by_hertz(5000, 0.5, radius_m, depth_m, thick_m) /
 	               (16.0 / 9 * 5000 * sqrt(radius_m) * pow(depth_m, 1.5));
-	// the sign may differ, and the number has three digits
+	// The sign of the last term may differ, and the numbers in the paper have three digits.
 	assert_true(fabs(found - factor) < fourth + 5e-4);
 	double far = cau_indented_by_hertz(5000, 0.3, radius_m, depth_m, 1e3);
 	double hertz = 4.0 / 3 * 5000 / (1 - 0.09) * sqrt(radius_m) * pow(depth_m, 1.5);

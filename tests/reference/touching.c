@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// share of the radius; points within this distance may come to push
+// Largest distance from the ball at which a point may come to push, as a share of the ball's
+// radius.
 static const double near = 0.01;
 
 static double dot(const double a[3], const double b[3])
@@ -175,8 +176,8 @@ int cau_touching_find(const cau_indented_body *body, const cau_indenting_ball *b
 
 // Computes the second derivative of the distance. Where the point can slide, its distance is that
 // to a line or a plane. The line or plane turns when a corner moves along the normal, and the point
-// slides in proportion to the distance. In the other directions the point moves along with the
-// corner, and its direction from the middle turns.
+// slides in proportion to the distance. In all other directions the point moves along with the
+// corner, and the direction from the middle to the point turns.
 void cau_touching_bend(const cau_touching_point *p, int a, int b, double bend[3][3])
 {
 	const double *n = p->normal, *ga = p->slope[a], *gb = p->slope[b];

@@ -8,12 +8,13 @@
 
 typedef struct cau_touching_point { // nearest point on a vertex, an edge or a face
 	int corners;                    // number of corners, 1 to 3
-	int32_t vertex[3];              // in ascending order
+	int32_t vertex[3];              // the corners' vertices, in ascending order
 	double weight[3];
 	double slope[3][3]; // 1/m: gradients of the weights on the edge or face
 	double normal[3];   // unit vector, from the ball's middle
 	double distance_m;  // distance from the ball's middle
-	double gap_m;       // gap of the part that must stay outside
+	double gap_m; // distance from the ball's surface; for a point on an edge or face, plus the
+	              // allowed depth `dip_m`
 	double reaction_n;
 } cau_touching_point;
 

@@ -13,7 +13,8 @@
 
 enum { CAPACITY = 64 };
 
-// Double rounding of stresses up to E, with a margin for the cancellation in J - alpha.
+// Largest error of a stress, relative to E: double rounding, with a margin for the cancellation in
+// J - alpha.
 static const double STRESS_TOLERANCE = 1e-12;
 
 static void test_rows_are_the_closed_form(void **state)

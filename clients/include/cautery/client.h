@@ -80,7 +80,7 @@ typedef enum cau_client_condition {
 
 // A received frame, after decoding.
 typedef struct cau_client_frame {
-	cau_frame_header header; // header as decoded
+	cau_frame_header header; // header of the frame
 	const void *bytes;       // borrowed for the duration of the call
 	size_t byte_count;       // size of `bytes`
 	cau_status status; // result of decoding: CAU_BAD_STATE means skipped, CAU_CORRUPT means damaged
@@ -98,12 +98,12 @@ typedef struct cau_client_def {
 	const char *name;      // name of the program, for logs and other users
 	const char *client_id; // lasting identity; by default the server gives one
 	int role;              // largest wanted role, CAU_ROLE_*; -1 means the role of the token
-	bool reconnect;        // after a lost connection: reconnect, resume, join again and resend
-	bool follow;           // follow a session that moves to another daemon; true by default
-	double timeout_s;      // timeout for connecting and for each waiting call. An expensive call
+	bool reconnect;   // true: the client reconnects after a loss, resumes, joins again and resends
+	bool follow;      // follow a session that moves to another daemon; true by default
+	double timeout_s; // timeout for connecting and for each waiting call. An expensive call
 	                  // (cau_method_cost) and a join, which waits until its session is built, wait
 	                  // longer while the server answers heartbeats
-	void *user; // passed to the callbacks, each of which may be NULL
+	void *user;       // passed to the callbacks, each of which may be NULL
 	// Called when the condition has changed.
 	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);
 	// Called when the server has sent a notification. `message` is borrowed for the call.
@@ -228,7 +228,7 @@ struct cau_client_stream {
 	cau_topology_arrays topology;            // faces and rest shape
 	bool has_topology;                       // a topology frame was received
 	bool ended;                              // the client left, or the session ended
-	uint64_t frames, key_frames, bytes;      // received
+	uint64_t frames, key_frames, bytes;      // numbers of received frames, key frames and bytes
 	uint64_t gaps;                           // number of breaks in the chain of deltas
 	uint64_t skipped;                        // frames that do not follow the present state
 	uint64_t damaged;                        // frames that could not be decoded

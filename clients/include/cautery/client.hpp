@@ -34,7 +34,7 @@
 namespace cautery
 {
 
-// A failed call. what() is the reason. `told` also has the place and the status.
+// The exception for a failed call. what() is the reason. `told` also has the path and the status.
 class error : public std::runtime_error
 {
   public:

@@ -36,8 +36,8 @@
 extern "C" {
 #endif
 
-#define CAU_HAPTICS_SLEW_N_S 300.0 // newtons per second: 0.3 N in a millisecond
-#define CAU_HAPTICS_SILENCE_S 0.1  // seconds without a record after which the force is 0
+#define CAU_HAPTICS_SLEW_N_S 300.0 // largest change of the force, N/s: 0.3 N in a millisecond
+#define CAU_HAPTICS_SILENCE_S 0.1  // time from the last record until the force is 0, s
 
 typedef struct cau_haptics cau_haptics; // renderer for one device that drives one tool; opaque
 
@@ -51,9 +51,9 @@ typedef struct cau_haptics_def {
 	double hand_n;    // largest force of the hand; 5
 	double reserve_j; // energy that the device may get beyond the energy that it gave; 5e-4
 	double tank_j;    // largest stored energy of the device that can be given back; 0.05
-	double
-		damping_ratio; // damping ratio of the device on the contact's spring, above damping_hz; 0.2
-	double damping_hz; // slower motion is not damped; 6
+	// damping ratio of the device on the contact's spring, above damping_hz; 0.2
+	double damping_ratio;
+	double damping_hz;        // slower motion is not damped; 6
 	double stiffness_max_n_m; // stiffer contact is rendered with this stiffness; 2000
 	double force_max_n; // largest force of the device, at most CAU_HAPTICS_SLEW_N_S * 0.02 s; 5
 } cau_haptics_def;
@@ -85,8 +85,8 @@ void cau_haptics_render(cau_haptics *haptics, const cau_haptics_device *device, 
 
 // Results of the last call of cau_haptics_render.
 typedef struct cau_haptics_report {
-	double
-		given_j; // energy given to the device since creation, minus the energy that the device gave
+	// energy given to the device since creation, minus the energy that the device gave
+	double given_j;
 	double tank_j; // energy that may be given now
 	double age_s;  // age of the newest record
 	bool touching; // the newest record's contact pushes

@@ -9,7 +9,7 @@
 //     tool.add         name, shape, and the optional members of a scene's tool
 //     tool.remove      tool
 //     tool.configure   tool, shape, and sizes as in a scene's tool. All sizes are replaced; absent
-//                      ones by the defaults, or by those of `instrument` in `mode`
+//                      sizes get the defaults, or the sizes of `instrument` in `mode`
 //     tool.move        tool, position_m, rotation, jaw (0)
 //     tool.energize    tool, energized (true or false), ticks (of an enable: its duration)
 //     tool.grasp       tool

@@ -32,7 +32,7 @@ enum {
 
 // The labels behind an address.
 typedef struct cau_fleet {
-	int32_t count;                                     // 0 means no fleet: a single daemon
+	int32_t count; // number of labels; 0 means a single daemon, which has no label
 	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES]; // `count` labels
 } cau_fleet;
 

@@ -40,7 +40,7 @@ enum {
 	CAU_FRAME_SECTION_BYTES = 8, // size of the head before each section's payload
 };
 
-// code, number, wire name
+// X(code, number, wire name)
 #define CAU_FRAME_KIND_TABLE(X)                                                                    \
 	X(KEY, 1, "key")                                                                               \
 	X(DELTA, 2, "delta")                                                                           \
@@ -52,18 +52,18 @@ typedef enum cau_frame_kind {
 #undef X
 } cau_frame_kind;
 
-// Sections. Each channel has one with the channel's name and number (cautery/channels.h); this
-// table has the others. X(code, number, wire name)
+// The sections that do not have the name of a channel. Each channel also has a section with the
+// channel's own name and number (cautery/channels.h). X(code, number, wire name)
 #define CAU_OTHER_SECTION_TABLE(X)                                                                 \
-	X(TOOL_NAMES, 6, "tool_names") /* of the channel tools */                                      \
-	X(FACES, 16, "faces")          /* from here to REST: of topology frames */                     \
+	X(TOOL_NAMES, 6, "tool_names") /* part of the channel `tools` */                               \
+	X(FACES, 16, "faces")          /* from here to REST: in topology frames */                     \
 	X(FACE_LAYERS, 17, "face_layers")                                                              \
 	X(TEXTURE, 18, "texture")                                                                      \
 	X(REST, 19, "rest")                                                                            \
-	X(TOOLS_ASKED, 32, "tools_asked") /* of the channel tools */                                   \
-	X(TOOL_JAWS, 33, "tool_jaws")     /* of the channel tools */                                   \
-	X(TOOL_POWER, 34, "tool_power")   /* of the channel tools */                                   \
-	X(TOOL_FORCE, 35, "tool_force")   /* of the channel tools */
+	X(TOOLS_ASKED, 32, "tools_asked") /* part of the channel `tools` */                            \
+	X(TOOL_JAWS, 33, "tool_jaws")     /* part of the channel `tools` */                            \
+	X(TOOL_POWER, 34, "tool_power")   /* part of the channel `tools` */                            \
+	X(TOOL_FORCE, 35, "tool_force")   /* part of the channel `tools` */
 #define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
 // The number of a section.
@@ -126,7 +126,7 @@ cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, s
 
 // Returns the present epoch.
 uint64_t cau_frame_encoder_epoch(const cau_frame_encoder *encoder);
-// sequence of the last frame; 0 before the first frame
+// Returns the sequence of the last frame, or 0 before the first frame.
 uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder);
 
 // ---- half rate ----------------------------------------------------------------------------------
@@ -134,7 +134,7 @@ uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder);
 // frames. Both kinds of delta belong to the same chain. At any frame of even sequence a decoder may
 // change from one kind to the other and holds the same state.
 typedef struct cau_frame_thinner cau_frame_thinner;
-enum { CAU_FRAME_THINNING = 2 }; // frames of the encoder for each frame of the thinner
+enum { CAU_FRAME_THINNING = 2 }; // number of the encoder's frames for each frame of the thinner
 
 // Returns the storage size for a thinner of such a stream. The storage needs malloc's alignment.
 size_t cau_frame_thinner_bytes(const cau_stream_def *def);
@@ -144,10 +144,10 @@ cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
                                   const cau_frame_encoder *encoder, cau_frame_thinner **thinner,
                                   cau_error *error);
 
-// Call it after each cau_frame_encode. At an even sequence it writes the delta from two sequences
-// earlier to the present state. *byte_count is 0 if there is no delta. This is so at an odd
-// sequence, and at the first even sequence of an epoch or after skipped calls, when it only keeps
-// the state. Errors: CAU_LIMIT (capacity below cau_frame_bytes_max).
+// Writes the delta from the state two sequences earlier to the present state. Call it after each
+// cau_frame_encode. *byte_count is 0 if there is no delta: at an odd sequence, and at the first
+// even sequence of an epoch or after skipped calls. At such an even sequence the thinner only keeps
+// the state for the next delta. Errors: CAU_LIMIT (capacity below cau_frame_bytes_max).
 cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capacity,
                           size_t *byte_count, cau_error *error);
 

@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-enum { CAU_MAX_MODES = 8 }; // modes of one instrument
+enum { CAU_MAX_MODES = 8 }; // largest number of modes of an instrument
 
 // A mode of an instrument.
 typedef struct cau_instrument_mode {

@@ -22,11 +22,11 @@ extern "C" {
 #endif
 
 enum {
-	CAU_JSON_MAX_DEPTH = 64,        // nested arrays and objects
-	CAU_JSON_MAX_MEMBERS = 256,     // members of one object
-	CAU_JSON_MAX_OPEN_KEYS = 1024,  // members of all objects that are open at one position
-	CAU_JSON_MAX_KEY_BYTES = 64,    // bytes between the quotes
-	CAU_JSON_MAX_NUMBER_BYTES = 63, // bytes; cJSON reads no more
+	CAU_JSON_MAX_DEPTH = 64,        // largest depth of nested arrays and objects
+	CAU_JSON_MAX_MEMBERS = 256,     // largest number of members of one object
+	CAU_JSON_MAX_OPEN_KEYS = 1024,  // largest number of members of all open objects together
+	CAU_JSON_MAX_KEY_BYTES = 64,    // largest size of a member's name, without the quotes
+	CAU_JSON_MAX_NUMBER_BYTES = 63, // largest length of a number; cJSON reads no more bytes
 };
 
 // Accepts exactly one JSON value of at most `bytes_max` bytes, in valid UTF-8, with optional white

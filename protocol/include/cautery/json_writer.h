@@ -48,13 +48,18 @@ void cau_json_begin(cau_json_writer *writer, char *buffer, size_t capacity, int3
 // or at the top level. `bracket` is '{' or '['; '(' opens an array that stays on one line.
 void cau_json_open(cau_json_writer *writer, const char *key, char bracket);
 void cau_json_close(cau_json_writer *writer); // closes the innermost open level
-void cau_json_number(cau_json_writer *writer, const char *key, double value); // must be finite
-void cau_json_integer(cau_json_writer *writer, const char *key,
-                      int64_t value); // magnitude below 2^53
-void cau_json_unsigned(cau_json_writer *writer, const char *key, uint64_t value);  // below 2^53
-void cau_json_bool(cau_json_writer *writer, const char *key, bool value);          // true or false
-void cau_json_null(cau_json_writer *writer, const char *key);                      // null
-void cau_json_string(cau_json_writer *writer, const char *key, const char *value); // valid UTF-8
+// Writes a number, which must be finite.
+void cau_json_number(cau_json_writer *writer, const char *key, double value);
+// Writes an integer with a magnitude below 2^53.
+void cau_json_integer(cau_json_writer *writer, const char *key, int64_t value);
+// Writes an integer below 2^53.
+void cau_json_unsigned(cau_json_writer *writer, const char *key, uint64_t value);
+// Writes true or false.
+void cau_json_bool(cau_json_writer *writer, const char *key, bool value);
+// Writes null.
+void cau_json_null(cau_json_writer *writer, const char *key);
+// Writes a string, which must be valid UTF-8.
+void cau_json_string(cau_json_writer *writer, const char *key, const char *value);
 // Writes an array of `count` finite numbers on one line.
 void cau_json_numbers(cau_json_writer *writer, const char *key, const double *value, int32_t count);
 // Appends a text that is already JSON.

@@ -77,7 +77,7 @@
 	X(OBJ, "obj") /* drawn faces */
 
 #define CAU_LOOK_STAGE_TABLE(X)                                                                    \
-	X(BUILDING, "building") /* a core of its own */                                                \
+	X(BUILDING, "building") /* the view's own core is made */                                      \
 	X(READING, "reading")                                                                          \
 	X(RESTORING, "restoring")                                                                      \
 	X(REPLAYING, "replaying")

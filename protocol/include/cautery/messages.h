@@ -58,7 +58,7 @@ typedef struct cau_wire_list {
 	CAU_NEED_##need(field) cau_wire_list field;
 #define INTEGERS(o, field, need, count_max, least, most, unit, meaning)                            \
 	CAU_NEED_##need(field) cau_wire_list field;
-// Borrowed. Readers fill the scene, or skip the member if it is NULL.
+// The scene is borrowed. Readers fill it, or skip the member if the pointer is NULL.
 #define SCENE(o, field, need, meaning) CAU_NEED_##need(field) cau_scene_def *field;
 #include "cautery/messages.def"
 #undef CAU_NEED_R
@@ -99,10 +99,10 @@ typedef enum cau_method {
 
 // Who sends a method, and whether it is answered.
 typedef enum cau_method_form {
-	CAU_FORM_REQUEST,    // from the client, with an id, always answered
-	CAU_FORM_EITHER_WAY, // from the client, answered if it has an id
-	CAU_FORM_NOTICE,     // from the client, never answered
-	CAU_FORM_PUSH,       // from the server, never answered
+	CAU_FORM_REQUEST,    // sent by the client with an id, always answered
+	CAU_FORM_EITHER_WAY, // sent by the client, answered if it has an id
+	CAU_FORM_NOTICE,     // sent by the client, never answered
+	CAU_FORM_PUSH,       // sent by the server, never answered
 } cau_method_form;
 
 // Whether a request counts against the quotas of expensive requests.

@@ -19,10 +19,11 @@
 extern "C" {
 #endif
 
-// The first of `words` with the fewest slips from `word`. A slip is a letter added, left out,
-// replaced, or swapped with the next; case is ignored. A word may differ by one slip, and one more
-// for each three letters. If `word` is the beginning of another word, that counts as one slip.
-// Returns NULL if no word is near, or if `word` is longer than 63 bytes.
+// Returns the first of `words` with the fewest slips from `word`. A slip is a letter added, left
+// out, replaced, or swapped with the next; case is ignored. A word may have one slip for each three
+// letters or part of three letters, but fewer slips than letters. If `word` is the beginning of
+// another word, that counts as one slip. Returns NULL if no word is near, or if `word` is longer
+// than 63 bytes.
 const char *cau_nearest(const char *word, const char *const *words, size_t count);
 
 #ifdef __cplusplus

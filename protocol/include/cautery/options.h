@@ -40,7 +40,8 @@ extern "C" {
 // The kind of an option's value, which also gives the type of its member.
 typedef enum cau_option_kind {
 	CAU_OPTION_FLAG, // bool, true if the option is given; takes no value
-	// bool, like FLAG; other arguments are then ignored. -h means the first such option
+	// bool, like FLAG; if the option is given, all other arguments are ignored. -h means the first
+	// HELP option
 	CAU_OPTION_HELP,
 	CAU_OPTION_TEXT,   // const char *, which points into the arguments
 	CAU_OPTION_NUMBER, // double, from `least` to `most`
@@ -52,7 +53,7 @@ typedef enum cau_option_kind {
 
 // One option of a program.
 typedef struct cau_option {
-	const char *name;           // without the dashes
+	const char *name;           // the option's name without the dashes
 	const char *argument;       // name of the value in --help; NULL if the option takes no value
 	cau_option_kind kind;       // kind of the value
 	size_t member;              // offset of the member that gets the value

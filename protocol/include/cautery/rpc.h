@@ -43,8 +43,8 @@ enum { CAU_RPC_ID_BYTES = 65 }; // size of an id that is text, with its zero
 typedef struct cau_rpc_id {
 	// whether there is an id, and its type
 	enum { CAU_RPC_ID_NONE, CAU_RPC_ID_NUMBER, CAU_RPC_ID_TEXT } kind;
-	int64_t number;              // if kind is NUMBER
-	char text[CAU_RPC_ID_BYTES]; // if kind is TEXT
+	int64_t number;              // the id, if `kind` is CAU_RPC_ID_NUMBER
+	char text[CAU_RPC_ID_BYTES]; // the id, if `kind` is CAU_RPC_ID_TEXT
 } cau_rpc_id;
 
 // The member `error` of an answer. `path` starts in the request: "params.rotation[2]".

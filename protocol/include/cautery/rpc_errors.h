@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-// number, code, word in data.status, sentence in message
+// X(number, code, word in data.status, sentence in message)
 #define CAU_RPC_ERROR_TABLE(X)                                                                     \
 	X(-32700, PARSE, "bad_syntax", "the text is not well formed")                                  \
 	X(-32600, INVALID_REQUEST, "invalid_request",                                                  \
@@ -61,10 +61,12 @@ typedef enum cau_rpc_error_code {
 
 // Returns the code with the same word as the status, or CAU_RPC_INTERNAL if there is none.
 cau_rpc_error_code cau_rpc_error_of_status(cau_status status);
-const char *cau_rpc_error_word(int code);     // "internal" for unknown codes
-const char *cau_rpc_error_sentence(int code); // the sentence of "internal" for unknown codes
+// Returns the word in data.status, or "internal" for an unknown code.
+const char *cau_rpc_error_word(int code);
+// Returns the sentence in the message; for an unknown code, that of "internal".
+const char *cau_rpc_error_sentence(int code);
 
-// number, code, reason in the close frame
+// X(number, code, reason in the close frame)
 #define CAU_CLOSE_TABLE(X)                                                                         \
 	X(1000, DONE, "done")                                                                          \
 	X(1001, DRAINING, "the server is shutting down")                                               \

@@ -2,8 +2,8 @@
 // Scenes as JSON. Names are the field names of cautery/scene.h. Choices are the JSON names of its
 // tables. deploy/scenes/README.md lists all of them. Absent members get their defaults
 // (cautery/defaults.h; for a layer, the defaults of its kind). Unknown members are errors. The
-// members of a layer include its own material. Its member "regions": [{"region": 3, ...}] has the
-// differences in regions of the mesh file.
+// members of a layer include the layer's own material. The layer's member "regions": [{"region": 3,
+// ...}] has the differences in regions of the mesh file.
 //
 //     #include "cautery/scene_json.h"
 //

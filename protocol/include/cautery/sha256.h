@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256. It checks files that are sent in chunks, and distinguishes identities.
+// Computes SHA-256. The hash checks files that are sent in chunks, and distinguishes identities.
 //
 //     #include <string.h>
 //

@@ -32,9 +32,9 @@ extern "C" {
 #endif
 
 enum {
-	CAU_STREAM_PROFILES_MAX = 4,       // profiles of one session
+	CAU_STREAM_PROFILES_MAX = 4,       // largest number of profiles of a session
 	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // largest number of vertices or faces
-	CAU_STREAM_STAGES = 8,             // stages of a step, see CAU_STAGE_TABLE in the README
+	CAU_STREAM_STAGES = 8, // number of stages of a step, see CAU_STAGE_TABLE in the README
 };
 
 // Flags in a frame's header.
@@ -69,9 +69,10 @@ typedef struct cau_channel_info {
 	const char *name; // name in messages
 	int section;      // section number in frames
 	bool by_default;  // included if a client names no channels
-	// CAU_SCALAR_*, or -1 for a channel with its own layout, without the members below
+	// CAU_SCALAR_*, or -1 for a channel with its own layout, which does not use the members below
 	int scalar;
-	// in `unit`: a transmitted n means least + step * n; if step is 0, the stream definition has it
+	// a transmitted number n means the value least + step * n, in `unit`; if `step` is 0, the
+	// stream definition has the step
 	double least, step;
 	uint32_t most;              // the largest n
 	const char *unit, *meaning; // unit and description for people
@@ -96,12 +97,13 @@ typedef struct cau_stream_tool {
 	double torque_nm[3];       // about the tip, filtered, force_max_n * tip_length_m at most
 	// false if the sender does not send the next three members, which are 0 then
 	bool has_raw_force;
-	double raw_force_n[3];     // force of the frame's tick, without filter and bound
-	double raw_torque_nm[3];   // torque of the frame's tick, without filter and bound
-	double force_filter_s;     // time constant of the filter, or 0 without a filter
-	double tip_temperature_c;  // temperature of the hot part
-	double energy_j;           // estimate of the heat that tissue took up
-	double delivered_w;        // power delivered to tissue in the last step, with energy `tissue`
+	double raw_force_n[3];    // force of the frame's tick, without filter and bound
+	double raw_torque_nm[3];  // torque of the frame's tick, without filter and bound
+	double force_filter_s;    // time constant of the filter, or 0 without a filter
+	double tip_temperature_c; // temperature of the hot part
+	double energy_j;          // estimate of the heat that tissue took up
+	// power delivered to tissue in the last step, for a tool with energy `tissue`
+	double delivered_w;
 	double load_ohm;           // load of the tool's generator, or 0 without current
 	uint64_t sequence;         // sequence of the last applied command
 	uint32_t driver;           // the driving client's number, or 0 without a driver
@@ -110,8 +112,8 @@ typedef struct cau_stream_tool {
 	bool slipping;             // some of the grasped tissue slid in the last step
 	bool frozen;               // the watchdog fired: the tool stays at its pose until a new command
 	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
-	uint16_t grasped_vertices; // saturates at the largest number
-	uint16_t contact_vertices; // saturates at the largest number
+	uint16_t grasped_vertices; // number of grasped vertices, 65535 at most
+	uint16_t contact_vertices; // number of vertices in contact, 65535 at most
 	uint16_t touched_layers;   // one bit per layer
 } cau_stream_tool;
 
@@ -149,7 +151,8 @@ typedef struct cau_stream_sample {
 	uint64_t published_us;  // time on the server's monotonic clock
 	uint16_t flags;         // CAU_FRAME_*
 	const double *position; // m, (vertex_count x 3)
-	// (vertex_count), 1 for a vertex of a drawn face; NULL if all are
+	// (vertex_count), 1 for a vertex of a drawn face, else 0; NULL if all vertices are of drawn
+	// faces
 	const uint8_t *vertex_visible;
 	const uint32_t *face_mask;               // ((face_count + 31) / 32), a set bit means not drawn
 	CAU_SCALAR_MEMBERS(const float);         // (vertex_count) each, in the channel's unit

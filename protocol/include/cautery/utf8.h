@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// UTF-8 by RFC 3629: no overlong forms, no surrogates, nothing beyond U+10FFFF.
+// Checks and writes UTF-8 by RFC 3629, which allows no overlong forms, no surrogates and nothing
+// beyond U+10FFFF.
 //
 //     #include "cautery/utf8.h"
 //

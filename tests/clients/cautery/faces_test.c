@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-enum { FACES = 40 }; // two words of the mask; the second is not full
+enum { FACES = 40 }; // number of faces: the mask has two words, of which the second is not full
 
 static void faces_are_counted_against_the_first_state(void **state)
 {
@@ -19,7 +19,8 @@ static void faces_are_counted_against_the_first_state(void **state)
 	assert_int_equal(cli_faces_count(&faces, &s, FACES), CAU_OK);
 	assert_int_equal(faces.drawn, 36);
 	assert_int_equal(faces.gone, 0);
-	mask[0] = 0x00000ff7; // eight more faces are gone, and one of the first four is bared
+	// Faces 4 to 11 and 39 disappear, and face 3 appears.
+	mask[0] = 0x00000ff7;
 	mask[1] = 0x00000080;
 	assert_int_equal(cli_faces_count(&faces, &s, FACES), CAU_OK);
 	assert_int_equal(faces.drawn, 28);

@@ -16,8 +16,8 @@ static const energy_guard_def def = {.period_s = 0.001,
                                      .reserve_j = 5e-4,
                                      .tank_j = 0.05};
 
-// Calculated by hand: 1 N with 6 N on 50 g is 120 m/s^2. The forces in four milliseconds are 1,
-// 0.7, 0.4 and 0.1 N.
+// The expected work is calculated by hand. The force of 1 N and the hand's 5 N accelerate 50 g with
+// 120 m/s^2. The forces in four milliseconds are 1, 0.7, 0.4 and 0.1 N.
 static void the_need_is_the_work_until_the_force_is_gone(void **state)
 {
 	(void)state;
@@ -28,8 +28,8 @@ static void the_need_is_the_work_until_the_force_is_gone(void **state)
 	assert_true(energy_guard_need(&def, 0, 1) == 0);
 }
 
-// The hand pushes the device away with its largest force. The test tries many moments and wanted
-// forces.
+// The hand holds the device and then pushes it away with the hand's largest force. The test tries
+// many durations of the hold and many wanted forces.
 static void the_worst_push_gets_the_reserve_at_most(void **state)
 {
 	(void)state;
@@ -43,7 +43,7 @@ static void the_worst_push_gets_the_reserve_at_most(void **state)
 				energy_guard_account(&guard, place);
 				most = fmax(most, guard.given_j);
 				energy_guard_bound(&guard, velocity, force);
-				// first the hand holds the device, then it pushes
+				// The hand first holds the device against the force, and then pushes it.
 				double push = step < wait ? -force[0] : def.hand_n;
 				double a = (force[0] + push) / def.mass_kg;
 				place[0] += velocity[0] * def.period_s + a * def.period_s * def.period_s / 2;
@@ -59,7 +59,7 @@ static void a_spring_that_is_pressed_pays_for_itself(void **state)
 	(void)state;
 	energy_guard guard = {.def = def};
 	double place[3] = {0}, velocity[3] = {0}, least = 1;
-	// a force of 2 N while the device swings by 4 mm once a second
+	// a spring's force of up to 2 N while the device swings by 4 mm once a second
 	for (int step = 0; step < 4000; step++) {
 		double time_s = 0.001 * step;
 		place[2] = -0.002 * (1 - cos(6.28318530718 * time_s));

@@ -3,9 +3,10 @@
 #include "clients/haptics/loop.h"
 
 static const double top_m = 0.003; // height at which the ball of 3 mm touches the slab
-// Requirements. A held contact: largest trembling, N peak to peak. A moved contact: largest
-// relative error below 3 Hz.
+// Largest trembling of the force of a held contact, N peak to peak, and largest relative error of
+// the force of a moved contact below 3 Hz.
 static const double most_trembling_n = 0.05, most_error = 0.05;
+// Largest energy that the hand may get, J, and largest change of the force in a millisecond, N.
 static const double most_given_j = 1e-3, most_jump_n = 0.3;
 
 // Lowers the ball in half a second and holds it there.
@@ -25,7 +26,7 @@ static void swing(const loop_def *def, double time_s, double wanted_m[3])
 		begun * def->swing_m * (sin(0.5 * turn) / 2 + sin(1.2 * turn) / 3 + sin(2.7 * turn) / 6);
 }
 
-// Low-pass filter with 3 Hz: one pole, forwards and backwards, twice.
+// Applies a low-pass filter with 3 Hz: one pole, forwards and backwards, twice.
 static void keep_slow(double (*signal)[3], int count, int axis)
 {
 	// frequency of each of the four poles; together they attenuate 3 Hz by 3 dB
@@ -57,7 +58,8 @@ static void is_safe(const loop_log *log)
 	assert_true(log->most_jump_n <= most_jump_n + 1e-9);
 }
 
-// Holds the ball 4 mm deep in soft fat. In hard fat it is so deep that the hand presses with 0.9 N.
+// Holds the ball 4 mm deep in soft fat. In hard fat the hand wants a depth of 12 mm and presses
+// with 0.9 N.
 static void hold(double young_modulus_pa, double delay_s)
 {
 	loop_def def = {.young_modulus_pa = young_modulus_pa,
@@ -76,7 +78,7 @@ static void hold(double young_modulus_pa, double delay_s)
 	is_safe(&log);
 	if (!CAU_TEST_SANITIZED) {
 		assert_true(most - least < most_trembling_n);
-		assert_true(most > 0.08); // the hand does press
+		assert_true(most > 0.08); // the hand must press at all
 	}
 	loop_finish(&log);
 }
@@ -114,8 +116,9 @@ static void move(double young_modulus_pa, double delay_s)
 	loop_finish(&log);
 }
 
-// The first second is left out, because the ball comes down in it, and the end is left out, because
-// the filter distorts it.
+// Compares the rendered force with the force of the scene in steps of a millisecond. The first
+// second is left out, because the ball comes down in it. The end is left out, because the filter
+// distorts it.
 static void force_is_that_of_the_scene_in_milliseconds(void **state)
 {
 	(void)state;

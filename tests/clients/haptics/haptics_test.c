@@ -70,8 +70,8 @@ static void without_a_record_there_is_no_force(void **state)
 	cau_haptics_destroy(NULL);
 }
 
-// Slow presses and releases. The record is a tick old, but the force must be that of the present
-// position.
+// Presses and releases tissue slowly. Each record is 0.1 s old when it arrives, but the force must
+// be that of the present position.
 static void force_follows_the_place_not_the_record(void **state)
 {
 	(void)state;
@@ -91,7 +91,7 @@ static void force_follows_the_place_not_the_record(void **state)
 			worst = fmax(worst, fabs(force - 1.5 * pow(-z / 0.003, 1.5)));
 	}
 	print_message("at most %.4f N off at 1.5 N\n", worst);
-	assert_true(worst < 0.03); // damping below damping_hz
+	assert_true(worst < 0.03); // the motion is slow, below damping_hz, so it is hardly damped
 	cau_haptics_destroy(haptics);
 }
 
@@ -100,11 +100,12 @@ static void a_new_record_is_blended_in(void **state)
 	(void)state;
 	cau_haptics *haptics = make();
 	cau_tool_contact soft = floor_at(-0.001), hard = floor_at(-0.001);
-	hard.force_n[2] = 0.6; // with the same stiffness, the tissue begins higher
+	// The force is larger at the same stiffness, so the surface of the tissue is higher.
+	hard.force_n[2] = 0.6;
 	hard.plane[0].offset_m = 0.0002;
 	double before = 0, force = 0;
 	for (int k = 0; k < 40; k++) {
-		if (k % 20 == 0) // each record is blended in when the next one comes
+		if (k % 20 == 0) // a record is blended in completely before the next record comes
 			cau_haptics_take(haptics, &soft);
 		before = render_at(haptics, -0.001, 0, period_s * k);
 	}
@@ -157,7 +158,7 @@ static void bad_states_of_the_device_let_it_fade(void **state)
 	force = render_at(haptics, NAN, 0, 0.050);
 	assert_true(fabs(force - 0.7) < 1e-9);
 	force = render_at(haptics, -0.002, INFINITY, 0.051);
-	force = render_at(haptics, -0.002, 0, 0.001); // a clock that runs backwards
+	force = render_at(haptics, -0.002, 0, 0.001); // the clock runs backwards
 	force = render_at(haptics, -0.002, 0, NAN);
 	assert_true(force == 0);
 	for (int k = 52; k < 80; k++)
@@ -179,7 +180,8 @@ static void definitions_are_checked(void **state)
 	def.mass_kg = NAN;
 	assert_int_equal(cau_haptics_create(&def, &haptics, &error), CAU_BAD_VALUE);
 	def = cau_default_haptics_def();
-	def.fade_s = 0.09; // with force_max_n = 5 N the force could not be 0 in time
+	// If the fade began so late, a force of `force_max_n` = 5 N could not be 0 in time.
+	def.fade_s = 0.09;
 	assert_int_equal(cau_haptics_create(&def, &haptics, &error), CAU_BAD_VALUE);
 	assert_string_equal(error.path, "fade_s");
 	assert_null(haptics);

@@ -35,8 +35,8 @@ static void is_near(const double found[3], double x, double y, double z)
 	assert_true(fabs(found[2] - z) < rounding_n);
 }
 
-// Returns the force of a round tip by Hertz's law. `share` is the force of a linear contact over 1
-// N.
+// Returns the force (N) of a round tip by Hertz's law, where a linear contact would have a force of
+// `share` newtons.
 static double hertz(double share)
 {
 	return pow(1 + 2 * (share - 1) / 3, 1.5);
@@ -55,7 +55,7 @@ static void a_floor_pushes_as_far_as_it_is_pressed(void **state)
 	at = local_contact_force(&contact, (double[]){0, 0, -0.003});
 	is_near(at.force_n, 0.1 * cbrt(hertz(1.5)), 0, hertz(1.5));
 	at = local_contact_force(&contact, (double[]){0, 0, 0});
-	is_near(at.force_n, 0.2 * hertz(0), 0, hertz(0)); // within friction
+	is_near(at.force_n, 0.2 * hertz(0), 0, hertz(0)); // the force along x is limited by friction
 	at = local_contact_force(&contact, (double[]){0, 0, 0.00101});
 	is_near(at.force_n, 0, 0, 0);
 	assert_true(at.normal_n == 0 && at.normal[2] == 0);
@@ -73,8 +73,8 @@ static void friction_holds_up_to_coulombs_law(void **state)
 	is_near(at.force_n, -0.2, 0, 1);
 }
 
-// In a groove of two planes at right angles each plane has its part of the force. One plane has all
-// of it when the tool leaves the other.
+// In a groove of two planes at right angles each plane has a part of the force. When the tool
+// leaves one plane, the other plane has the whole force.
 static void planes_share_a_force(void **state)
 {
 	(void)state;
@@ -92,9 +92,10 @@ static void planes_share_a_force(void **state)
 	local_force at = local_contact_force(&contact, record.asked_pose.position_m);
 	is_near(at.force_n, 0, 0, 1);
 	at = local_contact_force(&contact, (double[]){0.0005, 0, -0.001});
-	double more = sqrt(sqrt(1.25)); // Hertz's law: the root of the force's share of 1 N
+	double more = sqrt(sqrt(1.25)); // factor by Hertz's law: the root of the linear force over 1 N
 	is_near(at.force_n, -0.5 * more, 0, more);
-	at = local_contact_force(&contact, (double[]){0.0015, 0, -0.001}); // leaves the first plane
+	// The tool leaves the first plane.
+	at = local_contact_force(&contact, (double[]){0.0015, 0, -0.001});
 	more = sqrt(1.2 * sqrt(2));
 	is_near(at.force_n, -1.2 * more, 0, 1.2 * more);
 }
@@ -112,7 +113,8 @@ static void a_grasp_pulls_both_ways(void **state)
 	local_contact_set(&contact, &record, most_n_m);
 	is_near(local_contact_force(&contact, (double[]){0.01, 0, 0}).force_n, -1, 0, 0);
 	is_near(local_contact_force(&contact, (double[]){0, 0.001, 0}).force_n, 1, -0.2, 0);
-	// half as stiff, with the same force at the record's position
+	// With a limit of 100 N/m the grasp is half as stiff, with the same force at the record's
+	// position.
 	local_contact_set(&contact, &record, 100);
 	is_near(local_contact_force(&contact, (double[]){0.01, 0, 0}).force_n, -1, 0, 0);
 	is_near(local_contact_force(&contact, (double[]){0.015, 0, 0}).force_n, -1.5, 0, 0);
@@ -146,7 +148,7 @@ static void damaged_records_never_push(void **state)
 	bad[4].plane[0].offset_m = NAN;
 	bad[5].force_n[1] = INFINITY;
 	bad[6].compliance_m_n[2] = -0.002;
-	bad[7].compliance_m_n[3] = 0.003; // not positive definite
+	bad[7].compliance_m_n[3] = 0.003; // a compliance that is not positive definite
 	bad[8].friction = -1;
 	bad[9].grasp_n_m = NAN;
 	bad[10].asked_pose.position_m[0] = 1e9;

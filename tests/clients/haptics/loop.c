@@ -5,9 +5,10 @@
 
 #include "clients/haptics/hand.h"
 
-enum { PENDING = 16 }; // records that are on the link
+enum { PENDING = 16 }; // largest number of records that are on the link
 static const double tick_s = 1.0 / 60, period_s = 0.001;
-// time from a tick until its record is on the link: the step of `fat` on two cores
+// Time from a tick until its record is on the link, s: the duration of a step of `fat` on two
+// cores.
 static const double compute_s = 0.005;
 
 cau_scene_def *loop_scene(double young_modulus_pa)
@@ -21,7 +22,7 @@ cau_scene_def *loop_scene(double young_modulus_pa)
 
 typedef struct closed_loop {
 	cau_session *session;
-	cau_pose turned; // its rotation is the tool's
+	cau_pose turned; // pose with the rotation of the tool; the position is set before each use
 	cau_haptics *haptics;
 	simulated_hand hand;
 	int ticks, sent, taken; // numbers of finished ticks, sent records and taken records

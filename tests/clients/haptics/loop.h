@@ -21,7 +21,7 @@ typedef struct loop_def {
 typedef struct loop_log {
 	int count;
 	double (*place_m)[3];  // position of the device
-	double (*force_n)[3];  // rendered
+	double (*force_n)[3];  // rendered force
 	double (*wanted_m)[3]; // wanted position of the hand
 	double tick_s;         // mean processor time of a tick, with its record
 	double most_given_j;   // largest net energy that the hand has got
@@ -37,5 +37,5 @@ loop_log loop_run(const loop_def *def);
 void loop_finish(loop_log *log);
 
 // Returns the raw force of the same scene at the device's positions, N, for each millisecond, on
-// the heap. It has steps of step_s and no delay. A force stays until the next step.
+// the heap. The session has steps of `step_s` and no delay. A force stays until the next step.
 double (*loop_reference(const loop_def *def, const loop_log *log, double step_s))[3];

@@ -76,15 +76,15 @@ static cau_tool_contact random_record(const double place_m[3])
 	return record;
 }
 
-// Returns the true contact of a wall at z = 0 for a position. A delayed loop with such records
-// would be unstable.
+// Returns the contact of a wall at z = 0 for a position, with the true force and a wrong
+// compliance. A delayed loop with such records would be unstable.
 static cau_tool_contact wall_record(const double place_m[3], double stiffness_n_m)
 {
 	double push_n = fmax(-place_m[2] * stiffness_n_m, 0);
 	cau_tool_contact record = {.valid = true, .plane_count = 1, .friction = 0.2};
 	record.plane[0].normal[2] = 1;
 	record.force_n[2] = push_n;
-	double wrong = random_between(0.3, 3); // factor on the stiffness
+	double wrong = random_between(0.3, 3); // factor on the true compliance
 	for (int i = 0; i < 3; i++) {
 		record.asked_pose.position_m[i] = place_m[i];
 		record.compliance_m_n[i] = wrong / stiffness_n_m;
@@ -107,7 +107,7 @@ static void lead(simulated_hand *hand, double time_s, int manner)
 
 enum { LATE = 256, EPISODE = 5000 };
 
-// Extremes that the runs have seen.
+// Extremes of all runs, and the mean force `pushed_n`.
 typedef struct findings {
 	double most_j, most_jump_n, least_j, pushed_n;
 } findings;
@@ -163,7 +163,7 @@ static void hands_get_no_energy(void **state)
 	              step_count, 1e3 * found.most_j, found.most_jump_n, found.pushed_n);
 	assert_true(found.most_j <= most_given_j);
 	assert_true(found.most_jump_n <= most_jump_n + 1e-9);
-	// the renderer did push
+	// The renderer must push at all.
 	assert_true(found.most_j > 0 && found.least_j < -0.01 && found.pushed_n > 0.1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connecting, calling, losing the connection and reconnecting.
+// Tests connecting, calling, losing the connection and reconnecting.
 #include "clients/library/fixture.h"
 
 // ---- hello -------------------------------------------------------------------------------------
@@ -171,7 +171,7 @@ static void a_call_without_answer_ends_in_time(void **state)
 	(void)state;
 	fixture f;
 	fixture_begin(&f, &(scripted_script){.text = answer_nothing_but_hello});
-	f.def.timeout_s = 2; // also the timeout of hello, which is answered
+	f.def.timeout_s = 2; // timeout of the call, and of hello, which is answered at once
 	assert_int_equal(fixture_connect(&f), CAU_OK);
 	assert_int_equal(cau_client_call(f.client, CAU_METHOD_SESSION_DESCRIBE,
 	                                 &(cau_wire_session_ref){0}, NULL, &f.error),
@@ -184,7 +184,7 @@ static void a_call_without_answer_ends_in_time(void **state)
 typedef struct long_work {
 	cau_rpc_message reset;
 	int heartbeats;
-	bool deaf; // after the first heartbeat, it answers no more
+	bool deaf; // true if the server answers nothing after the first heartbeat
 } long_work;
 
 static bool work_long(scripted_peer *peer, const cau_rpc_message *message, const char *text)
@@ -202,7 +202,7 @@ static bool work_long(scripted_peer *peer, const cau_rpc_message *message, const
 static cau_status reset_of(long_work *work, fixture *f, cau_wire_restored *restored)
 {
 	fixture_begin(f, &(scripted_script){.text = work_long, .user = work});
-	f->def.timeout_s = 0.5; // also the timeout of hello and of each heartbeat
+	f->def.timeout_s = 0.5; // timeout of the call, of hello and of each heartbeat
 	assert_int_equal(fixture_connect(f), CAU_OK);
 	return cau_client_call(f->client, CAU_METHOD_SESSION_RESET, &(cau_wire_session_change){0},
 	                       restored, &f->error);
@@ -356,7 +356,7 @@ static void the_clock_is_measured(void **state)
 	double before_s = cau_client_now();
 	assert_int_equal(cau_client_measure_clock(f.client, 4, &clock, &f.error), CAU_OK);
 	double after_s = cau_client_now();
-	// The script's clock is constantly 1 us.
+	// The scripted server's clock always shows 1 us.
 	assert_true(clock.offset_s > 1e-6 - after_s && clock.offset_s < 1e-6 - before_s);
 	assert_true(clock.error_s > 0 && clock.error_s < after_s - before_s);
 	fixture_end(&f);

@@ -14,7 +14,8 @@
 #include "cautery/client.h"
 #include "clients/library/scripted_server.h"
 
-// Much longer than a loopback needs, even under sanitizers. Only failing tests reach it.
+// Longest wait, s: much longer than a loopback needs, even under sanitizers. Only failing tests
+// wait so long.
 enum { FIXTURE_PATIENCE_S = 20 };
 
 typedef struct fixture {

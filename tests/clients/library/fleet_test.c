@@ -15,11 +15,12 @@
 
 #include "cautery/client.h"
 
-// Much longer than a loopback needs, even under sanitizers. Only failing tests reach it.
+// Longest wait, s: much longer than a loopback needs, even under sanitizers. Only failing tests
+// wait so long.
 static const double patience_s = 20;
 
 typedef struct speaker {
-	const char *answer; // if NULL: no answer until the client hangs up
+	const char *answer; // the answer; NULL: the server does not answer until the client hangs up
 	int socket;
 	char url[64], request[2048];
 	pthread_t thread;

@@ -23,7 +23,7 @@ typedef void scripted_binary(scripted_peer *peer, const void *bytes, size_t byte
 typedef struct scripted_script {
 	scripted_text *text;     // NULL for standard behaviour
 	scripted_binary *binary; // NULL: binary messages are ignored
-	void *user;              // for scripted_user
+	void *user;              // pointer that scripted_user returns
 } scripted_script;
 
 scripted_server *scripted_start(const scripted_script *script);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joining streams, gaps, damaged frames, and joining again.
+// Tests joining streams, gaps in streams, damaged frames, and joining again.
 #include "clients/library/fixture.h"
 
 typedef struct streaming {
@@ -81,7 +81,7 @@ static void a_join_waits_for_a_session_that_is_built(void **state)
 	fixture f;
 	building b = {0};
 	fixture_begin(&f, &(scripted_script){.text = build_first, .user = &b});
-	f.def.timeout_s = 0.5; // also the timeout of hello and of each heartbeat
+	f.def.timeout_s = 0.5; // timeout of the join, of hello and of each heartbeat
 	assert_int_equal(fixture_connect(&f), CAU_OK);
 	assert_true(join(&f)->state->synced);
 	fixture_end(&f);
@@ -128,7 +128,7 @@ static void a_gap_is_closed_by_a_key_frame(void **state)
 	assert_int_equal(stream->damaged, 0);
 	FIXTURE_AWAIT(&f, atomic_load(&s.acknowledged) > 0);
 	fixture_end(&f);
-	assert_true(s.key_frames_asked >= 1); // the client repeats the request after a second
+	assert_true(s.key_frames_asked >= 1); // the client may have repeated the request after a second
 }
 
 // Sends a delta with overwritten sections.
@@ -167,7 +167,7 @@ static void damage_is_counted_and_repaired(void **state)
 	FIXTURE_AWAIT(&f, stream->damaged == 1);
 	FIXTURE_AWAIT(&f, stream->state->synced && stream->key_frames == 2);
 	fixture_end(&f);
-	assert_true(s.key_frames_asked >= 1); // the client repeats the request after a second
+	assert_true(s.key_frames_asked >= 1); // the client may have repeated the request after a second
 }
 
 static void a_stream_is_joined_again_after_a_loss(void **state)

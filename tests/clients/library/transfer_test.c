@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Uploads and downloads of files.
+// Tests uploads and downloads of files.
 #include "cautery/chunk_codec.h"
 #include "cautery/sha256.h"
 #include "clients/library/fixture.h"
 
-enum { FILE_BYTES = 700000, TRANSFER = 12 }; // several chunks of the script's 100,000 bytes
+// The file has several chunks, because the script uses chunks of 100,000 bytes.
+enum { FILE_BYTES = 700000, TRANSFER = 12 };
 
 typedef struct filing {
 	unsigned char *file;

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-static const double rounding = 1e-12; // error of a quotient of doubles
+static const double rounding = 1e-12; // largest error of a quotient of doubles
 
 static void the_factor_is_simulated_over_wall_time(void **state)
 {

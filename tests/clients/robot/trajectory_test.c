@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-static const double rounding = 1e-12; // error of some operations on numbers near 1
+static const double rounding = 1e-12; // largest error of some operations on numbers near 1
 
 static bool read_text(robot_trajectory *trajectory, const char *text)
 {

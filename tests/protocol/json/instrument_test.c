@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profiles of instruments, and scenes and commands with tools that name an instrument.
+// Tests profiles of instruments, and scenes and commands with tools that name an instrument.
 #include "json/instrument.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static const cau_instrument_mode *mode_of(const cau_instrument *instrument, cons
 }
 
 // Checks the peaks and crest factors of all profiles. The mean voltage of a mode is at most that of
-// cut. A mode that must not spark stays below 200 V.
+// the mode `cut`. A mode that must not spark stays below 200 V.
 static void every_profile_is_read(void **state)
 {
 	(void)state;

@@ -2,9 +2,9 @@
 // Prints a table of all members of a scene, from the tables that read scenes. It also checks or
 // updates the copy in the scenes' README:
 //
-//     parameter_table             prints it
-//     parameter_table --check F   fails unless F has it between the two marks
-//     parameter_table --write F   puts it there
+//     parameter_table             prints the table
+//     parameter_table --check F   fails unless file F has the table between its two marks
+//     parameter_table --write F   writes the table between the marks of file F
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>

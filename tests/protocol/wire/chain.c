@@ -9,7 +9,8 @@
 
 #include <cmocka.h>
 
-// half a step, plus the rounding of the multiplication by 1 / step
+// Largest error of a decoded position, m: half a step, plus the rounding of the multiplication by 1
+// / step.
 static const double round_off_m = 0.5 * 5e-5 + 1e-12;
 
 cau_frame_decoder *chain_new_decoder(const cau_stream_def *def)

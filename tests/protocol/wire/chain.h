@@ -17,7 +17,8 @@ typedef struct chain {
 	size_t byte_count;
 } chain;
 
-// Buffers have exactly the requested sizes, so that sanitizers detect an access one byte beyond.
+// Creates a chain. The chain's buffers have exactly the requested sizes, so that sanitizers detect
+// an access one byte beyond.
 void chain_init(chain *made, int32_t columns, int32_t rows);
 void chain_finish(chain *made);
 cau_frame_decoder *chain_new_decoder(const cau_stream_def *def); // free it with free()

@@ -16,7 +16,8 @@ enum { ROUND_FRAMES = 120 };
 static void test_deltas_follow_the_tissue(void **unused)
 {
 	(void)unused;
-	const double speeds[] = {0.002, 0.2, 30.0, 4000.0}; // m/s: numbers of 1, 1, 2 and 4 bytes
+	// Speeds in m/s, at which the numbers in frames have 1, 1, 2 and 4 bytes.
+	const double speeds[] = {0.002, 0.2, 30.0, 4000.0};
 	for (size_t s = 0; s < sizeof speeds / sizeof *speeds; s++) {
 		chain of;
 		chain_init(&of, 23, 17);
@@ -61,7 +62,8 @@ static void test_hidden_vertices_wait_until_they_are_seen(void **unused)
 static void test_a_face_that_is_laid_open_comes_with_its_vertices(void **unused)
 {
 	(void)unused;
-	enum { LAID_OPEN = 20 }; // an even frame number, where half rate also has a state
+	// Number of the frame that shows the face. It is even, because half rate has only even frames.
+	enum { LAID_OPEN = 20 };
 	chain of;
 	chain_init(&of, 12, 9);
 	size_t bytes = cau_frame_thinner_bytes(&of.def);
@@ -76,7 +78,7 @@ static void test_a_face_that_is_laid_open_comes_with_its_vertices(void **unused)
 		of.tissue.mask[0] = tick == LAID_OPEN ? 0 : 0xff;
 		chain_pass(&of);
 		assert_int_equal(cau_frame_thin(thinner, other, of.capacity, &bytes, NULL), CAU_OK);
-		if (tick == 4) // joins at an even sequence, while the vertices are hidden
+		if (tick == 4) // `half` joins at an even sequence, while the vertices are hidden
 			assert_int_equal(cau_frame_encode_key(of.encoder, other, of.capacity, &bytes, NULL),
 			                 CAU_OK);
 		if (tick >= 4 && bytes)
@@ -155,7 +157,8 @@ static void test_a_still_tissue_costs_next_to_nothing(void **unused)
 	chain_init(&of, 30, 30);
 	chain_pass(&of);
 	chain_pass(&of);
-	// sections: one tool, its raw force, the statistics, no vessel and no contact
+	// Size of five sections: one tool, the tool's raw force, the statistics, no vessel and no
+	// contact.
 	size_t records = 5 * 8 + 84 + 28 + 112 + 4 + 4;
 	assert_int_equal(of.byte_count, CAU_FRAME_HEADER_BYTES + records);
 	assert_int_equal(cau_frame_decoder_state(of.decoder)->moved_count, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors of encoder and decoder, and their states afterwards.
+// Tests the errors of encoder and decoder, and their states after an error.
 #include "cautery/frame_codec.h"
 
 #include <math.h>
@@ -85,7 +85,8 @@ static void test_every_truncation_is_refused(void **unused)
 		uint8_t *cut = malloc(bytes ? bytes : 1);
 		memcpy(cut, of.bytes, bytes);
 		assert_int_equal(cau_frame_decode(of.decoder, cut, bytes, NULL), CAU_CORRUPT);
-		if (bytes >= CAU_FRAME_HEADER_BYTES) { // the length is right, the sections are not
+		// With the right length in the header, the sections are still cut off.
+		if (bytes >= CAU_FRAME_HEADER_BYTES) {
 			memcpy(cut + 8, &(uint32_t){(uint32_t)bytes}, 4);
 			assert_int_equal(cau_frame_decode(of.decoder, cut, bytes, NULL), CAU_CORRUPT);
 			assert_false(cau_frame_decoder_state(of.decoder)->synced);
@@ -104,7 +105,7 @@ static void test_a_damaged_frame_asks_for_a_key_frame(void **unused)
 	chain_pass(&of);
 	tissue_move(&of.tissue, 1, 0.05);
 	chain_encode(&of);
-	of.bytes[CAU_FRAME_HEADER_BYTES + 8] = 3; // a width of 3 bytes
+	of.bytes[CAU_FRAME_HEADER_BYTES + 8] = 3; // numbers of 3 bytes, which do not exist
 	assert_int_equal(cau_frame_decode(of.decoder, of.bytes, of.byte_count, NULL), CAU_CORRUPT);
 	assert_false(cau_frame_decoder_state(of.decoder)->synced);
 	tissue_move(&of.tissue, 2, 0.05);

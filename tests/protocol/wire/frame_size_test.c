@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size and cost of a stream with the default channels, for a grid of 3,136 vertices like the
-// fascia.
+// Measures the size and cost of a stream with the default channels, for a grid of 3,136 vertices
+// like the fascia.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,12 +17,14 @@
 
 enum { SIDE = 56, FRAMES = 300 };
 
-// Limit at 0.05 mm: payload of whole frames (header, mask, scalars, tools and all) for each vertex
-// that moved by a step or more.
+// Largest number of bytes for each vertex that moved by a step (0.05 mm) or more. Whole frames are
+// counted: header, mask, scalars, tools and all.
 static const double bytes_per_vertex_most = 1.6;
-// limit for fast motion, where the noise of each vertex alone is several steps a frame
+// Largest number of bytes for each moved vertex in fast motion, where the noise of each vertex
+// alone is several steps a frame.
 static const double fast_bytes_per_vertex_most = 2.0;
-// limit for a key frame, which has whole positions; single precision would need 12
+// Largest number of bytes for each vertex in a key frame, which has whole positions. In single
+// precision a position would need 12 bytes.
 static const double key_bytes_per_vertex_most = 4.0;
 
 static double now_us(void)
@@ -37,8 +39,8 @@ typedef struct figures {
 	double encode_us, decode_us; // mean time of a frame
 } figures;
 
-// Counts vertices that moved by a step or more. Frames also carry a few other vertices between
-// them.
+// Counts vertices that moved by a step or more. Frames also carry a few vertices between the moved
+// vertices.
 static int32_t count_moved(const cau_frame_decoder *decoder, const int32_t *before, int32_t count)
 {
 	const int32_t *now = cau_frame_decoder_state(decoder)->quantised;

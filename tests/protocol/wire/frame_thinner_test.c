@@ -75,7 +75,8 @@ static void test_every_second_frame_makes_the_same_state(void **unused)
 		advance(&of, tick);
 		uint64_t sequence = sequence_of(of.chain.decoder);
 		assert_int_equal(of.byte_count > 0, sequence > 2 && sequence % 2 == 0);
-		if (sequence <= 2) { // until the first thin frame, use the frames of the chain
+		// Before the first thin frame, the slow decoder gets the frames of the chain.
+		if (sequence <= 2) {
 			decode(of.slow, of.chain.bytes, of.chain.byte_count);
 		} else if (of.byte_count) {
 			decode(of.slow, of.bytes, of.byte_count);

@@ -58,7 +58,7 @@ static float temperature_at(const tissue *of, int32_t vertex, int32_t tick)
 	return squared < 9 ? 170.0f - 14.8f * (float)squared : 37.0f;
 }
 
-// Gives all scalars a wave within their ranges. Some of them get other values later.
+// Gives all scalars a wave within their ranges. Some scalars get other values later.
 static void wave_scalars(tissue *moved, int32_t vertex, double time_s)
 {
 	cau_stream_def def = cau_default_stream_def();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An artificial tissue for tests of streams. It is a grid in smooth motion with a little noise. A
-// cut runs across it, with exposure that rises along the cut. It has one or two tools, later a
-// vessel and the contact of a tool. It is the same in every run.
+// cut runs across it, with exposure that rises along the cut. The tissue has one or two tools, and
+// later a vessel and the contact of a tool. All this is the same in every run.
 #pragma once
 
 #include "cautery/stream.h"

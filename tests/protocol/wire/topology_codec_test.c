@@ -152,7 +152,8 @@ static void test_hostile_topology_is_refused(void **unused)
 	uint8_t *whole = malloc(of->byte_count + 1);
 	memcpy(whole, of->bytes, of->byte_count);
 	srand(3);
-	for (int round = 0; round < 3000; round++) { // whatever is decoded, indices are in range
+	// If a damaged frame is accepted, its indices must be in range.
+	for (int round = 0; round < 3000; round++) {
 		for (int flips = 0; flips < 3; flips++)
 			of->bytes[72 + (size_t)rand() % (of->byte_count - 72)] ^= (uint8_t)(1 << rand() % 8);
 		if (decode(of, of->byte_count, to, &has_texture) == CAU_OK) {
@@ -168,7 +169,8 @@ static void test_hostile_topology_is_refused(void **unused)
 	free_fixture(of);
 }
 
-// With a known frame, other profile, epoch and step, the bytes are the same as without it.
+// With a known frame of another profile, epoch and step, the encoder writes the same bytes as
+// without a known frame.
 static void test_a_known_frame_is_used(void **unused)
 {
 	(void)unused;
