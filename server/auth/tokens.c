@@ -19,14 +19,15 @@ enum {
 	LEAST_TOKEN_BYTES = 16,
 	MOST_TOKEN_BYTES = 128,
 	NAME_BYTES = CAU_AUTH_NAME_BYTES,
-	WORD_BYTES = 160, // of a line's word: longer than the longest token or list of sessions
+	// capacity for a word of a line: more than the longest token or list of sessions
+	WORD_BYTES = 160,
 	MOST_QUOTA = 1000000,
 };
 
 static const char hash_mark[] = "sha256:";
 
-// A token of the file. Only its hash is kept. Tokens are random, so none can be guessed from its
-// hash.
+// A token of the file. Only its hash is kept. Tokens are random, so nobody can guess a token from
+// its hash.
 typedef struct token {
 	char hash[CAU_SHA256_TEXT_BYTES];
 	char name[NAME_BYTES]; // the owner's name, for the log; "": none given
@@ -49,7 +50,7 @@ struct cau_auth {
 	token_list list;
 };
 
-// The grant of everyone if there is no file of tokens.
+// Grant of every connection if there is no file of tokens.
 enum { GRANT_OF_ALL = 1 };
 
 // Reads the second word of a line: a hash, or a token whose hash is kept.
@@ -202,7 +203,7 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 	return status;
 }
 
-// Replaces the list by one that was read. A token that is in both lists keeps its grant.
+// Replaces the list by the list that was read. A token that is in both lists keeps its grant.
 static void take_list(cau_auth *auth, token_list *read)
 {
 	pthread_mutex_lock(&auth->mutex);

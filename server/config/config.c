@@ -23,7 +23,8 @@ cau_status cau_config_set(cau_config *config, const char *name, const char *text
 	return cau_setting_store(found, config, text, error);
 }
 
-// True for names that other programs read from the environment with our prefix.
+// True for the names of CAUTERY_* variables that are not settings. Programs read these variables
+// elsewhere.
 static bool no_setting(const char *name)
 {
 	static const char *const names[] = {"config", "meshes", "jobs"};

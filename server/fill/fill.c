@@ -19,7 +19,8 @@
 #include "cautery/assert.h"
 
 enum { LOOK_MS = 100, ARGUMENTS_MAX = 24, NUMBER_BYTES = 32, PATH_BYTES = 4096 };
-// allowed wall time over allowed processor time: a busy machine gives the process little time
+// Ratio of the allowed wall time to the allowed processor time. It is above 1 because a busy
+// machine gives the process little time.
 static const double wall_share = 4;
 
 struct cau_filling {
@@ -86,7 +87,8 @@ typedef struct process {
 	pid_t pid;
 	// in, out: files of standard input and output; said: pipe of standard error
 	int in, out, said;
-	// one byte less, for a line feed that the last line may lack
+	// Output of standard error. The buffer is one byte shorter than a report, because a line feed
+	// is added to a last line without one.
 	char text[CAU_FILL_REPORT_BYTES - 1];
 	size_t text_bytes;
 } process;

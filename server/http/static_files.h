@@ -14,7 +14,7 @@ typedef struct cau_static_file {
 	bool hashed; // the file's name changes with its content, so it may be cached for ever
 	void *plain;
 	size_t plain_bytes;
-	void *gzip; // NULL if it would not be smaller
+	void *gzip; // NULL if the compressed file would not be smaller
 	size_t gzip_bytes;
 } cau_static_file;
 

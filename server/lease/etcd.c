@@ -95,8 +95,9 @@ static size_t take(char *bytes, size_t size, size_t count, void *user)
 	return size * count;
 }
 
-// Sets up a request. No signals, because other threads handle them. No proxy from the environment,
-// because etcd is near. Only http and https, wherever an answer redirects.
+// Sets up a request. The library uses no signals, because other threads handle signals. It uses no
+// proxy from the environment, because etcd is near. It uses only http and https, even after a
+// redirect.
 static void prepare(cau_etcd *etcd, const char *url, const char *request, double limit_s)
 {
 	CURL *curl = etcd->curl;
@@ -143,8 +144,7 @@ static cau_status after(cau_etcd *etcd, cau_status status)
 	return status;
 }
 
-// ---- leases
-// Lease requests. If a lease is gone, keepalive answers with a TTL of 0.
+// Requests about leases. If a lease is gone, keepalive answers with a TTL of 0.
 cau_status cau_etcd_grant(cau_etcd *etcd, double ttl_s, double limit_s, cau_etcd_lease *lease,
                           cau_error *error)
 {

@@ -99,7 +99,8 @@ static bool fill_cells(const cau_session *session, const cau_session_info *info,
 // ---- a file -----------------------------------------------------------------------------------
 
 typedef struct array {
-	const char *group; // this element is opened before the array; NULL: the open one continues
+	// the XML element that is opened before the array; NULL: the open element continues
+	const char *group;
 	const char *name, *type;
 	int components;
 	const void *data;

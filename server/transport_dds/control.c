@@ -68,9 +68,9 @@ static cau_status read_rewind(asked *a, cau_order *order, cau_error *error)
 	return check_params(order->reply.method, &params, error);
 }
 
-// Finds the client that drives, in the requester's participant. With a writer named, the client
-// drives by that writer of cautery/tool_command. With none named, the client drives by the tool's
-// ROS 2 topics.
+// Finds the client that drives, in the requester's participant. If the request names a writer of
+// cautery/tool_command, the client must drive by that writer. Otherwise the client must drive by
+// the tool's ROS 2 topics.
 static const cau_dds_client *find_driver(const asked *a, cau_error *error)
 {
 	static const uint8_t nobody[16];

@@ -4,7 +4,7 @@
 
 #include "transport_dds/internal.h"
 
-#define CLAIM_S 0.1 // a claim in the queue is not repeated within this time
+#define CLAIM_S 0.1 // a claim that waits in the queue is not repeated within this time, s
 
 // ---- the driver of a tool
 // Returns the hand of a DDS client that drives this tool and has been silent for its deadline; NULL

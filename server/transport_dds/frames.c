@@ -91,7 +91,8 @@ static void want_key(cau_dds_stream *stream)
 	                                .has_key = !stream->key_forced,
 	                                .wants_key = true,
 	                                .epoch = chain->epoch,
-	                                .sequence = chain->sequence - 1, // of this or a newer state
+	                                // The key frame must have this state or a newer one.
+	                                .sequence = chain->sequence - 1,
 	                                .key_asked_s = -INFINITY};
 	stream->key_wanted = stream->key_forced = false;
 }

@@ -21,7 +21,7 @@
 enum {
 	WRITER_BUCKETS = 1024,
 	REQUESTS_MOST = 256,       // largest number of requests that wait for an answer
-	REQUESTS_OF_ONE_MOST = 64, // the same for one participant
+	REQUESTS_OF_ONE_MOST = 64, // largest number of these of one participant
 	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
 };
 
@@ -67,7 +67,7 @@ typedef struct cau_door {
 } cau_door;
 
 typedef enum cau_dds_operating_state {
-	OPERATING_NOTHING, // as the last published state: nothing published yet
+	OPERATING_NOTHING, // the initial value: no state has been published yet
 	OPERATING_DISABLED,
 	OPERATING_ENABLED,
 	OPERATING_PAUSED,
@@ -317,7 +317,7 @@ typedef struct cau_dds_peers {
 	int told;
 } cau_dds_peers;
 
-// Clients that count against the limits of places.c; only the DDS thread uses this.
+// Clients and their limits; places.c. Only the DDS thread uses this.
 typedef struct cau_dds_places {
 	cau_dds_client *clients; // newest first
 	uint64_t last_connection;
@@ -328,8 +328,8 @@ typedef struct cau_dds_places {
 // Matched writers, by reader and handle; only the DDS thread uses this. writers.c.
 typedef struct cau_dds_writers {
 	cau_dds_writer *buckets[WRITER_BUCKETS];
-	// start of the second to which onlookers_told belongs: log lines about writers without a role
-	// to drive
+	// start of the second to which `onlookers_told` belongs: the number of log lines about writers
+	// whose role may not drive
 	double onlookers_told_s;
 	int onlookers_told;
 } cau_dds_writers;
@@ -468,7 +468,7 @@ cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_
 void cau_dds_give_up(cau_dds_client *client);
 // Returns the client's hand on the tool; NULL if it has none.
 cau_dds_hand *cau_dds_find_hand(const cau_dds_client *client, const cau_dds_tool *tool);
-// Returns the writer's hand on the tool, or makes one. Errors are those of cau_dds_admit.
+// Returns the writer's hand on the tool, or makes one. Errors: those of cau_dds_admit.
 cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_session *session,
                                 cau_dds_tool *tool, bool drives_now, cau_error *error);
 // Frees all hands on a tool that is gone.
