@@ -84,6 +84,6 @@ void cau_connection_shut(cau_connection *c)
 	SSL *tls = tls_of(c);
 	ERR_clear_error();
 	if (tls && SSL_shutdown(tls) < 0)
-		ERR_clear_error(); // an error here does not matter: the socket is shut anyway
+		ERR_clear_error(); // an error here has no effect: the socket is shut anyway
 	shutdown(c->descriptor, SHUT_WR);
 }
