@@ -30,7 +30,7 @@ static const char hash_mark[] = "sha256:";
 // its hash.
 typedef struct token {
 	char hash[CAU_SHA256_TEXT_BYTES];
-	char name[NAME_BYTES]; // the owner's name, for the log; "": none given
+	char name[NAME_BYTES]; // the owner's name, for the log; "": no name was given
 	int64_t expires_us;    // Unix time; INT64_MAX: never
 	cau_role role;
 	cau_auth_bounds bounds;
@@ -258,7 +258,7 @@ void cau_auth_destroy(cau_auth *auth)
 }
 
 // Copies the token with this hash or, if `hash` is NULL, with this grant. Returns false if there is
-// none or it has expired.
+// no such token, or if the token has expired.
 static bool look_up(const cau_auth *auth, const char *hash, uint64_t grant, token *copy)
 {
 	// `auth` is const because callers see no change; only the mutex changes

@@ -124,8 +124,8 @@ void cau_shelf_stock(cau_shelf *shelf, size_t bytes, int count)
 	}
 }
 
-// Takes a piece from the shelf; NULL if it has none. Counts a piece as taken either way, so that
-// the shelf stays until that piece is given back.
+// Takes a piece from the shelf. Returns NULL if the shelf has no piece. In both cases a piece
+// counts as taken, so that the shelf stays until that piece is given back.
 static piece *take_lying(cau_shelf *shelf)
 {
 	pthread_mutex_lock(&shelf->mutex);

@@ -75,7 +75,7 @@ static bool read_request(cau_config_request *request, const char *flag)
 	return false;
 }
 
-// True if the text is a switch's value. Without one, `--dds` means `--dds true`.
+// True if the text is a switch's value. Without a value, `--dds` means `--dds true`.
 static bool is_switch_value(const char *text)
 {
 	return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;

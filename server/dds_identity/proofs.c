@@ -13,7 +13,7 @@ typedef struct proof {
 	// the value of `meetings` when the proof was added; the oldest proof is replaced first
 	uint64_t since;
 	uint8_t guid[GUID_BYTES];
-	int64_t identity, handshake;         // handles of the plugin; 0: none
+	int64_t identity, handshake;         // handles of the plugin; 0: no handle
 	char subject[CAU_DDS_SUBJECT_BYTES]; // "" if not proved
 } proof;
 

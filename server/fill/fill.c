@@ -223,7 +223,8 @@ static double now_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Waits until the process ends, or kills it. Returns its exit status. *why: the reason for a kill.
+// Waits until the process ends, or kills it. Returns its exit status. *why: the reason for a kill,
+// or "" if the time was used up; NULL stays if the process ended by itself.
 static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish *wish,
                     const char **why)
 {

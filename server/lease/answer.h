@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads etcd's answers from its JSON gateway (v3). The functions are pure and check bytes from
-// outside. Unknown members are skipped. Known ones must be as etcd writes them: numbers as text,
+// outside. Unknown members are skipped. Known members must be as etcd writes them: numbers as text,
 // keys and values in base64. `text` has a zero behind its bytes.
 #pragma once
 

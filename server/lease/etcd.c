@@ -196,7 +196,8 @@ void cau_etcd_name_keys(const char *label, cau_etcd_keys *keys)
 	snprintf(keys->holder, sizeof keys->holder, "cautery/%.60s/holder", label);
 }
 
-// Reads both keys with one range: from the first key to just behind the second, which follows it.
+// Reads both keys with one range, which begins at the first key and ends just behind the second.
+// The second key comes after the first in etcd's order.
 cau_status cau_etcd_read(cau_etcd *etcd, const cau_etcd_keys *keys, double limit_s,
                          cau_etcd_value *generation, cau_etcd_value *holder, cau_error *error)
 {

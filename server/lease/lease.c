@@ -34,7 +34,7 @@ struct cau_lease {
 	bool has_next; // `next` was made by this start, and etcd does not know it yet
 	int64_t id;    // id of the lease in etcd
 	char holder[96];
-	// inode of the database: now, and as stored in it; 0: none stored
+	// file: inode of the database now; stored_file: inode that the database has stored, 0: no inode
 	uintmax_t file, stored_file;
 	_Atomic int64_t held_until_us; // the logic's held_until_s, for other threads
 	int ending;                    // eventfd that ends the thread

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A daemon's hold on its label. It is taken from etcd before sessions are resumed, and renewed by a
-// thread of its own. It ends here before etcd would give the label to another daemon.
+// A daemon's hold on its label. The label is taken from etcd before sessions are resumed. A thread
+// renews the lease. The daemon gives up the label before etcd would give it to another daemon.
 #pragma once
 
 #include <stdbool.h>

@@ -42,7 +42,8 @@ typedef struct cau_claim {
 	cau_generation held, next; // generations in the store
 	cau_generation known;      // generation in etcd
 	bool is_held;              // etcd has a holder whose lease has not ended
-	// the holder was a process with this store file. It has ended, because we have its lock.
+	// the holder was a process with this store file. That process has ended, because this process
+	// has the file's lock
 	bool is_held_here;
 	bool is_copy;    // the store's file is not the file that was opened last
 	bool take_label; // the operator says that this store is the right one

@@ -98,7 +98,7 @@ void cau_half_steady(const cau_streams *streams, cau_stream *stream, cau_subscri
 	if (!sub->half)
 		return;
 	change(streams, stream, sub, false);
-	sub->falls = FALLS_TOLERATED; // after one more fall, it gets half the rate again
+	sub->falls = FALLS_TOLERATED; // after one more fall, the subscriber gets half the rate again
 }
 
 void cau_half_leave(cau_stream *stream, const cau_subscriber *sub)

@@ -11,7 +11,7 @@
 
 // The last accepted sample of a driver for one tool.
 typedef struct cau_motion_past {
-	uint64_t sequence;      // 0: none yet
+	uint64_t sequence;      // 0: no sample was accepted yet
 	int64_t source_time_ns; // nanoseconds since 1970
 	bool has_pose;
 	cau_pose pose;
@@ -37,7 +37,7 @@ cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence
 // within 0 to 1. The rotation must be a unit quaternion within CAU_UNIT_TOLERANCE; the function
 // normalises it.
 cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error);
-// Checks that the pose is no farther from the last one than the tool's speed limits allow in the
+// Checks that the pose is no farther from the last pose than the tool's speed limits allow, in the
 // time since then plus CAU_MOTION_GRACE_S.
 cau_status cau_motion_check_leap(const cau_motion_past *past, const cau_pose *pose, double now_s,
                                  const cau_tool_def *tool, cau_error *error);

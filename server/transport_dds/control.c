@@ -271,8 +271,8 @@ static const char *owner_of(const cau_config *config, const cau_dds_writer *writ
 	return *writer->subject ? writer->subject : *config->tokens ? "dds:" : "";
 }
 
-// True if the request is for this daemon. Several daemons may receive it; it is for the one whose
-// label begins the session's id.
+// True if the request is for this daemon. Several daemons may receive a request. It is for the
+// daemon whose label begins the session's id.
 static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
 {
 	const char *label = dds->config->label;

@@ -176,8 +176,8 @@ void cau_dds_leave_frames(cau_dds_session *session)
 		return;
 	stream->joined = false;
 	cau_hosted_leave(session->hosted, &stream->chain);
-	// Disposes the kept samples: they would mislead a later reader, because the next stream may be
-	// another one.
+	// Disposes the kept samples. They would mislead a later reader, because the next stream may be
+	// a different one.
 	cautery_Frame key = {0};
 	snprintf(key.session, sizeof key.session, "%s", cau_hosted_id(session->hosted));
 	dds_dispose(stream->topology.writer, &key);

@@ -36,7 +36,7 @@ typedef struct cau_connection_input {
 	cau_frame_reader reader;
 	double heard_s;      // time of the last received bytes
 	bool polled;         // epoll reports input of this connection
-	unsigned char *held; // bytes received in one turn and left for the next; NULL: none
+	unsigned char *held; // bytes received in one turn and left for the next; NULL: no bytes
 	size_t held_at, held_bytes;
 	double empty_s;      // time when the socket was last known to be empty
 	double sent_after_s; // the message at hand was sent after this time

@@ -11,7 +11,8 @@
 #include "simulation/promises.h"
 #include "simulation/world.h"
 
-#define PATIENCE_NS (10 * SIM_SECOND) // longest wait for one answer, or for a daemon that is down
+// longest wait for one answer, or for a daemon that does not run
+#define PATIENCE_NS (10 * SIM_SECOND)
 #define LOOK_NS SIM_MS
 
 enum {

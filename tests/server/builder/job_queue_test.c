@@ -41,7 +41,8 @@ static void equals_keep_their_order(void **state)
 		assert_ptr_equal(cau_job_queue_take(&queue), &jobs[i]);
 }
 
-// Short jobs keep coming. The long job gets its turn after those that come within its patience.
+// Tests that a long job gets its turn while short jobs keep coming: after those that come within
+// its patience.
 static void nothing_starves(void **state)
 {
 	(void)state;

@@ -192,7 +192,7 @@ typedef struct world {
 	file file[STORES];
 	process process[STORES];
 	cau_generation known;
-	int holder; // process whose lease has not ended; -1: none
+	int holder; // process whose lease has not ended; -1: no such process
 	uint64_t revision, mark;
 	int writes; // writes acknowledged so far, by all processes
 	bool taken; // --take-label was given: missing writes are then the operator's responsibility
