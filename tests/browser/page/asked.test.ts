@@ -6,8 +6,8 @@ import type { Colour, ViewerPage } from './viewer_page';
 
 type Point = [number, number, number];
 const MIDDLE: Point = [0, 0, 0]; // middle of the slab's surface
-const OVER_M = 0.008; // distance between the tool and the surface before it goes down
-const BEHIND_M = 0.002; // the pinned floor of the slab stops the tool when it is led on
+const OVER_M = 0.008; // largest horizontal distance of the tip from the slab's middle at which the tool counts as over it
+const BEHIND_M = 0.002; // height by which the slab stops the tool above where it is led; its floor is pinned
 const NOTCHES = 4; // notches of the wheel for a step
 const NOTCH_M = 0.0005;
 const LIFT = 20; // notches of the wheel that lift the tool
