@@ -33,8 +33,8 @@ typedef struct cau_lease_def {
 // store or in etcd is no generation), CAU_BAD_VALUE, CAU_NO_MEMORY.
 cau_status cau_lease_take(cau_lease **lease, const cau_lease_def *def, cau_error *error);
 
-// Returns the seconds left, on a clock that continues while the machine sleeps. Does not return if
-// none are left. Any thread may call it; it never waits.
+// Returns the seconds until the lease ends, on a clock that continues while the machine sleeps.
+// Does not return if the lease has ended. Any thread may call it; it never waits.
 double cau_lease_check(cau_lease *lease);
 
 int64_t cau_lease_generation(const cau_lease *lease);

@@ -204,7 +204,7 @@ static void finish_tools(tool_arrays *a)
 
 static bool reserve_tools(tool_arrays *a, size_t count)
 {
-	count += 1; // because malloc(0) may return NULL
+	count += 1; // one element more, because malloc(0) may return NULL
 	a->position = malloc(6 * count * sizeof *a->position);
 	a->corner = malloc(2 * count * sizeof *a->corner);
 	a->end = malloc(count * sizeof *a->end);

@@ -8,7 +8,7 @@
 
 enum {
 	FALLS_TOLERATED = 3,
-	STEADY_FRAMES = 600, // earlier falls are forgotten after this many frames without a fall
+	STEADY_FRAMES = 600, // number of frames without a fall after which earlier falls are forgotten
 };
 // time after which the last frame is sent singly, because no other frame may follow
 #define ALONE_S 0.25

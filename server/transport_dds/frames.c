@@ -118,7 +118,7 @@ static double write_new(cau_dds_session *session, double now_s)
 }
 
 // ---- joining and leaving
-// True if any outlet has readers. Also notes new readers, who have only the kept samples.
+// True if any outlet has readers. Also notes new readers, which have only the kept samples so far.
 static bool has_readers(cau_dds_stream *stream)
 {
 	cau_dds_outlet *outlets[] = {&stream->topology, &stream->key, &stream->delta};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The simulation's network: a double of server/transport_ws. A connection is a queue of whole
-// messages with a delay. Messages are delivered in order, and none is delivered after a cut.
+// messages with a delay. Messages are delivered in order, and no message is delivered after a cut.
 #pragma once
 
 #include <stdbool.h>

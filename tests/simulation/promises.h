@@ -45,7 +45,8 @@ void promises_away(int client);
 void promises_moving(int session, int target);
 void promises_told(int client, const char *text);
 
-void promises_store_takes(const char *id, bool takes); // the daemon has notified the session
+// the daemon has notified the session whether its store accepts writes
+void promises_store_takes(const char *id, bool takes);
 
 // ---- events of daemons (daemons.c)
 void promises_killed(int machine); // the daemon was killed, or has ended in order

@@ -235,7 +235,7 @@ static void make_trace(traced *t)
 	order(t, 4, CAU_ASK_PAUSE, 2);
 	work(t);
 	assert_int_equal(fflush(t->to), 0);
-	assert_in_range(t->lit_steps, 10, 30); // energy went on, and off again at the deadline
+	assert_in_range(t->lit_steps, 10, 30); // energy was turned on, and off again at the deadline
 }
 
 static void discard_trace(traced *t)
