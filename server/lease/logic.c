@@ -117,8 +117,7 @@ cau_lease_rules cau_lease_rules_of(double ttl_s)
 	CAU_ASSERT(ttl_s >= 2, "a time to live of %g s", ttl_s);
 	return (cau_lease_rules){
 		.ttl_s = ttl_s,
-		// This margin is much larger than the error of the clocks: at 200 ppm, two clocks are 12 ms
-	    // apart after a minute.
+		// The margin exceeds clock errors: at 200 ppm, two clocks differ by 12 ms after a minute.
 		.margin_s = fmax(0.5, 0.1 * ttl_s),
 		.renew_s = ttl_s / 4,
 		.limit_s = ttl_s / 6,
