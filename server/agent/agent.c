@@ -77,7 +77,8 @@ static void *serve(void *argument)
 		int peer = accept4(agent->socket, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 		if (peer >= 0)
 			answer(agent, peer);
-		else // failed: a peer that has already gone causes a pause too
+		// accept failed, for example because the peer has already gone: wait before the next accept
+		else
 			goes_on = wait_for_end(agent, ACCEPT_PAUSE_MS);
 	}
 	return NULL;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many new sessions a daemon can take. A proxy in front of several daemons reads it.
+// Computes how many more sessions a daemon can take, as an answer to a proxy in front of several
+// daemons.
 #pragma once
 
 #include <stdbool.h>
@@ -17,8 +18,8 @@ typedef struct cau_load {
 } cau_load;
 
 // Returns the free capacity, 1 to 100 %: the least of the free shares of sessions, memory and
-// cores, times pace_share_min. It is never 0, which HAProxy treats as `drain`: if all daemons are
-// full, one of them must still report it.
+// cores, times pace_share_min. The result is never 0, because HAProxy treats 0 as `drain`. If all
+// daemons are full, the proxy must still send new sessions to one of them, which reports the error.
 int cau_load_free_percent(const cau_load *load);
 
 enum { CAU_LOAD_LINE_BYTES = 16 };

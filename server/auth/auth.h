@@ -20,7 +20,8 @@ typedef struct cau_auth_bounds {
 	// Ids of sessions, separated by commas. A `*` at the end of an entry stands for all ids with
 	// that beginning. "": every session.
 	char sessions[CAU_AUTH_SESSIONS_BYTES];
-	// expensive requests a minute, of all its connections together; 0: no quota of its own
+	// largest number of expensive requests a minute, of all the token's connections together; 0:
+	// the token has no quota of its own
 	int64_t quota;
 } cau_auth_bounds;
 
@@ -37,9 +38,9 @@ void cau_auth_destroy(cau_auth *auth); // `auth` may be NULL
 // file and line. Any thread may call this and all functions below.
 cau_status cau_auth_reload(cau_auth *auth, const cau_config *config, cau_error *error);
 
-// Finds the role of a token (without a zero at its end). Returns false if it has none. Without a
-// file of tokens everyone is admin, with or without a token. Takes the same time for every wrong
-// token of the same length.
+// Finds the role of a token (without a zero at its end). Returns false if the token has none.
+// Without a file of tokens everyone is admin, with or without a token. Takes the same time for
+// every wrong token of the same length.
 bool cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_role *role);
 
 // Returns the token's grant, a number that no other token gets; a connection keeps it. 0: the token
@@ -51,7 +52,7 @@ bool cau_auth_grant_role(const cau_auth *auth, uint64_t grant, cau_role *role);
 // Finds the token's owner, in a form for programs: the name in its line, else its hash. Tokens with
 // the same name have the same owner. "": no token is required, or it was revoked.
 void cau_auth_grant_owner(const cau_auth *auth, uint64_t grant, char owner[CAU_AUTH_OWNER_BYTES]);
-// Finds the name in the token's line; "" if it has none.
+// Finds the name in the token's line; "" if the line has none.
 void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUTH_NAME_BYTES]);
 
 // Finds the limits of the token. Returns false if it was revoked or has expired. Without a file of

@@ -23,9 +23,10 @@ static void take_off_mapping(char *address)
 		memmove(address, inner, strlen(inner) + 1);
 }
 
-// Each proxy adds its client's address on the right of the header. So addresses are read from the
-// right: as long as one is a trusted proxy, its entry is believed. The first address that is no
-// trusted proxy is the client. Anything left of it may be forged.
+// Each proxy appends its client's address to the header. So the addresses are read from the right.
+// If an address belongs to a trusted proxy, that proxy wrote the address on the left, which is read
+// next. The first address that is no trusted proxy is the client. Anything on the left of the
+// client's address may be forged.
 void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
                            size_t capacity)
 {

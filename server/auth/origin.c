@@ -23,8 +23,8 @@ bool cau_list_has(const char *list, const char *text)
 	return false;
 }
 
-// Splits "name:port" or "[address]:port"; *port is -1 if there is none. Returns false if the text
-// is malformed.
+// Splits "name:port" or "[address]:port"; *port is -1 if the text has no port. Returns false if the
+// text is malformed.
 static bool split_host(const char *host, char *name, size_t capacity, long *port)
 {
 	const char *colon = strrchr(host, ':');

@@ -19,17 +19,18 @@ enum {
 	LEAST_TOKEN_BYTES = 16,
 	MOST_TOKEN_BYTES = 128,
 	NAME_BYTES = CAU_AUTH_NAME_BYTES,
-	WORD_BYTES = 160, // of a line's word: longer than the longest token or list of sessions
+	// capacity for a word of a line: more than the longest token or list of sessions
+	WORD_BYTES = 160,
 	MOST_QUOTA = 1000000,
 };
 
 static const char hash_mark[] = "sha256:";
 
-// A token of the file. Only its hash is kept. Tokens are random, so none can be guessed from its
-// hash.
+// A token of the file. Only its hash is kept. Tokens are random, so nobody can guess a token from
+// its hash.
 typedef struct token {
 	char hash[CAU_SHA256_TEXT_BYTES];
-	char name[NAME_BYTES]; // the owner's name, for the log; "": none given
+	char name[NAME_BYTES]; // the owner's name, for the log; "": no name was given
 	int64_t expires_us;    // Unix time; INT64_MAX: never
 	cau_role role;
 	cau_auth_bounds bounds;
@@ -49,7 +50,7 @@ struct cau_auth {
 	token_list list;
 };
 
-// The grant of everyone if there is no file of tokens.
+// Grant of every connection if there is no file of tokens.
 enum { GRANT_OF_ALL = 1 };
 
 // Reads the second word of a line: a hash, or a token whose hash is kept.
@@ -207,7 +208,7 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 	return status;
 }
 
-// Replaces the list by one that was read. A token that is in both lists keeps its grant.
+// Replaces the list by the list that was read. A token that is in both lists keeps its grant.
 static void take_list(cau_auth *auth, token_list *read)
 {
 	pthread_mutex_lock(&auth->mutex);
@@ -262,7 +263,7 @@ void cau_auth_destroy(cau_auth *auth)
 }
 
 // Copies the token with this hash or, if `hash` is NULL, with this grant. Returns false if there is
-// none or it has expired.
+// no such token, or if the token has expired.
 static bool look_up(const cau_auth *auth, const char *hash, uint64_t grant, token *copy)
 {
 	// `auth` is const because callers see no change; only the mutex changes

@@ -11,7 +11,8 @@
 #include "log/log.h"
 #include "store/backup.h"
 
-// approximate speed of reading, writing, syncing and checking, for the order of the builder's jobs
+// Approximate bytes that a copy reads, writes, syncs and checks in a second. The builder orders its
+// jobs by the time that follows from this.
 #define COPY_BYTES_PER_S 50e6
 
 typedef struct copying {

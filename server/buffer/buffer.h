@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { CAU_BUFFER_HEADROOM = 16 }; // at least LWS_PRE
+enum { CAU_BUFFER_HEADROOM = 16 }; // bytes before the data; at least LWS_PRE
 
 typedef struct cau_buffer {
 	atomic_int references;

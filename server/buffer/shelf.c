@@ -9,10 +9,10 @@
 #include "cautery/assert.h"
 
 enum {
-	// a piece is larger than requested by one part in this many, because cuts and contacts make
-	// states grow
+	// A new piece is larger than requested by the fraction 1 / GROWS_BY, because cuts and contacts
+	// make states grow.
 	GROWS_BY = 4,
-	TOUCHED_BYTES = 4096, // every page is at least this large
+	TOUCHED_BYTES = 4096, // distance of the bytes that touch() writes; no page is smaller
 };
 
 typedef struct piece {
@@ -27,7 +27,7 @@ struct cau_shelf {
 	piece *first;
 	int lying, kept; // lying: pieces on the shelf; kept: the largest number of them
 	int taken;
-	// the owner has released the shelf: it is freed with the last piece that is given back
+	// the owner has released the shelf; the shelf is freed when the last piece is given back
 	bool released;
 };
 
@@ -124,8 +124,8 @@ void cau_shelf_stock(cau_shelf *shelf, size_t bytes, int count)
 	}
 }
 
-// Takes a piece from the shelf; NULL if it has none. Counts a piece as taken either way, so that
-// the shelf stays until that piece is given back.
+// Takes a piece from the shelf. Returns NULL if the shelf has no piece. In both cases a piece
+// counts as taken, so that the shelf stays until that piece is given back.
 static piece *take_lying(cau_shelf *shelf)
 {
 	pthread_mutex_lock(&shelf->mutex);

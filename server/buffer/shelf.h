@@ -21,8 +21,9 @@ cau_shelf *cau_shelf_create(void); // NULL if memory ran out
 // may be NULL.
 void cau_shelf_release(cau_shelf *shelf);
 
-// Puts `count` touched pieces of `bytes` each on an empty shelf, which keeps this number from then
-// on. If memory runs out it has fewer; missing pieces are made when they are taken.
+// Puts `count` touched pieces of `bytes` each on an empty shelf. The shelf then keeps at most this
+// number of pieces. If memory runs out, the shelf gets fewer; missing pieces are made when they are
+// taken.
 void cau_shelf_stock(cau_shelf *shelf, size_t bytes, int count);
 
 // Takes a piece of at least `bytes`, from the shelf if it has one. A piece that is too small is

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs work that takes long, and for which no session's steps may wait: it builds sessions,
-// restores states from the store, and makes files. It runs at a low priority, on what workers
-// leave.
+// Runs work that takes long, so that no session's steps wait for it: builds sessions, restores
+// states from the store, and makes files. The threads run at a low priority, in processor time that
+// workers leave.
 //
 // One thread takes only short jobs, so that these never wait for large tissue, whose stages
 // (CHOLMOD, METIS) cannot be interrupted. The other threads take long jobs, and short ones if there
-// is no long one. So a daemon that starts builds as many of its sessions at once as it has such
-// threads.
+// is no long one. So a daemon that starts builds several large sessions at once, one on each of
+// these other threads.
 #pragma once
 
 #include <stdbool.h>

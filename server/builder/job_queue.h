@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order of the builder's jobs: the shortest goes first, but every job gets its turn. A job is
-// overtaken only by jobs that come within CAU_JOB_PATIENCE times its own length after it.
+// The order of the builder's jobs: the shortest goes first, but every job gets its turn. A later
+// job overtakes a job only if it comes within CAU_JOB_PATIENCE times the earlier job's length.
 #pragma once
 
 #include "builder/builder.h"

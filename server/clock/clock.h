@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The server's clocks. The core has none. Deadlines use the monotonic clock.
+// The server's clocks; the core reads no clock. Deadlines use the monotonic clock.
 #pragma once
 
 #include <math.h>

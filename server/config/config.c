@@ -23,7 +23,8 @@ cau_status cau_config_set(cau_config *config, const char *name, const char *text
 	return cau_setting_store(found, config, text, error);
 }
 
-// True for names that other programs read from the environment with our prefix.
+// True for the names of CAUTERY_* variables that are not settings. Programs read these variables
+// elsewhere.
 static bool no_setting(const char *name)
 {
 	static const char *const names[] = {"config", "meshes", "jobs"};
@@ -74,7 +75,7 @@ static bool read_request(cau_config_request *request, const char *flag)
 	return false;
 }
 
-// True if the text is a switch's value. Without one, `--dds` means `--dds true`.
+// True if the text is a switch's value. Without a value, `--dds` means `--dds true`.
 static bool is_switch_value(const char *text)
 {
 	return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;

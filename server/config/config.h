@@ -134,7 +134,7 @@ typedef struct cau_config {
 // What the command line requests besides settings.
 typedef struct cau_config_request {
 	bool help, version, json, print_config, settings_schema;
-	const char *backup; // file for a copy of the store; NULL: none
+	const char *backup; // file for a copy of the store; NULL: no copy is requested
 } cau_config_request;
 
 void cau_config_default(cau_config *config);

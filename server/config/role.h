@@ -7,5 +7,5 @@
 #include "cautery/message_choices.h"
 
 const char *cau_role_word(cau_role role);
-// returns false if the word is none; *role then stays
+// Returns false if the word names no role; *role then stays unchanged.
 bool cau_role_read(const char *word, cau_role *role);

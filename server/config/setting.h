@@ -25,7 +25,7 @@ typedef struct setting {
 extern const setting cau_settings[];
 extern const size_t cau_setting_count;
 
-// Finds a setting; NULL if there is none. Both spellings are accepted, `max_sessions` and
+// Finds a setting; NULL if no setting has the name. Both spellings are accepted, `max_sessions` and
 // `max-sessions`.
 const setting *cau_setting_find(const char *name);
 

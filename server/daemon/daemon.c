@@ -30,10 +30,10 @@
 #include "worker/priority.h"
 
 enum {
-	CLOSING_S = 2, // time for connections to take their close frames
+	CLOSING_S = 2, // longest time for connections to take their close frames
 	REAP_MS = 250,
 	SCENES_S = 1,         // time between checks of the folder of scenes
-	LAST_WORD_US = 50000, // time for the log to take a line
+	LAST_WORD_US = 50000, // longest time for the log to take the last line before the process ends
 };
 
 struct cau_daemon {
@@ -152,7 +152,9 @@ static cau_status take_label(cau_daemon *daemon, cau_error *error)
 static void tell_state(cau_daemon *daemon, bool ephemeral, cau_store_state state,
                        const char *reason)
 {
-	if (daemon->hub) // sessions first, because a reader of the log may act on the line at once
+	// The sessions are notified before the log, because a reader of the log may act on the line at
+	// once.
+	if (daemon->hub)
 		cau_hub_store_takes(daemon->hub, ephemeral, state == CAU_STORE_READY, reason);
 	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL,
 	        ephemeral ? "memory_state" : "store_state", "state=%s reason=\"%s\"",
@@ -199,7 +201,8 @@ static cau_status open_store(cau_daemon *daemon, cau_error *error)
 	return cau_store_open(&store, &daemon->store, error);
 }
 
-// Opens the store of ephemeral sessions. It has no disk, so no commit waits for more batches.
+// Opens the store of ephemeral sessions. It has no disk, so a commit never waits to be joined with
+// later batches.
 static cau_status open_memory(cau_daemon *daemon, cau_error *error)
 {
 	cau_store_config memory = cau_store_default_config();
@@ -241,7 +244,8 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status = cau_builder_create(&daemon->builder, "cautery-build", count_builders(workers),
 		                            CAU_NICE_BUILDER, error);
-	// a client that waits for a moving session must not wait for processor time that workers leave
+	// Moves have a builder of their own, at a higher priority than the other builder: a client that
+	// waits for a moving session must not wait for processor time that workers leave.
 	if (!status)
 		status = cau_builder_create(&daemon->mover, "cautery-move", 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
@@ -307,7 +311,8 @@ static cau_status open_agent(cau_daemon *daemon, cau_error *error)
 }
 
 // Finds the folders of viewer, manual and scenes. Only the scenes are required. Without a viewer, a
-// plain page says that there is none; without a manual, its addresses say so.
+// plain page says that there is none. Without a manual, the manual's addresses answer that there is
+// none.
 static cau_status find_files(cau_config *config, cau_error *error)
 {
 	if (!*config->viewer)
@@ -394,9 +399,10 @@ cau_status cau_daemon_start(cau_daemon **made, cau_config *config, cau_error *er
 	return CAU_OK;
 }
 
-// Notifies systemd that the daemon is alive, if network, store and watchdog threads have all run.
-// Network and watchdog turn energy off, and nothing is acknowledged without the store, so the
-// daemon hangs if any of these hangs. Workers are not checked: a step may take long.
+// Notifies systemd that the daemon is alive, if the network, store and watchdog threads have all
+// run. Network and watchdog turn energy off, and nothing is acknowledged without the store. So if
+// any of these three threads hangs, the whole daemon counts as hung. Workers are not checked: a
+// step may take long.
 static void tell_alive(cau_daemon *daemon)
 {
 	unsigned long ticks = cau_service_ticks(daemon->service);

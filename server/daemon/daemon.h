@@ -9,16 +9,17 @@
 
 typedef struct cau_daemon cau_daemon;
 
-// Opens what the settings say, resumes the sessions of the store, and listens. `config` is
-// borrowed; its port becomes the real one.
+// Opens the parts that the settings name, resumes the sessions of the store, and listens. `config`
+// is borrowed; its port becomes the real one.
 cau_status cau_daemon_start(cau_daemon **daemon, cau_config *config, cau_error *error);
 // Waits for one of the signals, and notifies systemd meanwhile that all threads run. A hang-up of
 // the terminal is returned as SIGTERM, a SIGHUP from a program as SIGHUP. Returns non-zero if the
 // daemon cannot continue.
 int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number);
 // Reads the files of tokens and of DDS roles again. A wrong file is logged with the line, and the
-// values before stay. A connection whose token was revoked or has a lower role now is closed, with
-// energy off. A DDS client with a lower role loses its tools. No other client is affected.
+// old tokens or roles stay. A connection is closed, with energy off, if its token was revoked or
+// now has a lower role. A DDS client with a lower role loses its tools. No other client is
+// affected.
 void cau_daemon_reload(cau_daemon *daemon);
 // Sets the agent-check's answer: `drain` if `aside`, else the load. With `drain` a proxy sends no
 // new sessions here. Present sessions continue, and connected clients may still create sessions.

@@ -6,7 +6,8 @@
 
 #include "clock/clock.h"
 
-// A shorter window would show single steps; a longer one, sessions that have ended.
+// Length of the window in which the busy share is measured, s. A shorter window would show single
+// steps; a longer one, sessions that have ended.
 #define WINDOW_S 0.5
 
 static double process_cpu_s(void)

@@ -17,7 +17,8 @@
 // Exit codes: 0 after a drain, 1 if the daemon could not start, 2 for wrong settings.
 enum { EXIT_STARTED = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
-enum { FILES = 8192 }; // the same number as in deploy/systemd/common.conf
+// limit on open descriptors, the same number as in deploy/systemd/common.conf
+enum { FILES = 8192 };
 
 static void block_signals(sigset_t *signals)
 {

@@ -20,8 +20,8 @@ enum { CAU_DDS_SUBJECT_BYTES = 256 };
 const char *cau_dds_identity_library(void);
 
 // Finds the subject name that the participant with this GUID has proved (in the form of RFC 2253,
-// as in permissions: CN=knee-robot,O=Cautery). Returns false if it has proved none, or one that
-// does not fit. Any thread may call it.
+// as in permissions: CN=knee-robot,O=Cautery). Returns false if the participant has proved no name,
+// or a name that does not fit. Any thread may call it.
 bool cau_dds_identity_find(const uint8_t guid[16], char subject[CAU_DDS_SUBJECT_BYTES]);
 
 // The functions dds.sec.auth.library.init and .finalize, which Cyclone calls. `argument` is not

@@ -10,9 +10,10 @@ enum { PROOFS_MOST = 512, GUID_BYTES = 16 };
 
 typedef struct proof {
 	bool used;
-	uint64_t since; // the value of `meetings` when it was added; the oldest proof is replaced first
+	// the value of `meetings` when the proof was added; the oldest proof is replaced first
+	uint64_t since;
 	uint8_t guid[GUID_BYTES];
-	int64_t identity, handshake;         // handles of the plugin; 0: none
+	int64_t identity, handshake;         // handles of the plugin; 0: no handle
 	char subject[CAU_DDS_SUBJECT_BYTES]; // "" if not proved
 } proof;
 
@@ -20,8 +21,8 @@ static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static proof proofs[PROOFS_MOST];
 static uint64_t meetings;
 
-// Returns the proof with this GUID, else a free one, else the oldest, whose participant then counts
-// as not proved.
+// Returns the proof with this GUID, else a free entry, else the oldest proof. The participant of a
+// replaced proof then counts as not proved.
 static proof *place_for(const uint8_t guid[GUID_BYTES])
 {
 	proof *place = &proofs[0];

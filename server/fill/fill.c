@@ -19,7 +19,8 @@
 #include "cautery/assert.h"
 
 enum { LOOK_MS = 100, ARGUMENTS_MAX = 24, NUMBER_BYTES = 32, PATH_BYTES = 4096 };
-// allowed wall time over allowed processor time: a busy machine gives the process little time
+// Ratio of the allowed wall time to the allowed processor time. It is above 1 because a busy
+// machine gives the process little time.
 static const double wall_share = 4;
 
 struct cau_filling {
@@ -86,7 +87,8 @@ typedef struct process {
 	pid_t pid;
 	// in, out: files of standard input and output; said: pipe of standard error
 	int in, out, said;
-	// one byte less, for a line feed that the last line may lack
+	// Output of standard error. The buffer is one byte shorter than a report, because a line feed
+	// is added to a last line without one.
 	char text[CAU_FILL_REPORT_BYTES - 1];
 	size_t text_bytes;
 } process;
@@ -225,7 +227,8 @@ static double now_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Waits until the process ends, or kills it. Returns its exit status. *why: the reason for a kill.
+// Waits until the process ends, or kills it. Returns its exit status. *why: the reason for a kill,
+// or "" if the time was used up; NULL stays if the process ended by itself.
 static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish *wish,
                     const char **why)
 {

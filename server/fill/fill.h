@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fills uploaded surfaces with tetrahedra. This runs cautery-mesh in a process of its own, with
-// limits on memory and time. A file that is too much for it ends only that process, never a
+// limits on memory and time. A file that exceeds the limits ends only that process, never a
 // session.
 #pragma once
 

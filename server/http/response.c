@@ -24,7 +24,7 @@ typedef struct head {
 } head;
 
 // Returns RFC 9110's phrase for a status that this daemon sends. libwebsockets lacks some phrases.
-// It also answers an upgrade in HTTP/1.0, because it has not read the version by then.
+// It also writes HTTP/1.0 in its answer to an upgrade, because it has not read the version by then.
 static const char *phrase_of(unsigned status)
 {
 	static const struct {

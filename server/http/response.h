@@ -20,10 +20,10 @@ typedef struct cau_http_answer {
 	unsigned status;              // 200, 404, ...
 	const char *content_type;     // "application/json", ...
 	const char *content_encoding; // NULL or "gzip"
-	const char *cache_control;    // NULL: "no-store"
-	const char *extra_name;       // name of one more header, "www-authenticate:"; NULL: none
+	const char *cache_control;    // NULL: the header is "no-store"
+	const char *extra_name; // name of one more header, "www-authenticate:"; NULL: no more header
 	const char *extra_value;
-	// header cautery-reason: one sentence for clients that see only the head; or NULL
+	// header cautery-reason: one sentence for clients that see only the head; NULL: no such header
 	const char *reason;
 	bool last; // the connection ends after this answer
 	const void *bytes;

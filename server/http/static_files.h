@@ -11,10 +11,11 @@
 typedef struct cau_static_file {
 	char path[256]; // path in the URL, "/assets/main.js"
 	const char *content_type;
-	bool hashed; // the file's name changes with its content, so it may be cached for ever
+	// the file's name contains a hash of its content, so the file may be cached for ever
+	bool hashed;
 	void *plain;
 	size_t plain_bytes;
-	void *gzip; // NULL if it would not be smaller
+	void *gzip; // NULL if the compressed file would not be smaller
 	size_t gzip_bytes;
 } cau_static_file;
 

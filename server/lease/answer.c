@@ -115,7 +115,8 @@ static bool read_base64(const char *at, char text[CAU_ETCD_VALUE_BYTES], size_t 
 		"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 	unsigned char decoded[CAU_ETCD_VALUE_BYTES + 4];
 	*bytes = 0;
-	if (!at) // an empty value
+	// The gateway omits an empty value.
+	if (!at)
 		return true;
 	if (*at != '"')
 		return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads etcd's answers from its JSON gateway (v3). The functions are pure and check bytes from
-// outside. Unknown members are skipped. Known ones must be as etcd writes them: numbers as text,
+// outside. Unknown members are skipped. Known members must be as etcd writes them: numbers as text,
 // keys and values in base64. `text` has a zero behind its bytes.
 #pragma once
 
@@ -29,7 +29,7 @@ cau_status cau_etcd_read_lease(const char *text, size_t bytes, cau_etcd_lease *l
 typedef struct cau_etcd_value {
 	bool is_there;
 	int64_t revision; // revision of the last change; 0: the key is not there
-	int64_t lease;    // the key's lease; 0: none
+	int64_t lease;    // the key's lease; 0: no lease
 	size_t bytes;
 	char text[CAU_ETCD_VALUE_BYTES];
 } cau_etcd_value;

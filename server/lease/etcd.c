@@ -96,8 +96,9 @@ static size_t take(char *bytes, size_t size, size_t count, void *user)
 	return size * count;
 }
 
-// Sets up a request. No signals, because other threads handle them. No proxy from the environment,
-// because etcd is near. Only http and https, wherever an answer redirects.
+// Sets up a request. The library uses no signals, because other threads handle signals. It uses no
+// proxy from the environment, because etcd is near. It uses only http and https, even after a
+// redirect.
 static void prepare(cau_etcd *etcd, const char *url, const char *request, double limit_s)
 {
 	CURL *curl = etcd->curl;
@@ -144,8 +145,7 @@ static cau_status after(cau_etcd *etcd, cau_status status)
 	return status;
 }
 
-// ---- leases
-// Lease requests. If a lease is gone, keepalive answers with a TTL of 0.
+// Requests about leases. If a lease is gone, keepalive answers with a TTL of 0.
 cau_status cau_etcd_grant(cau_etcd *etcd, double ttl_s, double limit_s, cau_etcd_lease *lease,
                           cau_error *error)
 {
@@ -197,7 +197,8 @@ void cau_etcd_name_keys(const char *label, cau_etcd_keys *keys)
 	snprintf(keys->holder, sizeof keys->holder, "cautery/%.60s/holder", label);
 }
 
-// Reads both keys with one range: from the first key to just behind the second, which follows it.
+// Reads both keys with one range, which begins at the first key and ends just behind the second.
+// The second key comes after the first in etcd's order.
 cau_status cau_etcd_read(cau_etcd *etcd, const cau_etcd_keys *keys, double limit_s,
                          cau_etcd_value *generation, cau_etcd_value *holder, cau_error *error)
 {

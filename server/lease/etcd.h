@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sends requests to etcd by its JSON gateway over HTTP. Each has one answer, a time limit, and one
-// of several addresses. The caller waits, so only the daemon's start and the lease's thread call
-// these functions.
+// Sends requests to etcd by its JSON gateway over HTTP. Each request goes to one of several
+// addresses, and has one answer and a time limit. The caller waits, so only the daemon's start and
+// the lease's thread call these functions.
 #pragma once
 
 #include <stdbool.h>
@@ -36,8 +36,8 @@ void cau_etcd_name_keys(const char *label, cau_etcd_keys *keys);
 
 cau_status cau_etcd_read(cau_etcd *etcd, const cau_etcd_keys *keys, double limit_s,
                          cau_etcd_value *generation, cau_etcd_value *holder, cau_error *error);
-// Writes both keys if neither has changed since they were read. The holder is bound to the lease.
-// *taken: they were written.
+// Writes both keys if neither key has changed since they were read. The holder is bound to the
+// lease. *taken: both keys were written.
 cau_status cau_etcd_claim(cau_etcd *etcd, const cau_etcd_keys *keys,
                           const cau_etcd_value *generation, const cau_etcd_value *holder,
                           const char *new_generation, const char *new_holder, int64_t lease,

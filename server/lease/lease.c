@@ -34,7 +34,7 @@ struct cau_lease {
 	bool has_next; // `next` was made by this start, and etcd does not know it yet
 	int64_t id;    // id of the lease in etcd
 	char holder[96];
-	// inode of the database: now, and as stored in it; 0: none stored
+	// file: inode of the database now; stored_file: inode that the database has stored, 0: no inode
 	uintmax_t file, stored_file;
 	_Atomic int64_t held_until_us; // the logic's held_until_s, for other threads
 	int ending;                    // eventfd that ends the thread
@@ -57,8 +57,8 @@ static bool wait_for_end(const cau_lease *lease, double seconds)
 }
 
 // ---- the holder's name
-// Names this boot of this machine's kernel. If the boot id cannot be read, the name is random. It
-// is not the machine id, because copies of a disk share it.
+// Names this boot of this machine's kernel. If the boot id cannot be read, the name is random. The
+// machine id is not used, because copies of a disk share it.
 static cau_status name_kernel(char name[40], cau_error *error)
 {
 	uint64_t random[2];
@@ -74,8 +74,8 @@ static cau_status name_kernel(char name[40], cau_error *error)
 	return CAU_OK;
 }
 
-// Names the holder by the kernel and the database's file. Only one process at a time can hold that
-// file, and now it is this one. So an earlier holder with the same name has ended.
+// Names the holder by the kernel and the database's file. Only one process at a time can lock that
+// file, and this process has the lock now. So an earlier holder with the same name has ended.
 static cau_status name_holder(cau_lease *lease, cau_error *error)
 {
 	char kernel[40];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A daemon's hold on its label. It is taken from etcd before sessions are resumed, and renewed by a
-// thread of its own. It ends here before etcd would give the label to another daemon.
+// A daemon's hold on its label. The label is taken from etcd before sessions are resumed. A thread
+// renews the lease. The daemon gives up the label before etcd would give it to another daemon.
 #pragma once
 
 #include <stdbool.h>
@@ -27,14 +27,14 @@ typedef struct cau_lease_def {
 	void *user;
 } cau_lease_def;
 
-// Takes the label and starts the thread. Waits for etcd, and for the end of another's lease: at
+// Takes the label and starts the thread. Waits for etcd, and until another daemon's lease ends: at
 // most twice the time to live. Strings are copied. Errors: CAU_BAD_STATE (another store is newer,
 // or another daemon holds the label), CAU_IO (no answer of etcd), CAU_CORRUPT (the text in the
 // store or in etcd is no generation), CAU_BAD_VALUE, CAU_NO_MEMORY.
 cau_status cau_lease_take(cau_lease **lease, const cau_lease_def *def, cau_error *error);
 
-// Returns the seconds left, on a clock that continues while the machine sleeps. Does not return if
-// none are left. Any thread may call it; it never waits.
+// Returns the seconds until the lease ends, on a clock that continues while the machine sleeps.
+// Does not return if the lease has ended. Any thread may call it; it never waits.
 double cau_lease_check(cau_lease *lease);
 
 int64_t cau_lease_generation(const cau_lease *lease);

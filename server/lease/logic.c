@@ -23,7 +23,8 @@ void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BY
 		         generation.mark);
 }
 
-// Below INT64_MAX, so that there are numbers left for later generations.
+// Largest number of a generation that is read. It is below INT64_MAX, so that there are numbers
+// left for later generations.
 static const int64_t number_most = 999999999999999999;
 
 // Reads a generation. The text must be exactly what cau_generation_write writes, so that each
@@ -118,7 +119,7 @@ cau_lease_rules cau_lease_rules_of(double ttl_s)
 	CAU_ASSERT(ttl_s >= 2, "a time to live of %g s", ttl_s);
 	return (cau_lease_rules){
 		.ttl_s = ttl_s,
-		// For comparison: two clocks that differ by 200 ppm are 12 ms apart after a minute.
+		// The margin exceeds clock errors: at 200 ppm, two clocks differ by 12 ms after a minute.
 		.margin_s = fmax(0.5, 0.1 * ttl_s),
 		.renew_s = ttl_s / 4,
 		.limit_s = ttl_s / 6,

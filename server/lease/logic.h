@@ -3,15 +3,17 @@
 // when. Pure: no socket, no clock, no store. All times are seconds on one clock that never goes
 // backwards.
 //
-// Each opening of a store makes a new generation, a number and a random mark, in three moves. The
-// store notes the generation as its next. etcd takes it, if etcd still has the store's generation
-// before. The store notes it as the one that it holds. After a crash between two moves, the
-// generation in etcd is the store's held or next one. Any other store of the label has neither and
-// is refused: an old copy, or a store that lost the race for the same step. A copy that was not
-// opened since is refused too, because it lacks everything newer: its file is another one.
+// Each opening of a store makes a new generation, a number and a random mark, in three moves. First
+// the store notes the new generation as its next one. Then etcd takes the new generation, if etcd
+// still has the generation of this store. Last the store notes the new generation as the held one.
+// After a crash between two moves, the generation in etcd is either the held or the next one of the
+// store. Any other store of the label has neither and is refused: an old copy, or a store that lost
+// the race for the same move. A copy that was made after the last opening has the same generations,
+// but may lack newer data. It is refused too, because its file is not the one that was opened.
 //
 // A lease belongs to the generation. Its end is counted from the time when the last successful
-// renewal was sent. So it ends here before it ends in etcd, however long the answer took.
+// renewal was sent. So the lease ends for the daemon before it ends in etcd, however long the
+// answer took.
 #pragma once
 
 #include <stdbool.h>
@@ -26,7 +28,7 @@ typedef struct cau_generation {
 	uint64_t mark;  // random
 } cau_generation;
 
-enum { CAU_GENERATION_BYTES = 48 }; // length of its text, with the zero at the end
+enum { CAU_GENERATION_BYTES = 48 }; // length of a generation's text, with the zero at the end
 
 bool cau_generation_same(cau_generation a, cau_generation b);
 // Writes a generation as "17:00c0ffee00c0ffee"; as "" if there is none.
@@ -40,9 +42,10 @@ typedef struct cau_claim {
 	cau_generation held, next; // generations in the store
 	cau_generation known;      // generation in etcd
 	bool is_held;              // etcd has a holder whose lease has not ended
-	// the holder was a process with this store file. It has ended, because we have its lock.
+	// the holder was a process with this store file. That process has ended, because this process
+	// has the file's lock
 	bool is_held_here;
-	bool is_copy;    // the store's file is another than the one that was opened last
+	bool is_copy;    // the store's file is not the file that was opened last
 	bool take_label; // the operator says that this store is the right one
 } cau_claim;
 
@@ -51,12 +54,12 @@ typedef enum cau_verdict { CAU_VERDICT_CLAIM, CAU_VERDICT_WAIT, CAU_VERDICT_REFU
 // Judges whether the store may take the label. WAIT: another daemon holds the label until its lease
 // ends. REFUSE fills *error (CAU_BAD_STATE).
 cau_verdict cau_lease_judge(const cau_claim *claim, cau_error *error);
-// Chooses claim->next, a generation after all known ones, which the store notes before etcd is
-// asked to take it; `mark` is random. If etcd took the store's last one and the store did not learn
-// this, that one becomes the held one. *has_next must be false at the start of the process. All
-// attempts of one start have the same next generation, because an abandoned request may still
-// arrive. Each start has its own, because a copy that was made after a failed start is no copy of
-// the newest store.
+// Chooses claim->next, a generation after all known ones. The store notes it before etcd is asked
+// to take it; `mark` is random. If etcd has the present claim->next, which an earlier start noted,
+// that generation first becomes claim->held. *has_next must be false at the start of the process.
+// All attempts of one start use the same next generation, because an abandoned request may still
+// arrive. Each start makes a new one, so that a copy of the store from after a failed start is not
+// taken for the newest store.
 void cau_lease_choose(cau_claim *claim, bool *has_next, uint64_t mark);
 
 // ---- the end of the lease

@@ -225,7 +225,7 @@ static void print_number(raw_value *value, const char *spec, size_t spec_bytes, 
 		length = snprintf(text, sizeof text, own, va_arg(from->list, double));
 	else if (strstr(own, "ll"))
 		length = snprintf(text, sizeof text, own, va_arg(from->list, long long));
-	else if (strpbrk(own, "lz")) // both are equally wide here
+	else if (strpbrk(own, "lz")) // long and size_t are equally wide here
 		length = snprintf(text, sizeof text, own, va_arg(from->list, long));
 	else
 		length = snprintf(text, sizeof text, own, va_arg(from->list, int));

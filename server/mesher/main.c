@@ -71,7 +71,8 @@ static bool bound(int resource, rlim_t most)
 	return setrlimit((__rlimit_resource_t)resource, &limit) == 0;
 }
 
-// No memory limit under sanitizers, which reserve more address space than any machine has memory.
+// Whether the process limits its memory. Sanitizers reserve more address space than any machine has
+// memory, so builds with them set no limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 static const bool bounds_memory = false;
 #else

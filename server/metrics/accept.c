@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses the format by an Accept header, by the rules of RFC 9110, 12.5.1. Among the ranges that
-// cover a type, the most specific one counts; its q is the type's weight.
+// Chooses the format by an Accept header, by the rules of RFC 9110, 12.5.1. If several ranges cover
+// a type, the most specific range is used; its q is the type's weight.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -56,7 +56,7 @@ void cau_metrics_sample_labelled(FILE *out, cau_metrics_format format,
 typedef struct cau_buckets {
 	const double *bounds; // upper ends of the buckets, ascending, (bound_count)
 	size_t bound_count;
-	// of each bucket alone, (bound_count + 1): the last counts values above all bounds
+	// counts of each bucket alone, (bound_count + 1); the last one counts values above all bounds
 	const uint64_t *counts;
 	double sum;
 } cau_buckets;

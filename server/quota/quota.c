@@ -8,8 +8,9 @@
 
 #include "config/role.h"
 
-// Number of remembered addresses. If there are more, the address that has taken least is forgotten.
-// The allowances of the role and of the daemon limit what this gives away.
+// Number of remembered addresses. If there are more, the address that has taken least is forgotten,
+// and so gets a full allowance again. The allowances of the role and of the daemon limit these
+// gifts.
 enum { ADDRESSES = 256 };
 
 #define MINUTE_S 60.0
@@ -19,7 +20,7 @@ typedef struct address {
 	cau_allowance allowance;
 } address;
 
-// Number of remembered tokens: as many as a file of tokens may have. If there are more, the one
+// Number of remembered tokens: as many as a file of tokens may have. If there are more, the token
 // that has taken least is forgotten.
 enum { TOKENS = 256 };
 
@@ -63,7 +64,7 @@ void cau_quota_destroy(cau_quota *quota)
 	free(quota);
 }
 
-// Gives back what has refilled since the last call.
+// Refills the allowance for the time since the last call.
 static void refill(cau_allowance *allowance, int64_t most, double now_s)
 {
 	double back = (now_s - allowance->seen_s) * (double)most / MINUTE_S;

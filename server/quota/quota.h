@@ -11,7 +11,7 @@ enum { CAU_QUOTA_ADDRESS_BYTES = 64 };
 
 typedef struct cau_quota cau_quota;
 
-// Zeroed: nothing has been taken yet.
+// An allowance; if zeroed, nothing has been taken yet.
 typedef struct cau_allowance {
 	double taken, seen_s;
 } cau_allowance;

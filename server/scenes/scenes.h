@@ -27,7 +27,7 @@ uint64_t cau_scenes_edition(cau_scenes *scenes);
 // functions.
 void cau_scenes_each(cau_scenes *scenes, void (*visit)(void *user, const cau_scene_def *scene),
                      void *user);
-// Copies a scene. Returns false if there is none with this name.
+// Copies a scene. Returns false if no scene has this name.
 bool cau_scenes_copy(cau_scenes *scenes, const char *name, cau_scene_def *copy);
 
 // ---- uploaded meshes of a scene

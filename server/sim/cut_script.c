@@ -10,8 +10,9 @@
 #include "cautery/defaults.h"
 
 static const double approach_s = 1.0; // time from the first pose to the point above the tissue
-static const double descent_s = 0.5;  // time from there down to the tissue, and back up at the end
-static const double hover_m = 0.02;   // height of that point above the tissue, along the shaft
+// time from that point down to the tissue, and back up at the end
+static const double descent_s = 0.5;
+static const double hover_m = 0.02; // height of the point above the tissue, along the shaft
 
 enum { TICKS_BETWEEN_MOVES = 3, LINE_BYTES = 1024 };
 

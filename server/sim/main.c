@@ -11,7 +11,8 @@
 
 enum { SCRIPT_MAX_BYTES = 1 << 28 };
 
-// Gets the script's text: from a file, from the scene's own cut, or none. The caller frees *text.
+// Gets the script's text: from a file or from the scene's own cut. Otherwise *text is NULL, for no
+// commands. The caller frees *text.
 static cau_status get_script(const sim_options *options, const cau_scene_def *scene, char **text,
                              size_t *bytes, cau_error *error)
 {

@@ -18,14 +18,14 @@ typedef enum sim_exit {
 typedef struct sim_options {
 	const char *scene;  // a name, a .json file or a mesh file
 	const char *scenes; // folder of named scenes; NULL: the installed ones, else the source tree's
-	const char *script; // NULL if none
-	const char *vtu;    // folder of VTU files; NULL if none
-	const char *csv;    // NULL if none
+	const char *script; // NULL: no script
+	const char *vtu;    // folder of VTU files; NULL: no such files
+	const char *csv;    // file for comma-separated values; NULL: no such file
 	double unit_m;      // length of a mesh file's unit, m; 0: guessed
 	double seconds;     // below 0: until one second after the script's end
 	int32_t threads;
 	int32_t vtu_every;   // ticks between VTU files
-	int64_t snapshot_at; // tick of the snapshot; below 0: none
+	int64_t snapshot_at; // tick of the snapshot; below 0: no snapshot
 	bool strict;         // refuse a mesh file that needs mending
 	bool cut;            // run the scene's own cut in place of a script
 	bool print_cut;      // print the scene's cut as a script and end

@@ -139,7 +139,8 @@ static cau_status create_session(run *r, cau_session **session)
 	def.scene = r->scene;
 	def.thread_count = r->options->threads;
 	cau_status status = cau_session_create(&def, session, r->error);
-	if (status) // the error is not in the script, which was checked before
+	// The scene has caused the error: the script was checked before.
+	if (status)
 		snprintf(r->error->file, sizeof r->error->file, "%s", r->options->scene);
 	else if (r->options->csv)
 		cau_session_set_clock(*session, now_s);

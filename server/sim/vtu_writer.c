@@ -99,7 +99,8 @@ static bool fill_cells(const cau_session *session, const cau_session_info *info,
 // ---- a file -----------------------------------------------------------------------------------
 
 typedef struct array {
-	const char *group; // this element is opened before the array; NULL: the open one continues
+	// the XML element that is opened before the array; NULL: the open element continues
+	const char *group;
 	const char *name, *type;
 	int components;
 	const void *data;
@@ -203,7 +204,7 @@ static void finish_tools(tool_arrays *a)
 
 static bool reserve_tools(tool_arrays *a, size_t count)
 {
-	count += 1; // because malloc(0) may return NULL
+	count += 1; // one element more, because malloc(0) may return NULL
 	a->position = malloc(6 * count * sizeof *a->position);
 	a->corner = malloc(2 * count * sizeof *a->corner);
 	a->end = malloc(count * sizeof *a->end);

@@ -8,9 +8,10 @@
 
 enum {
 	FALLS_TOLERATED = 3,
-	STEADY_FRAMES = 600, // earlier falls are forgotten after this many frames without a fall
+	STEADY_FRAMES = 600, // number of frames without a fall after which earlier falls are forgotten
 };
-#define ALONE_S 0.25 // a single last frame is sent after this time, because no other may follow it
+// time after which the last frame is sent singly, because no other frame may follow
+#define ALONE_S 0.25
 
 static size_t slot_of(uint64_t sequence)
 {
@@ -45,7 +46,8 @@ void cau_half_publish(cau_streams *streams, cau_stream *stream)
 	if (!status)
 		status = cau_frame_thin(stream->half.thinner, stream->scratch, stream->scratch_bytes,
 		                        &bytes, &error);
-	if (status) // these subscribers continue with single frames
+	// Without the delta over two frames, these subscribers continue with single frames.
+	if (status)
 		cau_log(CAU_LOG_ERROR, streams->id, "half_rate_failed", "reason=\"%s\"", error.reason);
 	cau_buffer *buffer = bytes ? cau_ring_take(stream, bytes) : NULL;
 	if (!buffer)
@@ -96,7 +98,7 @@ void cau_half_steady(const cau_streams *streams, cau_stream *stream, cau_subscri
 	if (!sub->half)
 		return;
 	change(streams, stream, sub, false);
-	sub->falls = FALLS_TOLERATED; // after one more fall, it gets half the rate again
+	sub->falls = FALLS_TOLERATED; // after one more fall, the subscriber gets half the rate again
 }
 
 void cau_half_leave(cau_stream *stream, const cau_subscriber *sub)

@@ -14,10 +14,10 @@ void cau_ring_put_delta(cau_streams *streams, cau_stream *stream, cau_buffer *bu
                         uint64_t sequence);
 void cau_ring_put_key(cau_streams *streams, cau_stream *stream, cau_buffer *buffer,
                       uint64_t sequence);
-void cau_ring_clear(cau_stream *stream); // under the mutex if other threads can see the stream
+void cau_ring_clear(cau_stream *stream); // hold the mutex if other threads can see the stream
 
 // ---- half_rate.c
-// called after each frame of the stream
+// Makes the delta over two frames if it is due. Called after each frame of the stream.
 void cau_half_publish(cau_streams *streams, cau_stream *stream);
 // Returns the delta that the subscriber needs next, even if it has left the ring. NULL: the
 // subscriber waits for the next delta over two frames.

@@ -54,8 +54,8 @@ static bool is_readable(const cau_stream *stream, const cau_stream_wish *wish)
 	return stream->used && (stream->def.plain || !wish->plain);
 }
 
-// Returns the stream that fits the wish. NULL: one must be opened or, if no slot is free, none is
-// readable.
+// Returns the stream that fits the wish. Returns NULL if a new stream must be opened, or if no slot
+// is free and no open stream is readable.
 static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish)
 {
 	cau_stream *nearest = NULL, *any = NULL;
@@ -75,7 +75,8 @@ static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish
 	}
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		if (!streams->stream[i].used || streams->stream[i].subscribers == 0)
-			return NULL; // a slot is free, so that one can be opened
+			// A slot is free, so a stream that fits can be opened.
+			return NULL;
 	return nearest ? nearest : any;
 }
 

@@ -5,8 +5,8 @@
 
 #include "stream/internal.h"
 
-// share of a period by which a frame may be early, so that nearly equal rates of ticks and frames
-// do not beat
+// Share of a frame's period by which the frame may be early. So nearly equal rates of ticks and
+// frames do not beat.
 #define DUE_EARLY 0.25
 
 static uint64_t random_epoch(void)

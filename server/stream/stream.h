@@ -23,9 +23,9 @@ typedef struct cau_ring_frame {
 // The frames for subscribers that keep falling behind: every second frame of the same chain.
 typedef struct cau_half_lane {
 	int32_t subscribers; // guarded by the mutex
-	// by half the sequence modulo RING_FRAMES; guarded by the mutex
+	// index: half the sequence, modulo RING_FRAMES; guarded by the mutex
 	cau_ring_frame ring[RING_FRAMES];
-	// NULL until a subscriber needs it; used by the worker only, like the member below
+	// NULL until a subscriber needs the lane; only the worker uses this and `thinner`
 	void *storage;
 	cau_frame_thinner *thinner;
 } cau_half_lane;
@@ -38,7 +38,7 @@ typedef struct cau_stream {
 	uint64_t epoch;                   // epoch of the frames in the ring; guarded by the mutex
 	uint64_t newest;                  // sequence of the newest frame; guarded by the mutex
 	double newest_s;                  // when the newest frame was made; guarded by the mutex
-	cau_ring_frame ring[RING_FRAMES]; // by sequence modulo RING_FRAMES; guarded by the mutex
+	cau_ring_frame ring[RING_FRAMES]; // index: sequence modulo RING_FRAMES; guarded by the mutex
 	cau_ring_frame key;               // newest key frame; guarded by the mutex
 	cau_half_lane half;
 	cau_buffer *topology;    // guarded by the mutex
@@ -76,15 +76,15 @@ typedef struct cau_subscriber {
 	bool topology_sent, has_key, wants_key, acknowledges;
 	uint64_t epoch, sequence; // epoch and sequence of the last frame that was sent
 	double key_asked_s;       // when a key frame was last requested, at most once a second
-	// since when frames are ready and the subscriber takes none; 0: it takes them
+	// time since which frames are ready and the subscriber takes none; 0: the subscriber takes them
 	double waiting_since_s;
-	bool half;             // it keeps falling behind and gets every second frame (half_rate.c)
+	bool half; // the subscriber keeps falling behind and gets every second frame (half_rate.c)
 	int32_t falls, steady; // recent falls; frames taken since the last fall
 	size_t in_flight;      // bytes sent and not acknowledged
 	struct {
 		uint64_t sequence;
 		size_t bytes;
-	} sent[SENT_FRAMES]; // by sequence modulo SENT_FRAMES
+	} sent[SENT_FRAMES]; // index: sequence modulo SENT_FRAMES
 } cau_subscriber;
 
 // Initialises a zeroed struct in which the caller has set the limits and names.
@@ -109,9 +109,10 @@ typedef struct cau_stream_shape {
 	const double *rest_position; // (vertex_count x 3), m
 } cau_stream_shape;
 
-// The first function returns the bytes that opening a profile takes. The second allocates them
-// beforehand and encodes the topology, on the builder, so that no slice of a worker has to. If this
-// fails, the slice of the first session.join encodes the topology.
+// cau_streams_opening_bytes returns the bytes that opening a profile takes. cau_streams_stock
+// allocates these bytes beforehand and encodes the topology. The builder calls it, so that no slice
+// of a worker has to do this. If it fails, the slice of the first session.join encodes the
+// topology.
 size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
 cau_status cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape, cau_error *error);
 
@@ -146,8 +147,8 @@ cau_status cau_streams_publish(cau_streams *streams, const cau_stream_moment *mo
 
 // ---- subscribers.c: from any thread
 
-// Returns the frame that the subscriber must get now, shared for the caller, or NULL. *wake: the
-// subscriber waits for a key frame that the worker must make.
+// Returns the frame that the subscriber must get now, or NULL. The frame is shared: the caller
+// releases it. *wake: the subscriber waits for a key frame that the worker must make.
 cau_buffer *cau_streams_next_frame(cau_streams *streams, cau_subscriber *subscriber, double now_s,
                                    bool *wake);
 // Notes that the subscriber has every frame up to this one.

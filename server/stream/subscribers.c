@@ -106,11 +106,13 @@ void cau_streams_acknowledge(cau_subscriber *sub, uint64_t epoch, uint64_t seque
 		return;
 	sub->acknowledges = true;
 	if (sequence < oldest_known(sub))
-		return; // frames between the two may be on their way, and their sizes are forgotten
+		// Frames between the two sequences may be on their way, and their sizes are forgotten.
+		return;
 	sub->in_flight = 0;
 	for (size_t i = 0; i < SENT_FRAMES; i++)
 		if (sub->sent[i].sequence <= sequence)
-			sub->sent[i].bytes = 0; // the client has this frame, whatever it acknowledges later
+			// The client has this frame, whatever sequence it acknowledges later.
+			sub->sent[i].bytes = 0;
 		else
 			sub->in_flight += sub->sent[i].bytes;
 }

@@ -10,7 +10,7 @@ static cau_status no_meaning(cau_error *error, const char *at)
 	return cau_fail(error, CAU_BAD_SYNTAX, "", "'%.60s' is not valid here", at);
 }
 
-// ---- one value: moves *at behind it; returns false if there is none
+// ---- one value: each function moves *at behind the value; it returns false if there is none
 
 static void store_whole(const field *f, void *at, uint64_t value)
 {

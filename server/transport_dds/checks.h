@@ -11,24 +11,25 @@
 
 // The last accepted sample of a driver for one tool.
 typedef struct cau_motion_past {
-	uint64_t sequence;      // 0: none yet
+	uint64_t sequence;      // 0: no sample was accepted yet
 	int64_t source_time_ns; // nanoseconds since 1970
 	bool has_pose;
 	cau_pose pose;
 	double pose_s; // monotonic time when `pose` was accepted
 } cau_motion_past;
 
-// Time that is added for jitter on the way: a tool may move as far as it can in this time.
+// Time that is added to the time between two poses, for jitter on the way, s. A tool may move as
+// far as its speed limits allow in the sum.
 #define CAU_MOTION_GRACE_S 0.05
 
-// Largest sequence number: a JSON number holds no larger integer exactly.
+// Largest sequence number: larger integers are not exact in JSON numbers.
 #define CAU_MOTION_SEQUENCE_MOST 9007199254740991u // 2^53 - 1
 
 // Checks the order of samples. The sequence must increase, to at most CAU_MOTION_SEQUENCE_MOST. The
-// source time must not decrease and must be within `limit_s` of now_ns. A driver that had nothing
-// accepted for `limit_s`, its deadline, may start with a new sequence and time: its energy is off
-// by then. Otherwise a count or a clock that was set back by an hour would lock the driver out for
-// that hour. now_s is monotonic.
+// source time must not decrease and must be within `limit_s` of now_ns. If no sample of a driver
+// was accepted for `limit_s`, its deadline, the driver may start with a new sequence and time: its
+// energy is off by then. Without this exception, a driver whose count or clock was set back by an
+// hour would be locked out for that hour. now_s is monotonic.
 cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence,
                                   int64_t source_time_ns, int64_t now_ns, double now_s,
                                   double limit_s, cau_error *error);
@@ -36,7 +37,7 @@ cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence
 // within 0 to 1. The rotation must be a unit quaternion within CAU_UNIT_TOLERANCE; the function
 // normalises it.
 cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error);
-// Checks that the pose is no farther from the last one than the tool's speed limits allow in the
+// Checks that the pose is no farther from the last pose than the tool's speed limits allow, in the
 // time since then plus CAU_MOTION_GRACE_S.
 cau_status cau_motion_check_leap(const cau_motion_past *past, const cau_pose *pose, double now_s,
                                  const cau_tool_def *tool, cau_error *error);

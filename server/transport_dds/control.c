@@ -69,9 +69,9 @@ static cau_status read_rewind(asked *a, cau_order *order, cau_error *error)
 	return check_params(order->reply.method, &params, error);
 }
 
-// Finds the client that drives, in the requester's participant. With a writer named, the client
-// drives by that writer of cautery/tool_command. With none named, the client drives by the tool's
-// ROS 2 topics.
+// Finds the client that drives, in the requester's participant. If the request names a writer of
+// cautery/tool_command, the client must drive by that writer. Otherwise the client must drive by
+// the tool's ROS 2 topics.
 static const cau_dds_client *find_driver(const asked *a, cau_error *error)
 {
 	static const uint8_t nobody[16];
@@ -272,8 +272,8 @@ static const char *owner_of(const cau_config *config, const cau_dds_writer *writ
 	return *writer->subject ? writer->subject : *config->tokens ? "dds:" : "";
 }
 
-// True if the request is for this daemon. Several daemons may receive it; it is for the one whose
-// label begins the session's id.
+// True if the request is for this daemon. Several daemons may receive a request. It is for the
+// daemon whose label begins the session's id.
 static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
 {
 	const char *label = dds->config->label;

@@ -41,8 +41,8 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 }
 
 // Returns a reliable QoS. Our writers never wait for a reader (max_blocking_time 0). With
-// KEEP_LAST, a slow reader loses the oldest samples; the newest state or the next key frame makes
-// up for them.
+// KEEP_LAST, a slow reader loses the oldest samples. That is harmless, because the newest state or
+// the next key frame replaces them.
 static dds_qos_t *reliable_qos(int32_t kept)
 {
 	dds_qos_t *qos = dds_create_qos();
@@ -131,7 +131,8 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 	dds_qos_t *kept = reliable_qos(1), *last = reliable_qos(1), *chain = reliable_qos(DELTAS_KEPT);
 	dds_qset_durability(kept, DDS_DURABILITY_TRANSIENT_LOCAL);
 	dds_qset_durability(last, DDS_DURABILITY_TRANSIENT_LOCAL);
-	// The writer may outlive its session: by then another session may have the same name.
+	// The writer must not dispose the instance at its end. It may outlive its session, and by then
+	// another session may have the same name.
 	dds_qset_writer_data_lifecycle(last, false);
 	const struct {
 		cau_dds_outlet *outlet;
@@ -331,7 +332,8 @@ static void open_ros_doors(cau_dds *dds, cau_dds_session *session, const cau_dds
 
 static void open_operating(const cau_dds_entities *entities, cau_dds_tool *tool, const char *prefix)
 {
-	dds_qos_t *latched = reliable_qos(1); // for late joiners; CRTK's clients request it
+	// The last state is kept for late joiners; CRTK's clients request this QoS.
+	dds_qos_t *latched = reliable_qos(1);
 	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
 	tool->operating_topic =
 		ros_topic(entities, prefix, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc);

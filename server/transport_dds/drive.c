@@ -4,7 +4,7 @@
 
 #include "transport_dds/internal.h"
 
-#define CLAIM_S 0.1 // a claim in the queue is not repeated within this time
+#define CLAIM_S 0.1 // a claim that waits in the queue is not repeated within this time, s
 
 // ---- the driver of a tool
 // Returns the hand of a DDS client that drives this tool and has been silent for its deadline; NULL
@@ -27,8 +27,8 @@ static bool is_claimed(const cau_dds_tool *tool, const cau_dds_client *client, d
 	return false;
 }
 
-// True if a motion of this client would make it the driver, or if it is the driver. `client` is
-// NULL for a writer that is not a client yet.
+// True if this client is the driver, or would become the driver by a motion. `client` is NULL for a
+// writer that is not a client yet.
 static bool would_drive(const cau_dds_tool *tool, const cau_dds_client *client, uint32_t driver,
                         double now_s)
 {

@@ -91,7 +91,8 @@ static void want_key(cau_dds_stream *stream)
 	                                .has_key = !stream->key_forced,
 	                                .wants_key = true,
 	                                .epoch = chain->epoch,
-	                                .sequence = chain->sequence - 1, // of this or a newer state
+	                                // The key frame must have this state or a newer one.
+	                                .sequence = chain->sequence - 1,
 	                                .key_asked_s = -INFINITY};
 	stream->key_wanted = stream->key_forced = false;
 }
@@ -117,7 +118,7 @@ static double write_new(cau_dds_session *session, double now_s)
 }
 
 // ---- joining and leaving
-// True if any outlet has readers. Also notes new readers, who have only the kept samples.
+// True if any outlet has readers. Also notes new readers, which have only the kept samples so far.
 static bool has_readers(cau_dds_stream *stream)
 {
 	cau_dds_outlet *outlets[] = {&stream->topology, &stream->key, &stream->delta};
@@ -175,8 +176,8 @@ void cau_dds_leave_frames(cau_dds_session *session)
 		return;
 	stream->joined = false;
 	cau_hosted_leave(session->hosted, &stream->chain);
-	// Disposes the kept samples: they would mislead a later reader, because the next stream may be
-	// another one.
+	// Disposes the kept samples. They would mislead a later reader, because the next stream may be
+	// a different one.
 	cautery_Frame key = {0};
 	snprintf(key.session, sizeof key.session, "%s", cau_hosted_id(session->hosted));
 	dds_dispose(stream->topology.writer, &key);

@@ -19,7 +19,7 @@ static bool is_free(int port)
 	                         .sin_addr.s_addr = htonl(INADDR_ANY)};
 	int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 	if (descriptor < 0)
-		return true; // without a socket nothing shows that the port is taken
+		return true; // without a socket, a taken port cannot be detected
 	bool bound = bind(descriptor, (struct sockaddr *)&at, sizeof at) == 0;
 	close(descriptor);
 	return bound;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Participant indices. Each DDS program on a machine has one in its domain, and two ports that
-// follow from it.
+// Participant indices. Each DDS program on a machine has one index in its domain, and two ports
+// that follow from the index.
 #pragma once
 
 #include "cautery/status.h"

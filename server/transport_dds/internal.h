@@ -21,7 +21,7 @@
 enum {
 	WRITER_BUCKETS = 1024,
 	REQUESTS_MOST = 256,       // largest number of requests that wait for an answer
-	REQUESTS_OF_ONE_MOST = 64, // the same for one participant
+	REQUESTS_OF_ONE_MOST = 64, // largest number of such requests of one participant
 	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
 };
 
@@ -67,7 +67,7 @@ typedef struct cau_door {
 } cau_door;
 
 typedef enum cau_dds_operating_state {
-	OPERATING_NOTHING, // as the last published state: nothing published yet
+	OPERATING_NOTHING, // the initial value: no state has been published yet
 	OPERATING_DISABLED,
 	OPERATING_ENABLED,
 	OPERATING_PAUSED,
@@ -115,7 +115,7 @@ typedef struct cau_dds_tool {
 // The stream of a session's frames; frames.c. Joined while the frames have readers.
 typedef struct cau_dds_stream {
 	cau_dds_outlet topology, key, delta;
-	uint64_t ticket; // ticket of a join on its way; 0: none
+	uint64_t ticket; // ticket of a join on its way; 0: no join
 	double retry_s;  // after a refused join: time of the next attempt
 	bool joined;
 	cau_wire_stream_description description;
@@ -169,11 +169,12 @@ typedef struct cau_dds_client {
 	uint64_t identity; // identity of the publication (native) or of the participant (ROS 2)
 	bool native;
 	uint64_t participant;
-	char subject[CAU_DDS_SUBJECT_BYTES]; // subject name that the participant has proved; "": none
-	int32_t writers;                     // number of its matched writers
-	bool accepted;                       // a motion of this client was accepted
-	uint64_t connection;                 // connection number for the hub
-	double alive_s;                      // monotonic time of the newest sign of life; 0: none yet
+	// subject name that the participant has proved; "": no name
+	char subject[CAU_DDS_SUBJECT_BYTES];
+	int32_t writers;     // number of its matched writers
+	bool accepted;       // a motion of this client was accepted
+	uint64_t connection; // connection number for the hub
+	double alive_s;      // monotonic time of the newest sign of life; 0: none yet
 	cau_asker asker;
 	struct cau_dds_hand *hands;
 } cau_dds_client;
@@ -190,7 +191,7 @@ typedef struct cau_dds_writer {
 	cau_asker asker;        // without a client number; the client's asker has it
 	cau_dds_client *client; // NULL if it is not a client
 	cau_sign_of_life sign;  // sign of life by the source timestamps of its samples
-	double retry_s;         // it may not become a client before this time, after a denial
+	double retry_s;         // the writer may not become a client before this time, after a denial
 	double requests_s;      // start of the second to which `requests` belongs
 	int64_t requests;
 } cau_dds_writer;
@@ -292,7 +293,7 @@ typedef struct cau_dds_mailbox {
 	pthread_mutex_t mutex;
 	cau_dds_post *first, *last;
 	cau_dds_silenced *silenced;
-	cau_dds_roles *roles; // new roles for the DDS thread; NULL: none
+	cau_dds_roles *roles; // new roles for the DDS thread; NULL: no new roles
 } cau_dds_mailbox;
 
 // Counts for the metrics. The DDS thread writes them, any thread reads them.
@@ -317,7 +318,7 @@ typedef struct cau_dds_peers {
 	int told;
 } cau_dds_peers;
 
-// Clients that count against the limits of places.c; only the DDS thread uses this.
+// Clients and their limits; places.c. Only the DDS thread uses this.
 typedef struct cau_dds_places {
 	cau_dds_client *clients; // newest first
 	uint64_t last_connection;
@@ -328,8 +329,8 @@ typedef struct cau_dds_places {
 // Matched writers, by reader and handle; only the DDS thread uses this. writers.c.
 typedef struct cau_dds_writers {
 	cau_dds_writer *buckets[WRITER_BUCKETS];
-	// start of the second to which onlookers_told belongs: log lines about writers without a role
-	// to drive
+	// start of the second to which `onlookers_told` belongs: the number of log lines about writers
+	// whose role may not drive
 	double onlookers_told_s;
 	int onlookers_told;
 } cau_dds_writers;
@@ -468,7 +469,7 @@ cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_
 void cau_dds_give_up(cau_dds_client *client);
 // Returns the client's hand on the tool; NULL if it has none.
 cau_dds_hand *cau_dds_find_hand(const cau_dds_client *client, const cau_dds_tool *tool);
-// Returns the writer's hand on the tool, or makes one. Errors are those of cau_dds_admit.
+// Returns the writer's hand on the tool, or makes one. Errors: those of cau_dds_admit.
 cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_session *session,
                                 cau_dds_tool *tool, bool drives_now, cau_error *error);
 // Frees all hands on a tool that is gone.

@@ -5,8 +5,8 @@
 #include "cautery/status.h"
 
 // Ties each UDP socket of the process that is not on a loopback address to the loopback device.
-// This is needed because Cyclone binds its receiving ports to every address, whatever interfaces it
-// is given, so that packets of other machines would arrive. Call it when the domain has its sockets
-// and no participant yet. Returns CAU_IO if the kernel refuses (before 5.7 it requires
+// Cyclone binds its receiving ports to every address, even if its settings name only some
+// interfaces. So packets of other machines would arrive without this. Call it when the domain has
+// its sockets and no participant yet. Returns CAU_IO if the kernel refuses (before 5.7 it requires
 // CAP_NET_RAW).
 cau_status cau_dds_stay_local(cau_error *error);

@@ -102,7 +102,7 @@ cau_dds_post *cau_dds_next_post(cau_dds_mailbox *mailbox)
 
 void cau_dds_post_free(cau_dds_post *post)
 {
-	if (post->joined) { // no stream took it
+	if (post->joined) { // no stream took the joined session
 		cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
 		cau_hosted_release(post->joined);
 	}

@@ -38,6 +38,7 @@ void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 		cau_dds_energy(hand, writer, sample->energy, 0);
 		cau_dds_grasp(hand, sample->grasp);
 	} else if (!sample->energy && (hand = cau_dds_find_hand(writer->client, tool))) {
-		cau_dds_energy(hand, writer, false, 0); // energy off is obeyed in every valid sample
+		// Energy off is obeyed in every valid sample, even if its motion was refused.
+		cau_dds_energy(hand, writer, false, 0);
 	}
 }

@@ -61,7 +61,8 @@ void cau_dds_publish_operating(cau_dds_session *session)
 		if (faulted)
 			*state = OPERATING_FAULT;
 		else if (*state == OPERATING_FAULT)
-			*state = OPERATING_DISABLED; // the fault is cleared; an enable must follow
+			// The session's fault is cleared. The client must enable the tool again.
+			*state = OPERATING_DISABLED;
 		tell(tool, *state == OPERATING_ENABLED && stands ? OPERATING_PAUSED : *state);
 	}
 }
@@ -83,7 +84,8 @@ static bool read_word(const char *text, word *read)
 	return false;
 }
 
-// Returns the state after a command. If CRTK has no transition, the state stays.
+// Returns the state after a command. If CRTK has no transition for the command in this state, the
+// state stays.
 static cau_dds_operating after(cau_dds_operating now, word command)
 {
 	switch (command) {
@@ -115,8 +117,8 @@ static bool is_ready(const cau_dds_operating *now)
 	return now->state == OPERATING_ENABLED && !now->unhomed;
 }
 
-// Checks the sender of a command. Any operator may stop a tool. To start it again, the sender must
-// be its driver, or the tool must have none.
+// Checks the sender of a command. Any operator may stop a tool. To start the tool again, the sender
+// must be the tool's driver, or the tool must have no driver.
 static cau_status check_asker(const cau_door *door, const cau_dds_writer *writer, word command,
                               cau_error *error)
 {

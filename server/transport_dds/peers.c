@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Watches the readers and writers of other programs that want our topics. DDS matches compatible
-// ones and is silent about the rest, which would look like a robot that does nothing. So each
-// incompatible peer is logged and counted, once. A best-effort writer of motion, as for sensor data
-// in ROS 2, gets a best-effort reader.
+// Watches the readers and writers of other programs that want our topics. DDS matches only
+// compatible ones and does not report the rest. A user would see only a robot that does nothing. So
+// each incompatible peer is logged and counted, once. A best-effort writer of motion, as for sensor
+// data in ROS 2, gets a best-effort reader.
 #include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "transport_dds/compatible.h"
 #include "transport_dds/internal.h"
 
-// PEERS_TOLD_MOST: log lines a second
+// PEERS_TOLD_MOST: largest number of log lines a second
 enum { TAKEN_AT_ONCE = 32, TYPE_BYTES = 256, PEERS_TOLD_MOST = 16 };
 
 // One of our readers or writers with which a peer could be matched.
@@ -122,7 +122,7 @@ static end find_end(cau_dds *dds, const cau_dds_peer *peer)
 
 // ---- why a peer does not match
 
-// Returns what does not match; NULL if all does. DDS compares types only by name.
+// Returns what does not match; NULL if everything matches. DDS compares types only by name.
 static const char *find_mismatch(const cau_dds_peer *peer, const end *ours)
 {
 	char type[TYPE_BYTES] = "";

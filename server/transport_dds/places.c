@@ -13,13 +13,13 @@
 enum {
 	// Largest number of clients of one participant, or of one identity, that drive nothing.
 	IDLE_OF_ONE_MOST = 64,
-	// Additional clients beyond one for each tool, for those that are ready to take over.
+	// Number of clients beyond one for each tool. These are ready to take over a tool.
 	CLIENTS_BESIDE_DRIVERS = 1024,
 	HANDS_OF_TOOL_MOST = 32,
 };
 
-#define DENIED_S 0.5       // after a denial, a writer asks again only after this time
-#define DENIALS_TOLD_S 10. // time between log lines about denials
+#define DENIED_S 0.5       // time, s, after a denial in which a writer is not considered again
+#define DENIALS_TOLD_S 10. // least time between log lines about denials, s
 
 // ---- clients that drive
 static bool drives(const cau_dds_hand *hand)
@@ -172,8 +172,8 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 	return CAU_OK;
 }
 
-// Finds the client to end: among those that drive nothing, one that never had a motion accepted,
-// else the oldest. `of`: only clients of its participant or identity; NULL: all.
+// Finds the client to end, among those that drive nothing: the oldest without an accepted motion,
+// else the oldest. `of`: only clients of this writer's participant or identity; NULL: all clients.
 static cau_dds_client *find_idle(const cau_dds_places *places, const cau_dds_writer *of)
 {
 	cau_dds_client *found = NULL; // the list has the newest client first

@@ -64,7 +64,8 @@ void cau_dds_reply_fail(const cau_dds_control *control, cau_dds_request *request
 	cau_rpc_fault_of_error(&fault, error);
 	if (code)
 		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)code, error->reason);
-	// path within JSON-RPC's params: the sample has the same members
+	// The reply's path has no "params.", because the sample itself has the members of JSON-RPC's
+	// params.
 	const char *path = error->path;
 	if (strncmp(path, prefix, sizeof prefix - 1) == 0)
 		path += sizeof prefix - 1;

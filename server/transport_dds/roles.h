@@ -20,10 +20,10 @@ typedef struct cau_dds_roles {
 } cau_dds_roles;
 
 // Reads the settings dds_role and dds_roles. The file has one `ROLE SUBJECT` for each line; lines
-// that begin with `#` are comments. A file that users other than its owner can write is refused. So
-// is a subject that is named twice.
+// that begin with `#` are comments. A file that users other than its owner can write is refused. A
+// file that names a subject twice is refused too.
 cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, cau_error *error);
 
-// Returns the role of a participant that has proved this subject name. `subject` is NULL if it has
-// proved none.
+// Returns the role of a participant that has proved this subject name. `subject` is NULL for a
+// participant without a proved name.
 cau_role cau_dds_roles_find(const cau_dds_roles *roles, const char *subject);

@@ -42,8 +42,8 @@ static cau_status check_jaw(const cau_hosted_tool *tool,
 	return CAU_OK;
 }
 
-// Takes a jaw opening. The jaw moves together with a pose: with the last pose at once, or else with
-// the first pose that comes.
+// Takes a jaw opening. The jaw moves together with a pose. If the tool has a last pose, the jaw
+// moves at once; otherwise it moves with the first pose.
 void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	cau_hosted_tool state;
@@ -77,7 +77,8 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
 	cau_dds_hand *hand = tool ? cau_dds_find_hand(writer->client, tool) : NULL;
 	(void)dds;
 	const dds_sequence_long *buttons = &sample->buttons_;
-	if (hand) // a missing button counts as released
+	// A button that the message lacks counts as released.
+	if (hand)
 		cau_dds_energy(hand, writer, buttons->_length > 0 && buttons->_buffer[0] > 0,
 		               buttons->_length > 1 ? buttons->_buffer[1] : 0);
 }

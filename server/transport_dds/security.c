@@ -23,10 +23,12 @@ static const struct {
 	{"dds.sec.access.permissions", "permissions.p7s"},
 };
 
-// List of certificates that the authority has revoked; optional.
+// Property and file name of the list of certificates that the authority has revoked. The list is
+// optional.
 static const char revoked_property[] = "org.eclipse.cyclonedds.sec.auth.crl", revoked[] = "crl.pem";
 
-// Debian keeps the plugins outside the linker's folders; the build has found their folder.
+// Cyclone's security plugins. Debian keeps them outside the linker's folders; the build has found
+// their folder.
 static const struct {
 	const char *name, *path, *function;
 } plugins[] = {
@@ -90,7 +92,7 @@ static cau_status set_identity(dds_qos_t *qos, const char *folder, cau_error *er
 	snprintf(uri, sizeof uri, "file:%s/%s", folder, revoked);
 	if (access(uri + strlen("file:"), F_OK) != 0)
 		return CAU_OK;
-	// an unreadable revocation list is an error; the daemon does not start without it
+	// If the revocation list cannot be read, the daemon does not start.
 	dds_qset_prop(qos, revoked_property, uri);
 	return check_file(folder, revoked, error);
 }

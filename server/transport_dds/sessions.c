@@ -6,7 +6,7 @@
 
 #include "transport_dds/internal.h"
 
-// longest time between checks: samples that readers drop do not wake the thread
+// Longest time between checks of a session, s. Samples that readers drop do not wake the thread.
 #define LOOK_EVERY_S 1
 #define UNREAD_LOOK_S 0.1 // time between checks of sessions that had a slice and have no readers
 
@@ -197,7 +197,8 @@ double cau_dds_serve(cau_dds *dds)
 		deliver(dds, post);
 		cau_dds_post_free(post);
 	}
-	// before the marks are taken: a slice that does not wake the thread leaves a mark
+	// This comes before the marks are taken, so that no slice is missed: a slice that does not wake
+	// the thread leaves a mark.
 	note_read(dds);
 	cau_dds_take_bits(&dds->wakeup.marked, &marked);
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {

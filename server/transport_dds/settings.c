@@ -9,7 +9,7 @@
 #include "cautery/instrument.h"
 #include "transport_dds/internal.h"
 
-// Sets one of the tool's sizes, after a check of its range.
+// Sets the tool's member `name`, after a check of its range.
 static cau_status set(cau_tool_def *tool, const char *name, double value, cau_error *error)
 {
 	const struct {
@@ -40,8 +40,8 @@ static cau_status set_all(cau_tool_def *tool, const cautery_ToolSetting *sample,
 	return status ? status : set(tool, "current_max_a", sample->current_max_a, error);
 }
 
-// Returns the hand that drives the tool and belongs to the writer's participant, by whatever topic
-// it drives.
+// Returns the hand that drives the tool and belongs to the writer's participant. The hand may drive
+// by any topic.
 static cau_dds_hand *find_driving(const cau_dds_tool *tool, const cau_dds_writer *writer,
                                   uint32_t driver)
 {

@@ -229,7 +229,7 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 	bool due = now_s >= cau_dds_states_due(session);
 	if (newcomers || due)
 		session->states_s = now_s;
-	// those of removed tools
+	// Nothing is owed for removed tools.
 	memset(session->states_owed + count, 0, (size_t)(CAU_MAX_TOOLS - count));
 	for (int32_t i = 0; i < count; i++) {
 		cau_hosted_tool *last = &session->states[i];

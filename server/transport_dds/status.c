@@ -7,7 +7,7 @@
 #include "transport_dds/internal.h"
 
 #define PERIOD_S 0.1
-#define UNREAD_PERIOD_S 1.0 // time between writes while there are no readers, for late joiners
+#define UNREAD_PERIOD_S 1.0 // time between writes while there are no readers, s; for late joiners
 
 void cau_dds_fill_status(cautery_SessionStatus *status, const cau_wire_session_summary *summary,
                          uint32_t number, const cau_hosted_counts *counts)

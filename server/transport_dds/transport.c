@@ -152,7 +152,8 @@ static cau_status fail(cau_error *error, const char *what, dds_return_t code)
 	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));
 }
 
-// Closing a session's writers must not wait for the acknowledgements of a dead reader.
+// Cyclone's setting for the time that a closing writer waits for acknowledgements. It is 0, because
+// a reader may be dead.
 static const char no_linger[] =
 	"<CycloneDDS><Domain Id=\"any\"><Internal>"
 	"<WriterLingerDuration>0 s</WriterLingerDuration></Internal></Domain></CycloneDDS>";
@@ -168,8 +169,9 @@ static cau_status open_domain(cau_dds_entities *entities, const cau_config *conf
 		return cau_fail(error, CAU_IO, "dds_config", "cannot open %.160s: %s", config->dds_config,
 		                reason);
 	if (settings)
-		fclose(settings); // opened only as a check: Cyclone opens the file by itself, and would
-		                  // wait for the writer of a FIFO
+		// The file is opened only as a check. Cyclone opens it again and would wait for the writer
+		// of a FIFO.
+		fclose(settings);
 	if (*config->dds_config)
 		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
 	else

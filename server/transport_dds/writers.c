@@ -9,7 +9,7 @@
 #include "config/role.h"
 #include "transport_dds/internal.h"
 
-enum { ONLOOKERS_TOLD_MOST = 16 }; // log lines a second
+enum { ONLOOKERS_TOLD_MOST = 16 }; // largest number of log lines a second
 
 // Bounds on the deadline that a writer's QoS declares, s.
 static const double deadline_least_s = 0.02, deadline_most_s = 1;
@@ -123,7 +123,8 @@ static dds_instance_handle_t *matched_of(dds_entity_t reader, size_t *count)
 	dds_instance_handle_t *handles = NULL;
 	dds_return_t there = dds_get_matched_publications(reader, NULL, 0);
 	*count = 0;
-	for (size_t room = 0; there > 0 && room < (size_t)there;) { // more writers may match meanwhile
+	// The loop repeats if more writers have matched meanwhile.
+	for (size_t room = 0; there > 0 && room < (size_t)there;) {
 		room = (size_t)there;
 		free(handles);
 		handles = malloc(room * sizeof *handles);
@@ -209,7 +210,8 @@ static void on_liveliness(dds_entity_t reader, const dds_liveliness_changed_stat
 		return;
 	cau_dds_silenced *noted = malloc(sizeof *noted);
 	if (!noted)
-		return; // the watchdog turns its energy off all the same
+		// The watchdog still turns the writer's energy off, at the driver's deadline.
+		return;
 	*noted = (cau_dds_silenced){.reader = reader, .handle = status.last_publication_handle};
 	pthread_mutex_lock(&dds->mailbox.mutex);
 	noted->next = dds->mailbox.silenced;

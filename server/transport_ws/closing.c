@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How connections end. Whoever ends a connection, the handler is notified soon. A close frame goes
-// out behind the queued bytes, and then our side of the socket is shut. What the peer still sends
-// is read and dropped until it shuts its side. A peer that does not do so within CLOSE_WITHIN_S, or
-// is one of more than LINGERING_MOST, is reset. So no socket of a closed connection stays.
+// How connections end. However a connection ends, the handler is notified soon. A close frame is
+// sent after the queued bytes, and then our side of the socket is shut. Further bytes of the peer
+// are read and dropped until the peer shuts its side. If the peer does not do so within
+// CLOSE_WITHIN_S, or if more than LINGERING_MOST connections are ending, the connection is reset.
+// So no socket of a closed connection stays.
 #include <math.h>
 #include <netinet/in.h>
 #include <string.h>
@@ -15,8 +16,8 @@
 enum {
 	CLOSE_WITHIN_S = 2, // enough for a round trip around the world and a busy peer
 	LINGERING_MOST = 64,
-	UNPLACED_S = 1, // grace for a client that resumes, see cau_connection_has_place
-	MUTED_S = 1,    // time between two guesses of a token
+	UNPLACED_S = 1, // time for hello of a client that may only resume, see cau_connection_has_place
+	MUTED_S = 1, // delay of the answer to a wrong token, so the least time between two guesses, s
 	UNHEARD_PINGS = 3,
 	CLOSE_FRAME = 0x88,
 	CODE_BYTES = 2,
@@ -57,7 +58,8 @@ static void bound_lingering(cau_network *network)
 	cau_connection *oldest = NULL;
 	int count = 0;
 	for (cau_connection *c = network->lingering; c; c = c->next) {
-		oldest = c->end.resetting ? oldest : c; // the list has the newest first
+		// The list has the newest connection first.
+		oldest = c->end.resetting ? oldest : c;
 		count += !c->end.resetting;
 	}
 	if (count > LINGERING_MOST)
@@ -121,7 +123,8 @@ void cau_connection_closed_by_peer(cau_connection *c, int code)
 void cau_connection_ended_by_peer(cau_connection *c)
 {
 	c->end.peer_ended = true;
-	cau_input_end(c); // otherwise epoll would report the end again and again
+	// Otherwise epoll would report the end again and again.
+	cau_input_end(c);
 	if (!c->end.code)
 		begin_closing(c, CAU_CLOSE_DONE, "");
 	lws_callback_on_writable(c->wsi);
@@ -182,8 +185,8 @@ void cau_connection_dropped(cau_connection *c)
 	cau_connection_put(c, frame, bytes);
 }
 
-// Closes a connection whose hello is late. It has no timer of its own, because libwebsockets
-// searches its sorted list of timers from the start.
+// Closes a connection whose hello is late. The connection has no timer of its own for this, because
+// libwebsockets searches its sorted list of timers from the start.
 static void watch_hello(cau_connection *c, double now_s)
 {
 	double within_s = c->network->def.config->hello_timeout_s, age_s = now_s - c->opened_s;
@@ -197,7 +200,8 @@ void cau_connection_watch(cau_connection *c, double now_s)
 {
 	if (!c->served)
 		watch_hello(c, now_s);
-	if (c->turn.waits && !cau_turns_blocked(c)) // its messages wait for their turn
+	// A connection whose messages wait for a turn counts as heard.
+	if (c->turn.waits && !cau_turns_blocked(c))
 		c->input.heard_s = now_s;
 	if (now_s - c->input.heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
 		cau_connection_close(c, CAU_CLOSE_NO_ANSWER, NULL);

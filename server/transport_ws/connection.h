@@ -36,7 +36,7 @@ typedef struct cau_connection_input {
 	cau_frame_reader reader;
 	double heard_s;      // time of the last received bytes
 	bool polled;         // epoll reports input of this connection
-	unsigned char *held; // bytes received in one turn and left for the next; NULL: none
+	unsigned char *held; // bytes received in one turn and left for the next; NULL: no bytes
 	size_t held_at, held_bytes;
 	double empty_s;      // time when the socket was last known to be empty
 	double sent_after_s; // the message at hand was sent after this time
@@ -66,7 +66,7 @@ typedef struct cau_connection_output {
 typedef struct cau_connection_end {
 	int code; // code of the close frame; 0: open
 	char reason[CAU_CLOSE_REASON_BYTES];
-	bool muted;      // nothing is written to it for a second
+	bool muted;      // nothing is written to the connection for a second
 	bool close_sent; // received bytes are dropped until the peer has ended
 	bool peer_ended; // the peer sends nothing more
 	bool left;       // the handler was notified; the connection is in the list of lingering ones
@@ -82,7 +82,8 @@ typedef struct cau_connection {
 	void *peer; // belongs to the handler
 	double opened_s;
 	bool served; // hello was accepted, so the hello timeout is off
-	// the number of served connections was at its limit when it opened: it may only resume
+	// the number of served connections was at its limit when this connection opened, so its client
+	// may only resume
 	bool unplaced;
 	int descriptor;
 	char address[CAU_ADDRESS_BYTES]; // the peer's address as text; "" if unknown
@@ -93,8 +94,8 @@ typedef struct cau_connection {
 	cau_connection_end end;
 } cau_connection;
 
-// True if one more connection may be served. `resumes`: it comes back to its tools, and has a
-// higher limit.
+// True if one more connection may be served. `resumes`: the client returns to its tools, for which
+// the limit is higher.
 bool cau_connection_has_place(const cau_connection *connection, bool resumes);
 // Notes that the connection's hello was accepted, with this role.
 void cau_connection_serve(cau_connection *connection, cau_role role);
@@ -108,7 +109,7 @@ void cau_connection_send(cau_connection *connection, cau_buffer *buffer);
 // Asks for a call of next_frame when the socket can take more.
 void cau_connection_want_frame(cau_connection *connection);
 // Sends the queued bytes, then closes. The handler is notified a moment later, not from within this
-// call. Only the first reason counts; NULL means the code's own text.
+// call. Only the reason of the first call is used; NULL means the code's own text.
 void cau_connection_close(cau_connection *connection, cau_close_code code, const char *reason);
 // Closes like cau_connection_close, but sends the queued bytes only after a second. Used for
 // answers that would help someone who guesses tokens.

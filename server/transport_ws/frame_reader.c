@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every rule is checked as soon as the byte that breaks it is there. So a peer that sends nothing
-// more gets its answer too.
+// Every rule is checked as soon as the byte that breaks it has arrived. So a peer that then sends
+// nothing more is answered too.
 //
 // A message may have any number of fragments, so a flood is counted in frames, not in messages.
-// Fragments of 1,024 bytes and more pay for themselves by their bytes. The caller is notified of
-// shorter ones, and counts them.
+// Fragments of 1,024 bytes and more are not counted, because their bytes limit their number. The
+// reader reports each shorter fragment, and the caller counts these.
 #include "transport_ws/frame_reader.h"
 
 #include <assert.h>
@@ -132,7 +132,8 @@ static bool take_head(cau_frame_reader *r, const unsigned char **at, const unsig
 // ---- the payload
 static bool grow(cau_frame_reader *r, size_t bytes)
 {
-	size_t wanted = r->message_bytes + bytes + 1; // 1 for a zero at the end
+	// The 1 is for a zero at the end.
+	size_t wanted = r->message_bytes + bytes + 1;
 	size_t capacity = r->message_capacity ? r->message_capacity : FIRST_CAPACITY;
 	while (capacity < wanted)
 		capacity *= 2;
@@ -202,7 +203,8 @@ static bool take_payload(cau_frame_reader *r, const unsigned char **at, const un
 }
 
 // ---- the end of a frame
-// True if the code may be in a close frame: those of section 7.4, and those registered since.
+// True if the code may be in a close frame: the codes of RFC 6455, section 7.4, and those
+// registered since.
 static bool is_close_code(int code)
 {
 	return (code >= 1000 && code <= 1003) || (code >= 1007 && code <= 1014) ||

@@ -26,7 +26,7 @@ typedef enum cau_frame_event {
 	CAU_FRAME_FRAGMENT, // a short fragment ended, and its message continues
 	CAU_FRAME_PING,     // control, control_bytes: the ping's payload
 	CAU_FRAME_PONG,
-	CAU_FRAME_CLOSE,  // close_code: the peer's code, 0 if it gave none
+	CAU_FRAME_CLOSE,  // close_code: the peer's code; 0: the peer gave no code
 	CAU_FRAME_BROKEN, // close_code, reason: close the connection with these; nothing more is read
 } cau_frame_event;
 

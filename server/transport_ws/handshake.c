@@ -86,8 +86,8 @@ static bool has_key(struct lws *wsi)
 	       strspn(text, digits) == 22 && strcmp(text + 22, "==") == 0;
 }
 
-// True if the request lists our subprotocol. This libwebsockets cannot read a longer list than
-// LIST_BYTES.
+// True if the request lists our subprotocol. This version of libwebsockets cannot read a list that
+// is longer than LIST_BYTES.
 static bool has_subprotocol(struct lws *wsi)
 {
 	enum { LIST_BYTES = 128 };

@@ -23,8 +23,8 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 	cau_network *network = cau_network_of(wsi);
 	cau_http_body *body = user;
 	switch (reason) {
-	case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: // libwebsockets has made its TLS
-	                                                          // context
+	// libwebsockets has made its TLS context.
+	case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS:
 		if (network->tls)
 			cau_tls_configure(network->tls, user);
 		return 0;
@@ -35,15 +35,16 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 		return cau_http_serve(network, wsi, body, in);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
 		return cau_http_answer_continue(wsi, body);
-	case LWS_CALLBACK_HTTP_DROP_PROTOCOL: // the answer is sent: the connection's next request may
-	                                      // come
+	// The answer is sent, and the connection's next request may come.
+	case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
 		return cau_unread_add(network, wsi) ? 0 : -1;
 	case LWS_CALLBACK_CLOSED_HTTP:
 		cau_unread_remove(network, wsi);
 		if (body)
 			cau_http_body_finish(body);
 		return 0;
-	case LWS_CALLBACK_RAW_ADOPT: // CONNECT: libwebsockets would pass the bytes to no handler
+	// The request is CONNECT. libwebsockets would pass the bytes to no handler.
+	case LWS_CALLBACK_RAW_ADOPT:
 		cau_refuse_unread(network, wsi, false);
 		return -1;
 	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:

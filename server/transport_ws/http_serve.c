@@ -13,8 +13,8 @@ static bool is_page(const char *path)
 	       strcmp(path, "/api/fleet") == 0;
 }
 
-// True if the page needs a token. /api/fleet needs none: the viewer asks for it before it has a
-// token, and whether a daemon is alone is no secret.
+// True if the page needs a token. /api/fleet needs none, because the viewer requests it before it
+// has a token. Whether a daemon belongs to a fleet is no secret.
 static bool needs_token(const char *path)
 {
 	if (strcmp(path, "/api/fleet") == 0)

@@ -22,9 +22,9 @@ bool cau_input_open(cau_network *network)
 // ---- taking over from libwebsockets
 // Takes over the reading in two steps. A client may send bytes right behind its request, although
 // it must wait for the answer. libwebsockets already holds these bytes, and returns them only if it
-// may read on for a moment. So its reading is stopped while the handshake is answered. The first
-// callback allows it: that pass handles the buffer but no socket. The second callback, before any
-// socket is read, stops it for good.
+// may read for a moment. So libwebsockets' reading is stopped while the handshake is answered. The
+// first callback allows reading again: that pass of the loop handles the held bytes and reads no
+// socket. The second callback stops the reading for good, before any socket is read.
 bool cau_input_begin(cau_connection *c)
 {
 	lws_callback_on_writable(c->wsi);

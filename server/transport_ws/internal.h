@@ -16,8 +16,8 @@
 enum {
 	HEADER_BYTES = 512,
 	NOTSENT_LOWAT_BYTES = 16384, // see set_socket in connection.c
-	// Limit on waiting replies within a turn. Writing replies is charged after the turn, so this
-	// bounds the debt of a turn.
+	// Limit on the bytes of waiting replies within a turn. Writing replies is charged after the
+	// turn, so this limit bounds the time that a turn can use beyond its share.
 	CAU_TURN_REPLY_BYTES = 65536,
 	CAU_CLOSE_FRAME_BYTES = 4 + CAU_CLOSE_REASON_BYTES,
 	CAU_OUTSIDERS_MOST = 64,
@@ -52,9 +52,10 @@ struct cau_network {
 	atomic_bool woken, ending;
 	cau_close_code ending_code;
 	double ending_until_s;
-	double ran_s;                      // time when this thread last ran its loop
-	double stopped_s, stopped_until_s; // the thread did not run between these times, see sent_after
-	cau_unread *unread;                // indexed by descriptor, see unread.c
+	double ran_s; // time when this thread last ran its loop
+	// the thread did not run between these times, see cau_network_sent_after_s
+	double stopped_s, stopped_until_s;
+	cau_unread *unread; // indexed by descriptor, see unread.c
 	int unread_capacity;
 	int input; // epoll descriptor, see input.c
 	uint64_t last_id;
@@ -83,8 +84,7 @@ int cau_ws_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
 int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes);
 
-// ---- rounds.c
-// Called in each pass of the loop. Notes if the thread did not run for a long time.
+// Called in each pass of the loop. Notes it if the thread did not run for a long time.
 void cau_network_comes_round(cau_network *network);
 // Returns a time after which the bytes read now were sent, as far as this thread can tell. This is
 // `now_s`, unless the thread did not run for the deadline of a browser's driver. After such a stop,
@@ -107,12 +107,13 @@ void cau_unread_complaint(cau_network *network, const char *line);
 // Finds the owner of an address, as text: the network of 64 bits of an IPv6 address, else the
 // address itself.
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES]);
-// Closes the oldest connection whose request has not come (unread) or that has not said hello
-// (silent), if there are too many of the newest one's owner or of all.
+// Each closes the oldest connection if there are too many, either of the newest connection's owner
+// or in all. The first counts connections whose request has not come, the second those without
+// hello.
 void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest);
 void cau_strangers_bound_silent(cau_network *network, const cau_connection *newest);
-// Called when a connection sends a message other than hello. Closes the connection if there are too
-// many like it.
+// Called when a connection sends a message other than hello. Closes the connection if too many
+// connections without hello exist.
 void cau_strangers_bound_talk(cau_connection *connection);
 
 // ---- outsiders.c

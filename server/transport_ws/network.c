@@ -51,8 +51,8 @@ static cau_status open_context(cau_network *network, cau_error *error)
 {
 	cau_config *config = network->def.config;
 	network->validity.secs_since_valid_ping = (uint16_t)fmax(1, config->ping_s);
-	// This is for a connection that sends, but answers no ping. A silent connection is closed
-	// earlier, with a code (closing.c).
+	// Time after which libwebsockets ends a connection that sends, but answers no ping. A silent
+	// connection is closed earlier, with a code (closing.c).
 	network->validity.secs_since_valid_hangup = (uint16_t)fmax(6, 3 * config->ping_s + 3);
 	struct lws_context_creation_info info = {
 		.port = config->port ? (int)config->port : 0,

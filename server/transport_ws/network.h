@@ -61,7 +61,7 @@ void cau_network_stop(cau_network *network, cau_close_code code, double seconds)
 cau_status cau_network_reload_tls(cau_network *network, cau_error *error);
 void cau_network_destroy(cau_network *network); // `network` may be NULL
 
-// Returns the first open connection; they are in no order. Network thread only.
+// Returns the first open connection; the connections are in no order. Network thread only.
 cau_connection *cau_network_first(cau_network *network);
 // Returns the open connection with this id, or NULL. Network thread only.
 cau_connection *cau_network_find(cau_network *network, uint64_t id);

@@ -18,8 +18,8 @@ static void write_line(cau_outsider *o, double now_s)
 	o->told_s = now_s;
 }
 
-// Returns the entry of an owner, or a free one. If all are in use, returns the first, which all
-// owners without an entry share.
+// Returns the owner's entry, or a free entry. If all entries are in use, returns the first entry,
+// which all owners without an entry share.
 static cau_outsider *find_row(cau_network *network, const char *owner)
 {
 	cau_outsider *free_row = NULL;
@@ -56,6 +56,7 @@ void cau_outsiders_tick(cau_network *network, double now_s)
 		if (o->count)
 			write_line(o, now_s);
 		else
-			*o = (cau_outsider){0}; // nothing came within a minute, so the entry is free again
+			// Nothing came within a minute, so the entry becomes free.
+			*o = (cau_outsider){0};
 	}
 }

@@ -66,8 +66,8 @@ static size_t take(cau_connection *c, const unsigned char *bytes, size_t count, 
 	const unsigned char *at = bytes, *end = bytes + count;
 	bool in_time = true;
 	c->input.heard_s = cau_monotonic_s();
-	// A closing connection is still read, so that its peer gets to the close frame. Its messages
-	// are ignored.
+	// The loop stops when the connection closes: the rest of the bytes is dropped. The socket is
+	// still read, so that the peer gets to the close frame.
 	while (at < end && !c->end.code && in_time) {
 		cau_frame_event event = cau_frame_reader_next(&c->input.reader, &at, end);
 		bool counts =

@@ -3,7 +3,8 @@
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
 
-#define WAITED_S 0.02 // a message that waited this long counts as sent before the wait
+// least wait, s, of a message for its turn; a message that waited longer counts as sent before
+#define WAITED_S 0.02
 
 void cau_network_comes_round(cau_network *network)
 {

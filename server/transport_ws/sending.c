@@ -34,7 +34,7 @@ void cau_connection_want_frame(cau_connection *c)
 
 void cau_connection_pong(cau_connection *c, const void *payload, size_t bytes)
 {
-	c->output.pong_due = true; // if several pings came, one answer to the last is enough
+	c->output.pong_due = true; // if several pings came, it is enough to answer the last ping
 	c->output.pong_bytes = bytes;
 	memcpy(c->output.pong, payload, bytes);
 	lws_callback_on_writable(c->wsi);

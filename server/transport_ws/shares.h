@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Limits the processor time of the network thread that each client may take. Time is measured while
-// messages are handled and replies are written. It counts for the connection, for its address, and
-// for all clients of its standing. Each of the three has a share of one core. Used time is given
-// back at the rate of that share. So a client that was quiet may use BURST_S of its share at once.
-// Network thread only.
+// messages are handled and replies are written. The time is charged three times: to the connection,
+// to its address, and to all clients of its standing. Each of the three has a share of one core.
+// Used time is given back at the rate of that share. So a client that was quiet may at once use the
+// time of BURST_S of its share. Network thread only.
 #pragma once
 
 #include <stdbool.h>
@@ -19,7 +19,7 @@ typedef enum cau_standing {
 	CAU_STANDING_COUNT,
 } cau_standing;
 
-// Used processor time, s. Zeroed: none was used.
+// Processor time that was used and not given back yet, s. Zeroed: no time was used.
 typedef struct cau_time_used {
 	double used_s, seen_s;
 } cau_time_used;
@@ -54,12 +54,13 @@ void cau_shares_finish(cau_shares *shares); // every share must be closed before
 bool cau_share_open(cau_shares *shares, cau_share *share, const char *address,
                     cau_standing standing, double now_s);
 void cau_share_close(cau_share *share); // the share may be zeroed
-// Gives the client another standing. If memory runs out, it keeps the old one.
+// Gives the client another standing. If memory runs out, the client keeps its old standing.
 void cau_share_promote(cau_share *share, cau_standing standing, double now_s);
 
 void cau_share_charge(cau_share *share, double cpu_s, double now_s);
-// Returns the seconds until the client may use time again; 0 if at once.
+// Returns the seconds until the client may use time again; 0 if the client may do so at once.
 double cau_share_wait_s(cau_share *share, double now_s);
-// True if `share` goes before `other`: drivers go before others, then the one that has used less.
-// Call cau_share_wait_s for both before, to bring them up to date.
+// True if `share` goes before `other`. Drivers go before other clients; among equals, the client
+// that has used less time goes first. Call cau_share_wait_s for both before, to bring them up to
+// date.
 bool cau_share_precedes(const cau_share *share, const cau_share *other);

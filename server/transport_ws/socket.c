@@ -29,7 +29,8 @@ static ssize_t receive_tls(SSL *tls, void *bytes, size_t most)
 	case SSL_ERROR_ZERO_RETURN:
 		return 0;
 	case SSL_ERROR_WANT_READ:
-	case SSL_ERROR_WANT_WRITE: // an answer to a key update, which goes out with the next bytes
+	// OpenSSL wants to write an answer to a key update. It is sent with the next bytes.
+	case SSL_ERROR_WANT_WRITE:
 		errno = EAGAIN;
 		return -1;
 	default: // the peer is gone, or sent something that is not TLS
@@ -83,6 +84,6 @@ void cau_connection_shut(cau_connection *c)
 	SSL *tls = tls_of(c);
 	ERR_clear_error();
 	if (tls && SSL_shutdown(tls) < 0)
-		ERR_clear_error(); // an error here does not matter: the socket is shut anyway
+		ERR_clear_error(); // an error here has no effect: the socket is shut anyway
 	shutdown(c->descriptor, SHUT_WR);
 }

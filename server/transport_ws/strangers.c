@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Limits connections that have not said hello. Opening one needs no token, so they must not use up
-// max_connections. They have a limit of their own, and a lower one for each address. Connections
-// whose request has not come yet are counted apart from WebSocket connections. Beyond a limit the
-// oldest is closed, because an honest client says hello at once. But a message may be long on its
-// way, and closed strangers may reconnect thousands of times in a second. So a connection younger
-// than GRACE_S is closed only beyond GRACE_FACTOR times the limit.
+// Limits connections that have not said hello ("strangers"). Opening one needs no token, so they
+// must not use up max_connections. They have a limit of their own, and a lower limit for each
+// address. Connections whose request has not come yet are counted apart from WebSocket connections.
+// Beyond a limit the oldest is closed, because an honest client says hello at once. But a message
+// may take long to arrive, and closed strangers may reconnect thousands of times in a second. So a
+// connection younger than GRACE_S is closed only beyond GRACE_FACTOR times the limit.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <stdio.h>
@@ -16,18 +16,21 @@
 
 enum {
 	STRANGERS_MOST = 256,
-	// Connections whose request has not come, of all addresses together: four addresses at their
-	// limit. Each holds a file descriptor and no more.
+	// Largest number of connections whose request has not come, of all addresses together. It
+	// allows four addresses at their limit. Each such connection uses a file descriptor and no
+	// more.
 	UNREAD_MOST = 512,
 	OF_ADDRESS_MOST = 128,
-	// strangers reconnect 4,000 times in a second, which is 512 times in an eighth of a second
+	// Factor on the limits while the oldest connection is younger than GRACE_S. Strangers reconnect
+	// 4,000 times in a second, which is 512 times in an eighth of a second.
 	GRACE_FACTOR = 8,
-	NETWORK_BYTES = 8, // an IPv6 address's owner chooses the remaining bytes
+	// length of the network part of an IPv6 address; its owner chooses the remaining bytes
+	NETWORK_BYTES = 8,
 	RESUMES_MOST = 16, // connections beyond max_connections, for clients that return to their tools
 };
 
-#define READ_WITHIN_S 0.02 // the thread reads bytes within this time after their arrival
-// time for the request and for hello, from far away or from a busy machine
+#define READ_WITHIN_S 0.02 // longest time from the arrival of bytes until the thread reads them, s
+// Time that a client has for its request and for hello, from far away or from a busy machine, s.
 #define GRACE_S 1.0
 
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
@@ -46,8 +49,8 @@ static bool is_unread(const cau_unread *unread, const char *owner)
 	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
 }
 
-// True if bytes had arrived: the thread reads them within READ_WITHIN_S. After that the connection
-// is checked again.
+// True if unread bytes were seen less than READ_WITHIN_S ago: the thread reads them within that
+// time. Afterwards the connection is checked again.
 static bool is_read_soon(const cau_unread *unread, double now_s)
 {
 	return now_s - unread->input_s < READ_WITHIN_S;
@@ -60,8 +63,8 @@ static bool has_input(int descriptor)
 	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
 }
 
-// Finds the oldest connection of an owner (NULL: of all) of which no bytes are known to have
-// arrived. *count: their number.
+// Finds the oldest connection without a request of an owner (NULL: of all owners), without those
+// whose bytes are about to be read. *count: the number of such connections.
 static cau_unread *find_oldest(const cau_network *network, const char *owner, double now_s,
                                int *count)
 {
@@ -84,8 +87,9 @@ static int bound(int most, double age_s)
 	return age_s < GRACE_S ? GRACE_FACTOR * most : most;
 }
 
-// Finds the oldest connection of which no bytes have arrived; NULL if there are not too many. Only
-// the connection that would be closed is polled, because this runs for each new connection.
+// Finds the connection to close: the oldest without a request, if there are too many and no bytes
+// of it have arrived. Otherwise returns NULL. Only the connection that would be closed is polled,
+// because this runs for each new connection.
 static cau_unread *find_unread(cau_network *network, const char *owner, int most)
 {
 	int count;
@@ -100,8 +104,9 @@ static cau_unread *find_unread(cau_network *network, const char *owner, int most
 	}
 }
 
-// Closes a connection if too many requests are outstanding. Behind a proxy, the client's address is
-// known only from the request; before, it is the proxy's, so the limit for each address is skipped.
+// Closes a connection if too many connections have not sent their request. Behind a proxy, the
+// client's address is known only from the request. Before the request the address is the proxy's,
+// so the limit for each address is skipped.
 void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 {
 	bool is_proxy = cau_list_has(network->def.config->trusted_proxies, newest->address);
@@ -122,8 +127,8 @@ static bool is_silent(const cau_connection *c, const char *owner)
 	return !c->served && !c->end.code && (!owner || strcmp(c->owner, owner) == 0);
 }
 
-// Finds the oldest connection without hello, of an owner (NULL: of all). The list has the newest
-// first.
+// Finds the oldest connection without hello of an owner (NULL: of all owners). *count: the number
+// of such connections. The list has the newest connection first.
 static cau_connection *find_silent(const cau_network *network, const char *owner, int *count)
 {
 	cau_connection *oldest = NULL;
@@ -143,7 +148,7 @@ static void close_silent(cau_connection *c)
 }
 
 // Closes the oldest connection without hello if there are too many. Only the oldest is checked for
-// unread input, which may be its hello: this runs for each new connection, and strangers open many.
+// unread input, which may be its hello. This runs for each new connection, and strangers open many.
 static bool bound_silent(const cau_network *network, const char *owner, int most)
 {
 	int count;

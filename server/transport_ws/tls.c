@@ -60,7 +60,7 @@ static cau_status read_certificate(pair *p, const char *file, cau_error *error)
 	while (p->certificate && p->chain && sk_X509_num(p->chain) < CHAIN_MOST &&
 	       (next = PEM_read_X509(stream, NULL, NULL, NULL)) && sk_X509_push(p->chain, next))
 		next = NULL;
-	X509_free(next); // a certificate that could not be added
+	X509_free(next); // frees a certificate that could not be added
 	fclose(stream);
 	ERR_clear_error(); // OpenSSL reports the end of the file as an error
 	if (!p->certificate || !p->chain || next)
@@ -175,8 +175,8 @@ void cau_tls_configure(cau_tls *tls, SSL_CTX *context)
 {
 	SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
 	SSL_CTX_set1_groups_list(context, groups);
-	// Clients know best which cipher is fast on their processor. Tickets are off: they would
-	// outlive a key.
+	// The client's order of ciphers is used, because clients know best which cipher is fast on
+	// their processor. Tickets are off, because they would outlive a key.
 	SSL_CTX_clear_options(context, SSL_OP_CIPHER_SERVER_PREFERENCE);
 	SSL_CTX_set_options(context,
 	                    SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION | SSL_OP_NO_TICKET);

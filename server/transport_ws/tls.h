@@ -10,10 +10,11 @@
 
 typedef struct cau_tls cau_tls;
 
-// Reads the pair that the settings name; *tls is NULL if they name none. Errors (path
+// Reads the pair that the settings name; *tls is NULL if the settings name no pair. Errors (path
 // tls_certificate or tls_key, and the file in `file`): CAU_IO: the file cannot be read;
-// CAU_BAD_SYNTAX: it contains none, or a key with a passphrase; CAU_BAD_VALUE: the key does not
-// belong to the certificate, or other users may read it, or the certificate has expired.
+// CAU_BAD_SYNTAX: the file contains no certificate or key, or a key with a passphrase;
+// CAU_BAD_VALUE: the key does not belong to the certificate, or other users may read the key, or
+// the certificate has expired.
 cau_status cau_tls_create(cau_tls **tls, const cau_config *config, cau_error *error);
 void cau_tls_destroy(cau_tls *tls); // `tls` may be NULL
 

@@ -13,13 +13,14 @@
 enum { EVENTS_AT_ONCE = 64 };
 
 #define TURN_S 1e-3
-#define ROUND_S 4e-3 // after this time libwebsockets writes and checks for new input
-#define REST_S 5e-3  // least wait: libwebsockets does not sleep for less than a millisecond
+#define ROUND_S 4e-3 // time for turns, s; libwebsockets then writes and checks for new input
+// least wait for the next turns, s: libwebsockets does not sleep for less than a millisecond
+#define REST_S 5e-3
 
 // Returns how long the connection must wait for its turn. A closing connection does not wait:
-// reading it to its end is cheap and short. A first turn does not wait either: it costs less than
-// the handshake before it, and brings hello, which must not wait for time that others of its
-// address have used.
+// reading it to its end is cheap and short. A connection's first turn does not wait either: it
+// costs less than the handshake before it. The first turn brings hello, which must not wait for
+// time that other connections of its address have used.
 static double wait_s(cau_connection *c, double now_s)
 {
 	double seconds = cau_share_wait_s(&c->turn.share, now_s);
@@ -91,8 +92,8 @@ void cau_turns_resume(cau_connection *c)
 		lws_sul_schedule(c->network->context, 0, &c->network->turns, run_again, 1);
 }
 
-// Reads the connections that epoll reports. No connection is freed here: closing is only requested,
-// and libwebsockets' loop frees.
+// Reads the connections that epoll reports. No connection is freed here: this function only
+// requests that connections close, and libwebsockets' loop frees them.
 int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes)
 {

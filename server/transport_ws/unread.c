@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Handles requests that libwebsockets 4.1.6 refuses or drops by itself. It answers some with
-// HTTP/1.0 403 and no reason. It ends the others without an answer: those with too long headers,
-// and those without a path. It has no callback for either case. But it calls two of its own public
-// functions through the program's symbol table, so the functions of this file replace them. It also
-// logs each request that it drops, while it reads that connection and before it ends the
-// connection.
+// HTTP/1.0 403 and no reason. It ends connections without an answer if the headers are too long, or
+// if the request has no path. libwebsockets has no callback for these cases. But it calls two of
+// its own public functions through the program's symbol table, so the functions of this file
+// replace them. libwebsockets also logs each request that it drops. It does so while it reads that
+// connection and before it ends the connection.
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +44,8 @@ int lws_service_fd_tsi(struct lws_context *context, struct lws_pollfd *pollfd, i
 	typedef int service(struct lws_context * context, struct lws_pollfd * pollfd, int tsi);
 	static _Thread_local service *library;
 	if (!library)
-		*(void **)&library = dlsym(RTLD_NEXT, "lws_service_fd_tsi"); // as POSIX advises
+		// POSIX advises this form of assignment from dlsym.
+		*(void **)&library = dlsym(RTLD_NEXT, "lws_service_fd_tsi");
 	served = pollfd ? pollfd->fd : -1;
 	int result = library(context, pollfd, tsi);
 	served = -1;
@@ -92,6 +93,6 @@ void cau_unread_complaint(cau_network *network, const char *line)
 		served >= 0 && served < network->unread_capacity ? network->unread[served].wsi : NULL;
 	if (!wsi || (!large && !formless))
 		return;
-	cau_unread_remove(network, wsi); // only one answer
+	cau_unread_remove(network, wsi); // the request gets only one answer
 	cau_refuse_unread(network, wsi, large);
 }

@@ -41,7 +41,8 @@ static void *watch(void *argument)
 		pthread_mutex_unlock(&w->mutex);
 		double look_s = w->look(w->user, cau_monotonic_s());
 		pthread_mutex_lock(&w->mutex);
-		w->asked_to_move = w->asked_to_move && w->woken; // asked while it looked: it looks again
+		// If cau_watchdog_moves() was called during the look, the watchdog looks again.
+		w->asked_to_move = w->asked_to_move && w->woken;
 		wait_until(w, look_s);
 	}
 	pthread_mutex_unlock(&w->mutex);

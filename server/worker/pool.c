@@ -21,7 +21,8 @@ struct cau_worker_pool {
 	cau_task **tasks;
 };
 
-// A short task that ran within this time counts as one that soon needs a worker again.
+// Time, s, for which a short task counts as one that soon needs a worker again, after its last
+// slice.
 #define LATELY_S 1.0
 
 static bool is_long(const cau_task *task)
@@ -50,8 +51,8 @@ static bool long_may_begin(const cau_worker_pool *pool, double now_s)
 	return !others || running < pool->workers - 1;
 }
 
-// Returns the due task with the earliest deadline. Returns NULL if none is due; *wake_s: the time
-// when one becomes due.
+// Returns the due task with the earliest deadline. Returns NULL if no task is due; *wake_s is then
+// the time when the next task becomes due.
 static cau_task *pick(cau_worker_pool *pool, double now_s, double *wake_s)
 {
 	cau_task *best = NULL;
@@ -94,7 +95,8 @@ static void run_slice(cau_worker_pool *pool, cau_task *task)
 	task->running = false;
 	task->next = next;
 	task->ended_s = cau_monotonic_s();
-	// Tasks that became due meanwhile go first, however late a long task is.
+	// Tasks that became due during a slice of a long task go before it, however late the long task
+	// is.
 	if (is_long(task))
 		task->next.deadline_s = fmax(next.deadline_s, task->ended_s);
 	if (task->woken && next.due_s > 0)
@@ -192,7 +194,8 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task)
 void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task)
 {
 	pthread_mutex_lock(&pool->mutex);
-	task->leaving = true; // the task counts as running until its slice ends
+	// A slice of the task may still run; the wait below lasts until it ends.
+	task->leaving = true;
 	while (task->running)
 		pthread_cond_wait(&pool->left, &pool->mutex);
 	cau_task *last = pool->tasks[--pool->task_count];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Priorities of the daemon's threads when processors are short: network and watchdog first, workers
-// after them, and the builder last.
+// Priorities of the daemon's threads, for times when the processors are fully used: network and
+// watchdog first, workers after them, and the builder last.
 #pragma once
 
 #include <sys/resource.h>
@@ -8,10 +8,11 @@
 #include <unistd.h>
 
 enum {
-	CAU_NICE_FIRST = -5, // if the system permits: CAP_SYS_NICE, or LimitNICE of the service
+	// takes effect if the system permits it: CAP_SYS_NICE, or LimitNICE of the service
+	CAU_NICE_FIRST = -5,
 	CAU_NICE_LAST = 5,
-	// the builder gets what workers leave, or a third of a worker's share. At 15, a session of 2.5
-	// s took 79 s beside two programs.
+	// With this value the builder gets the time that workers leave, or a third of a worker's share.
+	// At 15, building a session that needs 2.5 s took 79 s while two other programs ran.
 	CAU_NICE_BUILDER = 10,
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signed distances of the core for the viewer's tests. Each line "SHAPE HOT_RADIUS TIP SHAFT_RADIUS
-// JAW PART X Y Z STEPS" on standard input (metres; PART 0 is hot, 1 cold) moves a point STEPS times
-// towards the part's surface, by its distance along the gradient. The answer is the distance of the
-// final point, and the point.
+// Prints signed distances of the core for the viewer's tests. Each line "SHAPE HOT_RADIUS TIP
+// SHAFT_RADIUS JAW PART X Y Z STEPS" on standard input (metres; PART 0 is hot, 1 cold) names a
+// tool's part and a point. The program moves the point STEPS times towards the part's surface, by
+// its distance along the gradient. The answer is the distance of the final point, and the point.
 #include <stdio.h>
 #include <stdlib.h>
 

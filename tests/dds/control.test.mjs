@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions made, changed and ended by requests on DDS.
+// Tests sessions that are created, changed and ended by requests on DDS.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { after, before, test } from 'node:test';
@@ -142,7 +142,7 @@ test('TAKE_OVER gives a tool to a writer of the same participant; from its drive
 	const { driver, reason } = await requester.takeOver(session, tool);
 	assert.equal(reason, '');
 	await client.until(() => stream.tools[0].driver === driver, 'it drives');
-	// Again and again, as a controller does: a command that comes late is refused.
+	// Writes the command again and again, as a controller does. A command that comes late is refused.
 	const moving = setInterval(() => requester.tell('move hook 0 0.01 0.03'), 20);
 	t.after(() => clearInterval(moving));
 	await client.until(() => Math.abs(stream.tools[0].position[2] - 0.03) < 1e-4, 'it moves');
@@ -159,7 +159,7 @@ test('the role that the settings give binds every operation, and their rate', as
 	const made = await requester.request('CREATE', { scene: 'fascia', session: 'd9' });
 	assert.deepEqual([made.code, made.status], [-32043, 'forbidden']);
 	assert.deepEqual((await requester.done('LIST', { session: 'd9' })).sessions, []);
-	// And so does the rate that they allow.
+	// The rate of requests in the settings binds every operation too.
 	const told = new Set();
 	for (const end = Date.now() + 1000 * PATIENCE_S; !told.has('rate') && Date.now() < end;) {
 		const many = Array.from({ length: 60 }, () => requester.request('LIST', { session: 'd9' }));

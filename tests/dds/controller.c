@@ -44,12 +44,12 @@
 #define SPEED_M_S 0.2
 #define LIFT_M 0.001
 
-enum { STRANGERS_SHARE = 500 }; // number of strangers in one period
+enum { STRANGERS_SHARE = 500 }; // number of stranger samples in one period of the controller
 
 typedef struct controller {
 	char session[NAME_BYTES], tool[NAME_BYTES];
 	bool ros, sensor, loose, mistyped, writing, energy, grasp, has_state, matched, state_asked;
-	int32_t ticks; // written with the level of energy; 0 for none
+	int32_t ticks; // limit that is written with the level of energy; 0: no limit
 	uint64_t sequence;
 	double position_m[3], aim_m[3];
 	double last_write_s;
@@ -59,12 +59,12 @@ typedef struct controller {
 	cautery_ToolGrasp holding;
 	cautery_ToolPower power;
 	cautery_ToolForce felt;
-	bool sets;                      // set_w must be written
+	bool sets;                      // true while set_w must still be written
 	double set_w;                   // power setting of the tool's generator
-	cautery_ToolInstrument becomes; // must be written if it names an instrument
-	crtk crtk;                      // only with ROS 2's topics
+	cautery_ToolInstrument becomes; // must still be written if it names an instrument
+	crtk crtk;                      // used only with ROS 2's topics
 	bool crtk_asked;
-	double storm_hz; // bad samples a second; 0 writes good samples
+	double storm_hz; // bad samples a second; 0: the controller writes good samples
 	uint64_t stormed;
 	long strangers, made_up; // strangers still to write; strangers written
 } controller;

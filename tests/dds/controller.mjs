@@ -6,12 +6,12 @@ import { Program } from './program.mjs';
 export class Controller extends Program {
 	static alive = new Set();
 
-	// For the end of a test, however it ended.
+	// Kills all controllers at the end of a test, however the test ended.
 	static killAll() {
 		return Promise.all([...Controller.alive].map((robot) => robot.kill()));
 	}
 
-	// Resolves once it has found the daemon.
+	// Resolves once the controller has found the daemon.
 	static async start({ domain, session, tool, via, deadline = 0 }) {
 		const robot = new Controller(process.env.CONTROLLER,
 			[domain, session, tool, via, Math.round(1000 * deadline)], { environment: CYCLONE });
@@ -30,7 +30,7 @@ export class Controller extends Program {
 		return this.ask('crtk');
 	}
 
-	// The first word of the operating state that is so.
+	// Returns the first operating state that meets the condition.
 	untilCrtk(condition) {
 		return this.until(condition, 'crtk');
 	}

@@ -4,7 +4,7 @@ import { CYCLONE, DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
 
 export class Crowd extends Program {
-	// Resolves once the daemon has been found by all of them.
+	// Resolves once all writers have found the daemon.
 	static async start(t, session, count, { lease_ms = 500, tools = ['hook'], environment = CYCLONE, wrap = [] } = {}) {
 		const crowd = new Crowd(process.env.CROWD, [DOMAIN, session, count, lease_ms, ...tools], { environment, wrap });
 		t.after(() => crowd.kill());
@@ -12,7 +12,7 @@ export class Crowd extends Program {
 		return crowd;
 	}
 
-	// Resolves when each of them has written so many times.
+	// Resolves when each writer has written `rounds` more times.
 	async write(what, rounds = 1) {
 		this.tell(`write ${what}`);
 		for (let round = 0; round < rounds; round++)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A machine with many DDS programs. Each holds two ports of its domain, and a domain has 120 pairs.
+// Tests a machine with many DDS programs. Each program holds two ports of its domain, and a domain has 120 pairs.
 import assert from 'node:assert/strict';
 import { createSocket } from 'node:dgram';
 import { after, afterEach, test } from 'node:test';

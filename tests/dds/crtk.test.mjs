@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CRTK's operating states and the jaw, as a ROS 2 controller meets them.
+// Tests CRTK's operating states and the jaw, as a ROS 2 controller uses them.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
@@ -16,7 +16,7 @@ before(async () => {
 });
 after(() => daemon.end());
 
-// A session with one grasper, and a ROS 2 controller that has found it.
+// Makes a session with one grasper, and a ROS 2 controller that has found it.
 async function found(t, name) {
 	const client = await daemon.connect({ hello: { client: 'admin' } });
 	const definition = await smallScene(client);
@@ -33,7 +33,7 @@ async function found(t, name) {
 	return { client, session, stream, robot };
 }
 
-// The same, and the controller drives it.
+// Makes a session as found() does. The controller then drives the tool.
 async function driven(t, name) {
 	const seen = await found(t, name);
 	seen.robot.tell('write on');
@@ -51,7 +51,7 @@ async function energize({ client, stream, robot }) {
 	await client.until(() => stream.tools[0].energized, 'energy on');
 }
 
-// It has written some more, and nothing came of it.
+// Checks that the robot's further poses have no effect.
 async function refuses({ session, stream, robot }, aim) {
 	const refused = await daemon.metric('session_refused_total', session);
 	const from = stream.tools[0].position;
@@ -63,7 +63,7 @@ async function refuses({ session, stream, robot }, aim) {
 	assert.equal(stream.tools[0].energized, false);
 }
 
-// Silent from now on, and all that it wrote has been taken: what it writes last moves the tool.
+// Makes the robot silent, and waits until all its samples have been taken: its last sample moves the tool.
 async function fallSilent(robot) {
 	const { position_m: [, , z] } = await robot.crtk();
 	robot.tell('write off');
@@ -71,7 +71,7 @@ async function fallSilent(robot) {
 	await robot.until((s) => Math.abs(s.position_m[2] - (z + LIFT_M)) < AT_AIM_M);
 }
 
-// One sample, while nothing else that would be refused is on its way.
+// Makes the robot write one sample that is refused, while no other refused sample is under way.
 async function refusesOne(session, robot, line) {
 	const refused = await daemon.metric('session_refused_total', session);
 	robot.tell(line);
@@ -83,7 +83,7 @@ async function refusesOne(session, robot, line) {
 async function follows({ client, stream, robot }, aim) {
 	robot.tell(`aim ${aim.join(' ')}`);
 	await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'it follows');
-	await robot.until((s) => far(s.position_m, aim) < AT_AIM_M); // DDS tells a little later
+	await robot.until((s) => far(s.position_m, aim) < AT_AIM_M); // DDS sends the state a little later
 }
 
 test('the operating state is there for who comes late, enabled and homed', async (t) => {
@@ -92,8 +92,8 @@ test('the operating state is there for who comes late, enabled and homed', async
 	assert.deepEqual([told.state, told.homed, told.busy], ['ENABLED', true, false]);
 });
 
-// Energy goes off by a command of the controller. On a machine that stands still for a second the
-// deadline may come first, which is right and not what is tested: then once more.
+// Turns energy off by a command of the controller. If the machine stalls for a second, the driver's deadline may come
+// first. That is correct, but it is not what is tested, so the trial is then repeated.
 async function commandedOff(seen, stop) {
 	const { client, stream, robot } = seen;
 	for (let tries = 3; ; tries--) {
@@ -162,7 +162,7 @@ test('unhome and home; commands without a transition change nothing, unknown one
 	robot.tell('command resume');
 	robot.tell('command enable');
 	await robot.untilCrtk((c) => c.state === 'ENABLED');
-	assert.equal((await robot.crtk()).states, 5); // what had no transition was not told
+	assert.equal((await robot.crtk()).states, 5); // a command without a transition in CRTK publishes no state
 });
 
 test('a stranger may stop a tool that another drives, and not set it going', async (t) => {
@@ -214,7 +214,7 @@ test('the jaw goes where servo_jp says, and measured_js, setpoint_js, measured_c
 	assert.ok(Math.abs((await robot.crtk()).jaw_rad - 0.2) < 1e-5);
 });
 
-// Of a WebSocket client that drives: what the jaws do is told to whoever listens.
+// The jaws are driven by a WebSocket client. Their state is published to every reader.
 test('jaws tell how far they are open, how hard they press, what they hold and that it slips', async (t) => {
 	const SLIP_N = 0.05, PULL_M = 0.01, NEAR_RAD = 1e-5;
 	const client = await daemon.connect({ hello: { client: 'hand' } });
@@ -241,7 +241,7 @@ test('jaws tell how far they are open, how hard they press, what they hold and t
 	assert.ok(told.jaw_rad > 0 && told.jaw_nm >= 0);
 	await tell('tool.move', at(-0.003 + PULL_M));
 	await listener.until((s) => s.slipping);
-	await listener.until((s) => s.holding && s.held === 0); // empty
+	await listener.until((s) => s.holding && s.held === 0); // the jaws hold nothing
 	await tell('tool.release');
 	await listener.until((s) => !s.holding && s.jaw === 1 && s.asked_jaw === 1 && s.jaw_force_n === 0);
 	await listener.untilCrtk((c) => Math.abs(c.jaw_rad - JAW_OPEN_RAD) < NEAR_RAD && c.jaw_nm === 0);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The DDS domain of this test program: its own on this machine, whatever runs beside it.
+// The DDS domain of this test program. No other test program on this machine has the same domain.
 import { createServer } from 'node:net';
 
 const DOMAINS = 200, FIRST_PORT = 21000;
 
-// Who listens on a domain's port has the domain, until it ends.
+// Takes a domain: the program that listens on the domain's port has the domain until the program ends.
 function take(domain) {
 	return new Promise((resolve) => {
 		const server = createServer().unref();
@@ -24,5 +24,5 @@ async function takeAny() {
 
 export const DOMAIN = await takeAny();
 
-// What a test's Cyclone programs are to find in their environment.
+// Environment variables of a test's Cyclone programs.
 export const CYCLONE = { CYCLONEDDS_URI: process.env.LOOPBACK };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Robot controllers on DDS: they drive, they share tools with browsers, they fall silent.
+// Tests robot controllers on DDS: they drive, they share tools with browsers, they fall silent.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { after, before, test } from 'node:test';
@@ -10,16 +10,19 @@ import { DOMAIN } from './domain.mjs';
 import { lateness, now_us } from './lateness.mjs';
 import { far, watchSession } from './watch.mjs';
 
-// What a native writer declares, and what holds for those that declare none.
+// Deadlines, s: `native` is the one that native writers declare, `ros` the one of writers that declare none.
 const DEADLINE_S = { native: 0.1, ros: 0.2 };
-// One tick, and what a loaded machine may take to run it and to bring the frame here; and what it was
-// late to run this very program.
+// TICK_S: a tick of the session. SLACK_S: longest time that a loaded machine may need to compute a tick and to send the
+// frame, in addition to the lateness of this program.
 const TICK_S = 1 / 60, SLACK_S = 0.1;
-// The tool lags behind its aim while it moves; at rest it is there to the quantum of float32.
+// Largest distance between the tool and its aim at rest, m: the quantum of float32. The tool lags behind its aim while
+// it moves.
 const AT_AIM_M = 1e-4;
-// Of a driver beside a standby, which has its tool as soon as it is late for once: less than its lease.
+// Deadline of a driver beside a standby, s. It is less than the lease. The standby takes the tool as soon as the driver
+// is late once.
 const STANDBY_DEADLINE_S = 0.4;
-// The liveliness that the controller's native writer offers, and what Cyclone gives participants.
+// LEASE_S: lease of liveliness that the controller's native writer offers. PARTICIPANT_LEASE_S: Cyclone's lease of a
+// participant.
 const LEASE_S = 0.5, PARTICIPANT_LEASE_S = 10;
 const TRIALS = Number(process.env.DDS_TRIALS ?? 5);
 
@@ -48,7 +51,7 @@ async function energized({ client, session, stream }, via, deadline) {
 	return robot;
 }
 
-// A level that falls and rises; again, if the robot was not scheduled within its deadline.
+// Writes a level that falls and rises. Repeats this if the robot was not scheduled within its deadline.
 async function turnOn({ client, stream }, robot) {
 	for (let trial = 0; !stream.tools[0].energized; trial++) {
 		robot.tell('energy 0');
@@ -100,7 +103,7 @@ test('a writer does not move a tool that a browser drives, until it is given up'
 	await robot.end();
 });
 
-// The time from the last sample to the frame that shows energy off, in the server's own clock.
+// Returns the time from the last sample to the frame that shows energy off, in the server's own clock.
 async function offAfter({ client, stream }, last_us) {
 	await client.until(() => !stream.tools[0].energized, 'energy off');
 	lateness.look();
@@ -121,7 +124,7 @@ for (const via of ['native', 'ros'])
 			lateness.reset();
 			times.push(await offAfter(seen, (await robot.ask('write off', 'silent')).last_us));
 			inTime(times.at(-1), DEADLINE_S[via]);
-			// It still says that energy is on, and that is not an enable.
+			// The robot still writes the level 1. That does not turn energy on again.
 			robot.tell('write on');
 			const from = (await robot.state()).sequence;
 			await robot.until((s) => s.sequence > from + 20);
@@ -139,7 +142,7 @@ test('energy of a killed writer goes off', async (t) => {
 	for (let trial = 0; trial < TRIALS; trial++) {
 		const robot = await controller(session);
 		robot.tell('write on');
-		// The one before is dead: its role goes to the next writer, its energy does not.
+		// The earlier driver has ended. The next writer becomes the driver, but energy stays off.
 		await robot.until((s) => s.driver_name.startsWith('dds ') && s.driver !== robot.firstDriver);
 		await turnOn(seen, robot);
 		lateness.reset();
@@ -195,7 +198,7 @@ test('a standby gets the tool of a silent driver, energy off', async (t) => {
 for (const [via, bad] of [['native', ['nan', 'infinite', 'back', 'huge', 'stale', 'leap', 'session']], ['ros', ['nan', 'infinite', 'leap']]])
 	test(`bad samples of a ${via} writer are counted and move nothing`, async (t) => {
 		const { client, session, stream } = await watched(t, `bad-${via}`);
-		const robot = await writing(session, via, 1); // no good sample is taken for stale on a busy machine
+		const robot = await writing(session, via, 1); // on a busy machine, no good sample must count as too old
 		await client.until(() => far(stream.tools[0].position, [0, 0, 0.02]) < AT_AIM_M, 'it is there');
 		for (const what of bad) {
 			const refused = await daemon.metric('session_refused_total', session);
@@ -211,7 +214,7 @@ for (const [via, bad] of [['native', ['nan', 'infinite', 'back', 'huge', 'stale'
 test('a flood of bad samples is counted, and the driver goes on', async (t) => {
 	const seen = await watched(t, 'flood');
 	const { session, stream } = seen;
-	const robot = await energized(seen, 'native', 1); // it writes nothing good while it floods
+	const robot = await energized(seen, 'native', 1); // the robot writes no good samples during the flood
 	const refused = await daemon.metric('session_refused_total', session);
 	const from = (await robot.state()).sequence;
 	const aim = [0.01, 0, 0.015];

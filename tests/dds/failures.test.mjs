@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every way in which a robot can fail while its energy is on: killed, hung, hung while a standby
-// writes, cut off from the network, and a clock that jumps, its own or the server's. Energy is off
-// within its deadline and a tick. Many times over with DDS_TRIALS.
+// Tests every way in which a robot can fail while its energy is on: it is killed, it hangs, it hangs while a standby
+// writes, it is cut off from the network, or its clock or the server's clock jumps. Energy must be off within its
+// deadline and a tick. DDS_TRIALS sets the number of trials.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
 import { mkdtempSync, openSync, rmSync, writeSync } from 'node:fs';
@@ -17,19 +17,20 @@ import { Program } from './program.mjs';
 import { far, watchSession } from './watch.mjs';
 
 const TRIALS = Number(process.env.DDS_TRIALS ?? 3);
-// Declared by the robots. One that is scheduled late by less than this is not cut before it fails.
+// Deadline that the robots declare, s. A robot that is scheduled late by less than this keeps its energy until it
+// fails.
 const DEADLINE_S = Number(process.env.DDS_DEADLINE_S ?? 0.5);
-const TICK_S = 1 / 60, PERIOD_S = 1e-3; // of the session, of the robot's commands
-// What a loaded machine may take beyond, to run the watchdog and the step and to make the frame; and
-// what it was late to run this very program.
+const TICK_S = 1 / 60, PERIOD_S = 1e-3; // periods of the session and of the robot's commands
+// Longest time, s, that a loaded machine may need in addition: to run the watchdog and the step, and to make the frame.
+// The lateness of this program comes on top.
 const SLACK_S = Number(process.env.DDS_SLACK_S ?? 0.1);
-const AT_AIM_M = 1e-4; // the quantum of float32 in frames, and the last of the way
+const AT_AIM_M = 1e-4; // quantum of float32 in frames, and the rest of the robot's way, m
 const NETWORK = join(dirname(fileURLToPath(process.env.LOOPBACK)), 'network.xml');
 const folder = mkdtempSync(join(tmpdir(), 'cautery-failures-'));
 
 after(() => rmSync(folder, { recursive: true }));
 
-// A file whose number, while a program has it as its clock, shifts that clock.
+// A file whose number shifts the clock of a program that uses the file as its clock.
 class Clock {
 	constructor(name) {
 		this.file = join(folder, name);
@@ -50,7 +51,7 @@ class Clock {
 
 const serverClock = new Clock('server'), robotClock = new Clock('robot');
 
-// cautery-robot, holding the hook above the tissue.
+// The program cautery-robot, which holds the hook above the tissue.
 class Robot {
 	constructor(session, { standby = false, environment = CYCLONE, wrap = [] } = {}) {
 		const words = [...wrap, process.env.ROBOT, '--domain', String(DOMAIN), '--deadline', String(DEADLINE_S),
@@ -69,7 +70,7 @@ class Robot {
 	}
 
 	end() {
-		this.process.kill('SIGKILL'); // a stopped one too
+		this.process.kill('SIGKILL'); // SIGKILL also ends a stopped process
 		return this.exited;
 	}
 }
@@ -82,8 +83,8 @@ async function start(t, settings = {}, options = {}) {
 
 const watched = async (t, daemon, name) => ({ daemon, ...await watchSession(t, daemon, name) });
 
-// One trial: a robot drives with energy on, `fail` makes it fail. Resolves when energy is off, to what
-// that took: at most from a period before it was made to fail, at least from when it had failed.
+// Runs one trial: a robot drives with energy on, and `fail` makes it fail. Resolves when energy is off, to the time
+// that this took. `off_s` counts from a period before the failure was caused, `least_s` from when the robot had failed.
 async function trial({ client, session, stream }, fail, { prepare, ...options } = {}) {
 	const robot = new Robot(session, options);
 	try {
@@ -122,7 +123,7 @@ function report(t, what, times) {
 		+ `deadline and tick ${(1e3 * (DEADLINE_S + TICK_S)).toFixed(1)} ms`);
 }
 
-// `one` resolves to a trial's outcome.
+// Runs `one` several times; each call resolves to a trial's outcome.
 async function trials(t, one, why = ['watchdog']) {
 	const times = [], over = [];
 	for (let i = 0; i < TRIALS; i++) {
@@ -158,7 +159,7 @@ test('a robot that hangs while a standby writes: that one drives in time, energy
 			const outcome = await trial(seen, (robot) => robot.signal('SIGSTOP'), {
 				prepare: async () => {
 					standby = new Robot(session, { standby: true });
-					name = await standby.name; // it writes, and is refused: the other one drives
+					name = await standby.name; // the standby writes and is refused, because the other robot drives
 					await daemon.log(new RegExp(` event=dds_client .*name="${name}"`));
 				},
 			});
@@ -175,7 +176,7 @@ test('a robot that hangs while a standby writes: that one drives in time, energy
 	report(t, 'the standby drives', driven);
 });
 
-// Forward and back, by much and by little.
+// Jumps of the clock, s: forward and back, large and small.
 const JUMPS_S = [3600, -3600, 2, -2];
 
 test("a robot whose clock jumps", async (t) => {
@@ -213,7 +214,7 @@ test('the clock of the machine steps back an hour: its robot drives on after a d
 	}
 });
 
-// ---- a network of two machines, in the test's own one
+// ---- a network of two machines, within this test's own network namespace
 
 class Network {
 	static async make() {
@@ -269,13 +270,14 @@ test('a robot that the network loses', async (t) => {
 		network.join();
 		return outcome;
 	});
-	// The interface itself goes: the daemon ends all the same.
+	// The interface itself is removed. The daemon must end nevertheless.
 	network.end();
 	await seen.client.close();
 	assert.deepEqual(await daemon.end(), { code: 0, signal: null });
 });
 
-// 'refused' by the other side's kernel, since nothing there hears this machine, or 'silence'.
+// The text 'refused' if the kernel of the other side answers, because nothing there receives from this machine;
+// otherwise 'silence'.
 const KNOCK = `
 import socket, sys
 knocking = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -290,7 +292,7 @@ except TimeoutError:
     print("silence")
 `;
 
-// What this machine's programs receive on, other than on loopback addresses.
+// The UDP ports on which programs of this machine receive, without those on loopback addresses.
 const udpPorts = () => execFileSync('ss', ['-Hlun'], { encoding: 'utf8' }).trim().split('\n')
 	.map((line) => line.split(/\s+/)[3]).filter((address) => !address.startsWith('127.'))
 	.map((address) => address.split(':').at(-1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Raw and filtered forces on DDS, and the tick that they are of.
+// Tests raw and filtered forces on DDS, and the tick to which they belong.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
@@ -7,7 +7,7 @@ import { DOMAIN } from './domain.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallScene } from './wire/scene.mjs';
 
-const FILTER_S = 0.5, ABOVE_M = 0.004, WAY_M = 0.0002; // of the hook's tip; in a tick
+const FILTER_S = 0.5, ABOVE_M = 0.004, WAY_M = 0.0002; // ABOVE_M: height of the hook's tip; WAY_M: its way in a tick
 const TICKS = 30;
 
 let daemon;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session tells on DDS: its status and its frames.
+// Tests what a session publishes on DDS: its status and its frames.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { DOMAIN } from './domain.mjs';
@@ -14,7 +14,7 @@ before(async () => {
 });
 after(() => daemon.end());
 
-// A session, a browser in it and its stream, for one test; and what observes it on DDS.
+// Makes a session, a browser's client and its stream for one test, and an observer on DDS.
 async function watched(t, name, options) {
 	const observers = [];
 	const seen = await watchSession(t, daemon, name, { options, first: () => Promise.all(observers.map((o) => o.kill())) });
@@ -25,7 +25,7 @@ async function watched(t, name, options) {
 	return { ...seen, observe };
 }
 
-// Both hold the same frame, and the same state with it.
+// Waits until both have the same frame, and checks that they have the same state.
 async function agree({ client, stream }, observer) {
 	const state = await observer.until((s) =>
 		s.synced && s.topology_hash !== 0 && BigInt(`0x${s.epoch}`) === stream.epoch && BigInt(s.sequence) === stream.sequence);
@@ -103,7 +103,7 @@ test('a reader that was away takes up the chain with the next key frame', async 
 	const observer = observe(), other = observe();
 	const { deltas } = await observer.until((s) => s.synced && s.deltas > 10);
 	observer.process.kill('SIGSTOP');
-	// More than the writer keeps, and the others do not wait for it.
+	// More deltas than the writer keeps are written. The other readers do not wait for the stopped one.
 	const from = (await other.until((s) => s.synced)).deltas;
 	await other.until((s) => s.deltas > from + 60);
 	observer.process.kill('SIGCONT');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Storms of bad samples: counted and refused, and the simulation does not feel them.
+// Tests storms of bad samples: they are counted and refused, and do not slow the simulation.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -9,14 +9,15 @@ import { Daemon } from './wire/daemon.mjs';
 import { far, watchSession } from './watch.mjs';
 
 const STORM_HZ = 10000;
-// Quiet and storm take turns, and the best window of each counts: what else runs on the machine
-// spoils windows of both.
+// Quiet and storm take turns, and the best window of each is used, because other programs on the machine slow windows
+// of both.
 const TURNS = 5, WINDOW_STEPS = 60;
-// The storm's own two programs and the transport take time from the step's processor.
+// Allowed ratio of the costs and slack, s: the storm's two programs and the transport take processor time from the
+// step.
 const RATIO_MOST = 2, SLACK_S = 0.001;
 const AT_AIM_M = 1e-4;
-// An instance in Cyclone's tables takes some hundred bytes: so many would take tens of megabytes. With
-// a sanitizer memory that was given back stays in quarantine, so that its size says nothing.
+// An instance in Cyclone's tables takes some hundred bytes, so this number of instances would take tens of megabytes.
+// With a sanitizer, freed memory stays in quarantine, so the size shows nothing.
 const SLOW = Boolean(process.env.E2E_SLOW);
 const MADE_UP_KEYS = SLOW ? 5000 : 100000, GROWTH_MOST_BYTES = 16e6;
 
@@ -31,7 +32,7 @@ const controller = (session, via) => Controller.start({ domain: DOMAIN, session,
 
 const quantile = (values, share) => values.toSorted((a, b) => a - b)[Math.floor(share * (values.length - 1))];
 
-// Costs of the next steps, s, as the frames tell them.
+// Returns the costs of the next steps, s, from the frames.
 async function costs(client, stream) {
 	const seen = [];
 	client.onFrame = () => seen.push(stream.stepCost);
@@ -68,7 +69,7 @@ for (const via of ['native', 'ros'])
 		if (!SLOW)
 			assert.ok(b <= RATIO_MOST * a + SLACK_S, `${b} s, ${a} s when quiet`);
 
-		// The driver has its tool all along, and still moves it.
+		// The driver has kept its tool all the time, and still moves it.
 		assert.equal(stream.tools[0].driver, driving);
 		const aim = [0.01, 0.01, 0.02];
 		driver.tell(`aim ${aim.join(' ')}`);
@@ -85,7 +86,7 @@ test(`${MADE_UP_KEYS} made-up keys are counted and take no memory, and the drive
 	const { driver: driving } = await driver.until((s) => s.driver_name.startsWith('dds '));
 	const stranger = await controller(session, 'native');
 	const refused = await daemon.metric('session_refused_total', session);
-	const some = MADE_UP_KEYS / 10; // after these every buffer on the way has its size
+	const some = MADE_UP_KEYS / 10; // after these keys, every buffer on the way has its final size
 	await stranger.ask(`strangers ${some}`, 'strangers');
 	const before = residentBytes(daemon.process);
 	await stranger.ask(`strangers ${MADE_UP_KEYS - some}`, 'strangers', 120);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How late this program was run at the worst since reset(). On a busy machine all threads wake late,
-// the daemon's too: that is not what a test of times is about.
+// Measures the longest delay with which this program was run since reset(). On a busy machine all threads wake late,
+// the daemon's too. Tests of times must allow for this delay.
 import { after } from 'node:test';
 
 const LOOK_MS = 5;

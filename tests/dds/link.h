@@ -9,7 +9,7 @@ enum { NAME_BYTES = 49 };
 // Ends the program with the reason on standard error. Exit handlers do not run, because OpenSSL's
 // handler frees memory that Cyclone's threads still use.
 __attribute__((noreturn)) void give_up(const char *reason);
-// Returns the entity. Ends the program if it is an error.
+// Returns the entity. Ends the program if the entity is an error code.
 dds_entity_t checked(dds_entity_t entity);
 // Creates a subscriber or publisher for one partition.
 dds_entity_t subscriber_of(dds_entity_t participant, const char *partition);

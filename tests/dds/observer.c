@@ -35,7 +35,7 @@ typedef struct observer {
 	held held[HELD_MOST];       // deltas that arrived before their base state
 	uint32_t topology_hash;
 	int statuses, topologies, keys, deltas, refused, foreign;
-	bool state_asked; // printed at the end of the period
+	bool state_asked; // the state is printed at the end of the period
 } observer;
 
 // ---- decoding
@@ -59,7 +59,7 @@ static cau_stream_def definition(const cautery_Frame *frame)
 	return def;
 }
 
-// Makes a decoder for the frame's stream, if it is another stream than before.
+// Makes a decoder for the frame's stream, if the stream is not the one before.
 static void follow_stream(observer *o, const cautery_Frame *frame)
 {
 	cau_error error = {0};

@@ -15,7 +15,7 @@ export class Observer extends Program {
 		super.onLine(event);
 	}
 
-	// The newest status, once one is so.
+	// Returns the newest status, once a status meets the condition.
 	async statusThat(condition, what) {
 		return this.status && condition(this.status)
 			? this.status
@@ -23,7 +23,7 @@ export class Observer extends Program {
 	}
 }
 
-// What the observer tells of its state, of a WebSocket client's decoder.
+// Returns, from a WebSocket client's decoder, the hash that the observer reports of its state.
 function hashed(hash, array) {
 	for (const byte of new Uint8Array(array.buffer, array.byteOffset, array.byteLength))
 		hash = Math.imul(hash ^ byte, 16777619) >>> 0; // FNV-1a

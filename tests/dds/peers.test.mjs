@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writers of ROS 2's sensor data drive; who cannot be matched is told of once.
+// Tests that writers of ROS 2's sensor data drive, and that a peer that cannot be matched is logged once.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
@@ -9,7 +9,7 @@ import { Daemon } from './wire/daemon.mjs';
 import { far, watchSession } from './watch.mjs';
 
 const DEADLINE_S = 1;
-const AT_AIM_M = 1e-4; // the quantum of float32 in frames, and the last of the way
+const AT_AIM_M = 1e-4; // quantum of float32 in frames, and the rest of the robot's way, m
 
 let daemon;
 before(async () => {
@@ -21,7 +21,7 @@ const watched = (t, name) => watchSession(t, daemon, name, { first: () => Contro
 const controller = (session, via) => Controller.start({ domain: DOMAIN, session, tool: 'hook', via });
 const incompatible = () => daemon.metric('dds_peers_incompatible_total');
 
-// Runs without ever finding the daemon.
+// Starts a controller that never finds the daemon.
 function stranger(t, session, via) {
 	const made = new Program(process.env.CONTROLLER, [DOMAIN, session, 'hook', via, 0], { environment: CYCLONE });
 	t.after(() => made.kill());
@@ -46,7 +46,7 @@ test('a writer of best effort drives, with energy by its reliable level, and goe
 
 test('beside a reader of best effort a sample of a reliable writer counts once', async (t) => {
 	const { session } = await watched(t, 'twice');
-	const sensor = await controller(session, 'sensor'); // which opens that reader
+	const sensor = await controller(session, 'sensor'); // its best-effort writer makes the daemon open a best-effort reader
 	const robot = await controller(session, 'ros');
 	robot.tell('once lift');
 	assert.equal((await robot.until((s) => s.driver_name.startsWith('ros ') && s.sequence > 0)).sequence, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places of drivers: one who has many writers takes them from nobody, and says so.
+// Tests the limits on drivers: a participant with many writers takes no place from others, and its refusals are logged.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
@@ -10,8 +10,8 @@ import { AT_REST } from './wire/scene.mjs';
 import { watchSession } from './watch.mjs';
 
 const MANY = 300, DEADLINE_S = 1;
-const PARTICIPANT_LEASE_S = 10; // what Cyclone gives
-const IDLE_MOST = 64; // clients of one participant that drive nothing
+const PARTICIPANT_LEASE_S = 10; // Cyclone's lease of a participant, s
+const IDLE_MOST = 64; // largest number of clients of one participant that drive nothing
 
 let daemon;
 before(async () => {
@@ -49,7 +49,7 @@ test(`${MANY} writers of one participant that stand by take a few places, counte
 	assert.ok(await count('dds_clients') <= IDLE_MOST + 1);
 	await drives(ours.session, ours.stream, ours.client);
 	assert.equal(daemon.lines.filter((line) => / event=dds_no_place /.test(line)).length, 1, 'one line, not many');
-	// When the driver of their tool is gone another participant has it like any other.
+	// When the driver of the crowd's tool has ended, another participant can drive the tool.
 	await crowd.end();
 	await theirs.client.until(() => theirs.stream.tools[0].driver === 0, 'nobody drives it');
 	await drives(theirs.session, theirs.stream, theirs.client);
@@ -74,7 +74,7 @@ test('several writers that hang together all lose their tools', async (t) => {
 	const tools = ['hook', 'b', 'c', 'd', 'e', 'f'];
 	for (const name of tools.slice(1)) {
 		await client.call('tool.add', { session, name, shape: 'grasper', position_m: [0, 0, 0.05], rotation: AT_REST });
-		await client.call('tool.hand_over', { session, tool: name }); // who adds a tool drives it
+		await client.call('tool.hand_over', { session, tool: name }); // the client that adds a tool drives it
 	}
 	await client.until(() => tools.every((_, i) => stream.tools[i]?.driver === 0), 'nobody drives yet');
 	const crowd = await Crowd.start(t, session, tools.length, { lease_ms: 1000, tools });

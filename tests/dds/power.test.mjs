@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tool's generator gives, on DDS.
+// Tests what a tool's generator delivers, as DDS reports it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
@@ -62,7 +62,7 @@ test('the participant that drives sets the power, in its range; others are refus
 		await robot.until((s) => s.driver_name.startsWith(names) && s.has_power);
 		robot.tell('power_w 40');
 		await robot.until((s) => s.set_w === 40);
-		for (const w of [0, 40, 0]) // the newest counts, also where those before it still wait
+		for (const w of [0, 40, 0]) // the newest setting takes effect, even if earlier settings still wait
 			robot.tell(`power_w ${w}`);
 		await robot.until((s) => s.set_w === 0);
 		const other = await listener(session, 'hook');

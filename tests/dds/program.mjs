@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program that is told by lines on its standard input and tells by JSON objects, one a line. What else
-// stands there, such as the log of Fast DDS, is passed on.
+// A program that gets lines on its standard input and writes JSON objects, one a line. Other output, such as the log of
+// Fast DDS, is passed on.
 import { spawn } from 'node:child_process';
 import { createInterface } from 'node:readline';
 import { PATIENCE_S } from './wire/client.mjs';
 
 export class Program {
-	// `environment` is added to this process's; `wrap` are words before the command.
+	// `environment` is added to the environment of this process; `wrap` are words before the command.
 	constructor(command, words, { environment = {}, wrap = [] } = {}) {
 		const [file, ...rest] = [...wrap, command, ...words.map(String)];
 		this.waiters = [];
 		this.process = spawn(file, rest,
 			{ stdio: ['pipe', 'pipe', 'inherit'], env: { ...process.env, ...environment } });
-		this.process.stdin.on('error', () => {}); // it is gone: what waits for it will say so
+		this.process.stdin.on('error', () => {}); // the program has ended; a wait for it will report this
 		this.exited = new Promise((resolve) => this.process.on('exit', (code, signal) => {
 			this.waiters.forEach((w) => w.reject(new Error(`it ended (${code ?? signal}) before: ${w.what}`)));
 			resolve({ code, signal });
@@ -43,7 +43,7 @@ export class Program {
 		return answer;
 	}
 
-	// The first answer to `line`, asked again and again, that is so.
+	// Sends `line` again and again. Returns the first answer that meets the condition.
 	async until(condition, line = 'state', seconds = PATIENCE_S) {
 		const end = Date.now() + seconds * 1000;
 		let answer;

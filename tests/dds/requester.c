@@ -21,7 +21,8 @@
 #define PERIOD_S 0.01
 
 enum { KEPT = 256 };
-enum { MATCH_PATIENCE_S = 60 }; // long enough for a sanitized daemon on a busy machine
+// longest wait for the daemons, s: enough for a sanitized daemon on a busy machine
+enum { MATCH_PATIENCE_S = 60 };
 
 typedef struct requester {
 	dds_entity_t participant, writer, reader, command;

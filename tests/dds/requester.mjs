@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs the requester program (environment variable REQUESTER) and asks for sessions with it.
+// Runs the requester program (environment variable REQUESTER) and requests sessions with it.
 import assert from 'node:assert/strict';
 import { CYCLONE, DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
@@ -12,7 +12,7 @@ export class Requester extends Program {
 		this.replies = [];
 	}
 
-	// Resolves once it has found so many daemons.
+	// Resolves once the requester has found `daemons` daemons.
 	static async start(t, daemons = 1, environment = CYCLONE) {
 		const requester = new Requester(daemons, environment);
 		t.after(() => requester.kill());
@@ -47,8 +47,7 @@ export class Requester extends Program {
 		await this.event((e) => e.event === 'opened', 'a writer');
 	}
 
-	// The answer once the daemon has found that writer, which is some time after the writer has found the
-	// daemon.
+	// Returns the answer once the daemon has found that writer. This is some time after the writer has found the daemon.
 	async takeOver(session, tool) {
 		for (const end = Date.now() + 1000 * PATIENCE_S; Date.now() < end;) {
 			const reply = await this.request('TAKE_OVER', { session, tool, driver: 'writer' });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cautery-robot against the real daemon.
+// Tests cautery-robot with the real daemon.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { createInterface } from 'node:readline';
@@ -9,13 +9,13 @@ import { Daemon } from './wire/daemon.mjs';
 import { DOMAIN } from './domain.mjs';
 import { watchSession } from './watch.mjs';
 
-const DEADLINE_S = 1; // the most that the server grants: a loaded machine may run a robot late
+const DEADLINE_S = 1; // largest deadline that the server grants: a loaded machine may run a robot late
 const TICK_S = 1 / 60;
 const AFTER_TICKS = 60, RISE_M = 2e-4;
-// What a command may take to show in the state, beyond the tick that it waits for; told of a machine
-// that ran the robot itself on time.
+// LATENCY_S: longest time from a command until the state shows it, in addition to the tick for which it waits. It
+// applies if the machine ran the robot within ON_TIME_S.
 const LATENCY_S = 0.003, ON_TIME_S = 0.001;
-const SECONDS = Number(process.env.ROBOT_SECONDS ?? 5); // of the session that must not be lost
+const SECONDS = Number(process.env.ROBOT_SECONDS ?? 5); // duration of the session that must not be lost
 
 let daemon;
 before(async () => {
@@ -23,8 +23,8 @@ before(async () => {
 });
 after(() => daemon.end());
 
-// Runs the robot; `drives` resolves when it says so, `done` to its exit code and the JSON line that it
-// prints in the end.
+// Runs the robot. `drives` resolves when the robot reports that it drives, `done` to its exit code and the JSON line
+// that it prints at the end.
 function robot(session, ...flags) {
 	const child = spawn(process.env.ROBOT,
 		['--domain', String(DOMAIN), '--deadline', String(DEADLINE_S), '--json', ...flags, session, 'hook'],
@@ -68,7 +68,7 @@ test('a standby holds the tool of a killed robot, energy off', async (t) => {
 	first.child.kill('SIGKILL');
 	await client.until(() => stream.tools[0].driver !== driver && stream.tools[0].driver !== 0, 'the standby drives');
 	assert.equal(stream.tools[0].energized, false);
-	await standby.drives; // it hears a little later than a frame tells
+	await standby.drives; // the robot hears this a little later than the frame shows it
 	standby.child.kill('SIGTERM');
 	const { code, report } = await standby.done;
 	assert.equal(code, 0);
@@ -80,8 +80,8 @@ test('a robot says so when there is no such tool', async () => {
 	assert.equal((await robot('d1-nowhere').done).code, 3);
 });
 
-// Goes into the tissue, and on for a while when its tool is so; its report. Timed by the session: a busy
-// machine simulates late.
+// Moves a robot into the tissue, and a little further once its tool meets `isSo`. Returns the robot's report. The
+// session's time is used, because a busy machine simulates late.
 async function into(t, name, isSo, ...flags) {
 	const { client, session, stream } = await watched(t, name);
 	const { child, done } = robot(session, '--from=0,0,0.005', '--to=0,0,-0.008', '--speed', '0.02', '--seconds', '600', ...flags);
@@ -93,7 +93,7 @@ async function into(t, name, isSo, ...flags) {
 }
 
 test('a robot backs off from too much force', async (t) => {
-	// The sheet keeps the tool 1.5 mm behind what is asked, by some 7 N.
+	// The sheet stops the tool 1.5 mm before the requested position, with about 7 N.
 	const { force_most_n: most_n } = await into(t, 'blind', (tool) => tool.position[2] < -0.006);
 	assert.ok(most_n > 0.1, `${most_n} N`);
 	let lowest = Infinity;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DDS Security: who has no identity of the domain's authority, or not the permission, neither joins nor
-// drives; who has both does.
+// Tests DDS Security. A participant without an identity of the domain's authority, or without the permission, neither
+// joins nor drives. A participant with both does.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -16,7 +16,7 @@ import { watchSession } from './watch.mjs';
 
 const LOOPBACK = process.env.LOOPBACK;
 const MAKE = join(dirname(fileURLToPath(LOOPBACK)), 'security', 'make.sh');
-const DEADLINE_MS = 500; // generous: this test is not about being late
+const DEADLINE_MS = 500; // generous, because this test is not about being late
 
 const folder = mkdtempSync(join(tmpdir(), 'cautery-keys-'));
 const enclave = (name, store = 'keys') => join(folder, store, 'enclaves', name);
@@ -42,7 +42,7 @@ after(async () => {
 	rmSync(folder, { recursive: true });
 });
 
-// What a program finds in its environment with this identity, or with none.
+// Returns the environment of a program with this identity; null: without an identity.
 const settings = (identity) =>
 	({ CYCLONEDDS_URI: identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml` : LOOPBACK });
 
@@ -67,7 +67,7 @@ async function drives(robot, { client, stream }) {
 
 test('only who has an identity of this authority joins and drives', async (t) => {
 	const seen = await watched(t, 'ours');
-	// They come first, and have all the time that it takes the other.
+	// The outsiders start first, and have as much time as the robot with an identity needs.
 	const outsiders = [null, enclave('stranger', 'others')].map((identity) => {
 		const robot = controller(t, seen.session, identity);
 		robot.event((e) => e.event === 'matched', 'matched').then(() => (robot.joined = true), () => {});
@@ -84,7 +84,7 @@ test('only who has an identity of this authority joins and drives', async (t) =>
 		assert.ok(!robot.joined, 'it found nobody to write to');
 	}
 	const { drivers } = await seen.client.call('session.describe', { session: seen.session });
-	await ours.until((s) => s.driver_name === drivers[0].name); // DDS tells it, a little later than a frame perhaps
+	await ours.until((s) => s.driver_name === drivers[0].name); // DDS may send this a little later than a frame
 	assert.equal(daemon.lines.filter((line) => / event=dds_client /.test(line)).length, 1);
 });
 
@@ -95,11 +95,11 @@ test('an identity does what its permissions say', async (t) => {
 			`${identity} may not write commands here`);
 	await drives(controller(t, theirs.session, enclave('guest')), theirs);
 	assert.equal(mine.stream.tools[0].driver, 0);
-	// Requests may name any session: they are for controllers of all.
+	// Requests may name any session, so only a controller of all sessions may send them.
 	for (const identity of ['viewer', 'guest'])
 		assert.notEqual((await secured(t, enclave(identity), process.env.REQUESTER, [DOMAIN, 1]).exited).code, 0);
 	await (await requester(t, 'controller')).done('LIST');
-	// A viewer reads: status, key frame and deltas.
+	// A viewer may read status, key frame and deltas.
 	const viewer = secured(t, enclave('viewer'), process.env.OBSERVER, [DOMAIN, theirs.session]);
 	await viewer.event((e) => e.event === 'status', 'a status');
 	await viewer.until((s) => s.deltas > 0);
@@ -123,7 +123,7 @@ test('an identity has the role that the file gives it: one that may view reads, 
 	assert.equal((await asker.request('LIST')).code, 0);
 	assert.equal((await asker.request('PAUSE', { session: seen.session })).status, 'forbidden');
 	assert.equal(seen.stream.tools[0].driver, 0);
-	// While it goes on writing, one that may operate drives.
+	// While the viewer goes on writing, a participant that may operate drives the tool.
 	await drives(controller(t, seen.session, enclave('worker')), seen);
 	await daemon.log(/ event=dds_client .*role=operate subject="CN=worker,O=Cautery"/);
 });
@@ -183,7 +183,7 @@ test('the daemon says what is wrong with its DDS settings, and does not start', 
 
 test('an identity that was taken back is let in no more', async (t) => {
 	make('lists', 'daemon', 'daemon', 'controller', 'leaver', 'controller', 'stayer');
-	// Its own list is the old one: what it says of itself must not count.
+	// The leaver has only its old revocation list: what it claims about itself must have no effect.
 	const leaver = join(folder, 'leaver-before'), its = join(leaver, 'cyclonedds.xml');
 	cpSync(enclave('leaver', 'lists'), leaver, { recursive: true });
 	writeFileSync(its, readFileSync(its, 'utf8').replaceAll(enclave('leaver', 'lists'), leaver));
@@ -202,11 +202,11 @@ test('an identity that was taken back is let in no more', async (t) => {
 	await drives(controller(t, session, enclave('stayer', 'lists')), seen);
 	assert.equal((await left.ask('state')).has, false, 'it sees no state');
 	assert.ok(!left.joined, 'it found nobody to write to');
-	// With the new list it sees itself that it may not.
+	// With the new list, the leaver itself sees that it is revoked.
 	assert.notEqual((await controller(t, session, enclave('leaver', 'lists')).exited).code, 0);
 });
 
-// The daemon's own log line of the end of it.
+// Returns the daemon's log line about the end of the reload.
 async function reload(text) {
 	const seen = daemon.lines.length;
 	rolesFile('roles', text);

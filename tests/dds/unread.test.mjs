@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What nobody reads costs next to nothing, and who comes late is told how things stand.
+// Tests that topics without readers cost almost nothing, and that a late joiner gets the present state.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -10,12 +10,13 @@ import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallScene } from './wire/scene.mjs';
 
 const SESSIONS = 16, TOOLS = 8, WINDOW_MS = 2000;
-const AWAKE_MS = 250; // tissue rests after half a second in which nothing moves
-// Of the daemon's processor time, the steps of so small sessions among it: nearly half where every
-// state is written for nobody and every session looked at after each slice of any.
+const AWAKE_MS = 250; // tissue comes to rest after half a second in which nothing moves
+// Largest share of the transport in the daemon's processor time, which includes the steps of these small sessions. The
+// share would be nearly a half if every state were written without readers and every session were checked after each
+// slice of any session.
 const SHARE_MOST = 0.2;
-// The address sanitizer keeps freed memory back, so that each sample touches new pages and fills them: half of
-// the thread's time there. It is not the program's. What is used after it was freed is looked for elsewhere.
+// Options for the address sanitizer. It keeps freed memory back, so that each sample touches new pages and fills them:
+// half of the thread's time under it. This cost is not the program's. Other tests detect a use after free.
 const OWN_COSTS = [process.env.ASAN_OPTIONS, 'quarantine_size_mb=1', 'thread_local_quarantine_size_kb=64', 'max_malloc_fill_size=0'];
 
 let daemon, client;
@@ -29,17 +30,17 @@ after(async () => {
 	await daemon.end();
 });
 
-// Leads a tool of each session to and fro, so that no tissue comes to rest, whose steps cost nothing.
+// Moves a tool of each session to and fro, so that no tissue comes to rest: steps of resting tissue cost nothing.
 async function keepAwake(sessions) {
 	for (let ms = 0; ms < WINDOW_MS; ms += AWAKE_MS) {
 		const position_m = [0, 0, ms % (2 * AWAKE_MS) ? 0.021 : 0.02];
 		for (const session of sessions)
 			client.notify('tool.move', { session, tool: 't1', position_m, rotation: AT_REST });
-		await setTimeout(AWAKE_MS); // the window that is measured is made of these
+		await setTimeout(AWAKE_MS); // the measured window consists of such moves
 	}
 }
 
-// Processor seconds of the transport's thread and of all.
+// Returns the processor seconds of the transport's thread and of all threads.
 function used() {
 	const folder = `/proc/${daemon.process.pid}/task`;
 	const of = (task) => {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a fuzz target without libFuzzer. The inputs are all files of the folders in the arguments,
-// the empty input, every seed cut short and with flipped bits, and a fixed pseudo-random set.
+// each of these files cut short and with flipped bits, the empty input, and a fixed pseudo-random
+// set.
 #include "fuzz/fuzz_target.h"
 
 #include <dirent.h>
@@ -15,7 +16,7 @@ enum {
 	LARGEST_RANDOM_BYTES = 512,
 };
 
-// xorshift64, so that every run has the same inputs
+// Returns the next number of the generator xorshift64, so that every run has the same inputs.
 static uint64_t next_random(uint64_t *state)
 {
 	*state ^= *state << 13;

@@ -10,7 +10,7 @@
 
 enum { TEXT_BYTES_MAX = 1 << 16, ITEMS = 4 };
 
-// Memory for the params or the result of any method. Its lists have no capacity.
+// Memory for the params or the result of any method. Lists in it have no capacity.
 static union {
 	cau_wire_session_description description;
 	cau_wire_session_create create;

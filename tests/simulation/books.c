@@ -3,7 +3,9 @@
 
 #include <math.h>
 
-// Steps of 0.001 m/s^2 are far above rounding, and 4096 of them are within the range of a scene.
+// FIRST_M_S2: gravity of number 0. STEP_M_S2: difference of the gravities of two successive
+// numbers. Steps of 0.001 m/s^2 are far above rounding, and 4096 of them are within the range of a
+// scene.
 #define FIRST_M_S2 10.
 #define STEP_M_S2 1e-3
 

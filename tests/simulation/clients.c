@@ -9,7 +9,8 @@
 #include "simulation/promises.h"
 #include "simulation/world.h"
 
-#define BEAT_NS (50 * SIM_MS) // a fifth of the deadline, as the protocol says
+// interval of heartbeats: a fifth of the deadline, as the protocol says
+#define BEAT_NS (50 * SIM_MS)
 
 enum { CLOCK_BYTES = 48 };
 
@@ -23,12 +24,12 @@ static sim_random random_delays;
 static int64_t latency_most_ns;
 static bool have_tokens;
 
-// The same as in the daemons' file `tokens`.
+// The clients' tokens, the same as in the daemons' file `tokens`.
 static const struct {
 	const char *token;
 	bool looks;  // the role is view
-	int session; // the only session allowed; -1 for all
-	int quota;   // expensive requests a minute; 0 for no quota
+	int session; // the only session allowed; -1: all sessions
+	int quota;   // expensive requests a minute; 0: no quota
 } owners[CLIENTS] = {
 	{"the-token-of-client-0-and-the-courier", false, -1, 0},
 	{"the-token-of-client-1", false, -1, 0},
@@ -153,7 +154,8 @@ void clients_send_again(int index)
 	if (old->session >= 0 && old->life != sim_sessions[old->session].life)
 		return;
 	if (old->what == ASK_CREATE && old->machine != c->machine)
-		return; // another daemon would create another session
+		// Another daemon would create another session.
+		return;
 	sim_request like = {.what = old->what,
 	                    .session = old->session,
 	                    .tool = old->tool,
@@ -189,7 +191,8 @@ bool clients_may(int client, ask what, int place)
 	if (!have_tokens || client >= CLIENTS)
 		return true;
 	bool reads = what == ASK_HELLO || what == ASK_JOIN || what == ASK_KEY_FRAME ||
-	             what == ASK_LIST || what == ASK_OTHER; // some of the requests OTHER only read
+	             // Some of the requests of the kind OTHER only read.
+	             what == ASK_LIST || what == ASK_OTHER;
 	bool there = place < 0 || owners[client].session < 0 || owners[client].session == place;
 	return (reads || !owners[client].looks) && there;
 }
@@ -241,8 +244,8 @@ void clients_show(int index, bool visible)
 	sim_clients[index].beat_ns = sim_now();
 }
 
-// Delays the client's messages. The daemon must know the client's clock already. Otherwise nothing
-// shows how long its first message travelled.
+// Delays the client's messages, but only if the daemon already knows the client's clock. Otherwise
+// nothing shows how long the client's first message travelled.
 void clients_late(int index, int64_t ns)
 {
 	sim_client *c = &sim_clients[index];
@@ -375,17 +378,18 @@ static void on_frame(void *user, const unsigned char *bytes, size_t count)
 	streams_frame(c->index, bytes, count);
 }
 
-// True if the message, or an earlier one, may have waited while its daemon was stopped. Then it
-// proves no life after the time at which it could have been read, and its clock cannot be the
-// first.
+// True if the message, or an earlier one, may have waited while its daemon was stopped. Such a
+// message proves only that the client was alive at the time when the message could have been read.
+// Its clock is not the first that the daemon trusts.
 static bool waited(const sim_client *c, const sim_message *message)
 {
 	return message->due_ns < sim_stopped_until(c->machine);
 }
 
-// Records the latest time at which the sender was alive, as far as the message can show. Without a
-// clock it is the time at which the message could be read. With a clock it is the time of sending,
-// by the daemon's estimate: at most the longest usual delay later.
+// Records the latest time at which the sender was alive, as far as the message can show. For a
+// client without a clock this is the time at which the message could be read. For a client with a
+// clock it is the time of sending plus the longest latency, which is the error of the daemon's
+// estimate.
 static void hear(sim_client *c, const sim_message *message)
 {
 	bool clock = !message->binary && strstr(message->text, "\"client_time_us\"");

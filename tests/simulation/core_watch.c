@@ -14,33 +14,35 @@
 #define WRAPPED __attribute__((used))
 
 enum { CORES_MOST = 32, FIBERS_WATCHED = 128 };
-// Longest time that energy may stay on after the driver's deadline: one tick under way, and one
-// stalled thread.
+// Longest time, in addition to the longest step, that energy may stay on after the driver's
+// deadline or a cut. A tick may be under way, and a thread may be stalled.
 #define STILL_ON_MOST_NS (40 * SIM_MS)
 
-// With three sessions of at most 4 ms a step, even a single worker is idle for a quarter of the
-// time.
+// Longest time in which a running session must begin its next tick. With three sessions of at most
+// 4 ms a step, even a single worker is idle for a quarter of the time, so a longer delay is a
+// fault.
 #define TICK_LATE_MOST_NS (300 * SIM_MS)
 
 typedef struct core_book {
 	const cau_session *core; // NULL if the entry is free
 	char id[CAU_NAME_BYTES];
-	int place, life, machine; // place: index of the session, -1 if none
+	int place, life, machine; // place: index of the session; -1: no such session
 	const cau_logic *logic;   // logic of the session, once it is served
-	bool running;             // it ran by the clock at the worker's last decision
-	int64_t began_ns;         // time of its newest tick, or when it began to run
-	bool served;              // the worker decides; false while the past is computed again
-	int64_t wrong_ns[TOOLS];  // time since which energy is on without a reason, or 0
+	bool running;             // the session ran by the clock at the worker's last decision
+	int64_t began_ns;         // time of the session's newest tick, or when the session began to run
+	bool served;              // the worker decides; false while the worker computes the past again
+	int64_t wrong_ns[TOOLS];  // time since which energy is on without a reason; 0: no such energy
 } core_book;
 
 // What the present fiber is doing.
 typedef struct at_work {
 	uint64_t fiber;
-	cau_hosted *deciding;     // inside cau_decide_next
-	bool applying;            // inside an order, or the daemon's own commands
-	const cau_session *begun; // a tick of this core was decided and not computed yet
+	cau_hosted *deciding; // the session for which the fiber is in cau_decide_next, else NULL
+	bool applying; // true while the fiber carries out an order or one of the daemon's own commands
+	// the core for which a tick was decided and is not computed yet; NULL: no such tick
+	const cau_session *begun;
 	energy allowed[TOOLS];
-	int by_ticks[TOOLS]; // client whose lock-step alone allows energy, or -1
+	int by_ticks[TOOLS]; // client whose lock-step alone allows energy; -1: no such client
 } at_work;
 
 static struct {
@@ -87,7 +89,7 @@ static void on_made(const cau_session_def *def, const cau_session *core)
 	sim_books[book->place].full = false; // a new session begins with a store that accepts writes
 }
 
-// True if its name was not given to a newer session.
+// True if the session's name was not given to a newer session.
 static bool is_present(const core_book *book)
 {
 	return book && book->place >= 0 && sim_sessions[book->place].life == book->life;
@@ -231,7 +233,7 @@ static void note_decision(core_book *core, const cau_logic *logic, const cau_act
 		sim_fail("budget", "%d orders wait for %s, at most %d may", waits, core->id, most);
 }
 
-// Asks which energy is allowed at the moment at which the logic decides to begin a tick.
+// Notes which energy is allowed at the moment at which the logic decides to begin a tick.
 void __real_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
                            cau_effects *effects);
 void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
@@ -299,8 +301,8 @@ static void check_pace(const core_book *book, int64_t now_ns)
 		         1e-9 * (double)(now_ns - book->began_ns));
 }
 
-// True if some daemon computes this core. A session that a daemon gives up or prepares for a move
-// is not computed.
+// True if some daemon computes this core. No daemon computes the core of a session that it releases
+// or prepares for a move.
 static bool is_served(const core_book *book)
 {
 	return book->served && book->logic && !book->logic->ended &&
@@ -316,7 +318,8 @@ void core_watch_advance(int64_t to_ns)
 		bool stopped = to_ns <= sim_stopped_until(book->machine);
 		if (stopped)
 			memset(book->wrong_ns, 0, sizeof book->wrong_ns);
-		if (stopped || book->logic->going || book->logic->draining) { // no tick begins
+		// No tick begins in these cases.
+		if (stopped || book->logic->going || book->logic->draining) {
 			book->began_ns = to_ns;
 		} else {
 			look_at(book, to_ns);

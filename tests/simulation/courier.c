@@ -11,14 +11,15 @@
 #include "simulation/promises.h"
 #include "simulation/world.h"
 
-#define PATIENCE_NS (10 * SIM_SECOND) // longest wait for one answer, or for a daemon that is down
+// longest wait for one answer, or for a daemon that does not run
+#define PATIENCE_NS (10 * SIM_SECOND)
 #define LOOK_NS SIM_MS
 
 enum {
 	SIDES = 2, // connections of the courier: SOURCE, TARGET
 	SOURCE = 0,
 	TARGET = 1,
-	PIECE_MOST = 5 << 20, // bytes: a piece has at most 4 MiB and one record
+	PIECE_MOST = 5 << 20, // bytes of memory for a piece, which has at most 4 MiB and one record
 	PART_ENDS = 1,        // flags of a piece
 	ENDS = 2,
 };
@@ -160,7 +161,7 @@ static bool accept_proof(const char *decision)
 	char proof[72], more[96];
 	if (!clients_member(decision, "proof", proof, sizeof proof))
 		return false;
-	// From here on only the target may serve the session.
+	// From this point on, only the target may serve the session.
 	promises_moving(courier.place, courier.machine[TARGET]);
 	snprintf(more, sizeof more, ",\"proof\":\"%s\"", proof);
 	return ask_about(TARGET, "move.accept", more);
@@ -190,7 +191,8 @@ static bool settle(void)
 	if (!moves)
 		return false;
 	if (!courier.move[0] || !strstr(moves, courier.move))
-		return true; // the target has nothing of the move, or the move is over
+		// The target knows nothing of the move, or the move is over.
+		return true;
 	const char *decision = ask_about(SOURCE, "move.cancel", "");
 	if (!decision)
 		return false;
@@ -208,7 +210,8 @@ static void *run(void *argument)
 	sim_set_name(sim_self(), "courier");
 	bool over = walk();
 	promises_counted.moves += over;
-	for (; !over; sim_sleep(SIM_SECOND / 2)) // repeats while a disk is full or a daemon is down
+	// The loop repeats while a disk is full or a daemon is down.
+	for (; !over; sim_sleep(SIM_SECOND / 2))
 		over = settle();
 	sim_sessions[courier.place].moving = false;
 	courier.under_way = false;

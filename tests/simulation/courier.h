@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A courier that takes a session from one daemon to the other (protocol/README.md, "Moving a
-// session"). After a failure it does what a later courier would do: it asks the source for the
-// outcome.
+// session"). After a failure it asks the source for the outcome, as a later courier would do.
 #pragma once
 
 #include <stdbool.h>

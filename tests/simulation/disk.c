@@ -12,7 +12,7 @@
 
 enum {
 	NAMES_MOST = 256,
-	INODES_MOST = 4096,   // a daemon that cannot start creates some at each attempt
+	INODES_MOST = 4096,   // a daemon that cannot start creates some inodes at each attempt
 	FILE_MOST = 64 << 20, // address space of each file in bytes; only written pages take memory
 };
 

@@ -24,7 +24,7 @@ typedef struct descriptor {
 } descriptor;
 
 static descriptor descriptors[DESCRIPTORS_MOST];
-// number of starts; files of each start of the machine have another device number
+// number of starts of each machine; the files get another device number with each start
 static int boots[DISK_MACHINES];
 
 void sim_calls_kill(int machine)

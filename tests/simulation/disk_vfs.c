@@ -14,9 +14,10 @@ typedef struct disk_handle {
 	disk_inode *inode;
 	struct disk_handle *next; // next handle of the inode
 	int lock;                 // SQLITE_LOCK_*
-	unsigned shares, owns;    // bits of its locks on the log's index
+	unsigned shares, owns;    // shares, owns: bits of the handle's locks on the log's index
 	bool delete_on_close;
-	// the first sync of a file that may be new also syncs the folder, as in SQLite's own VFS
+	// false if the next sync must also sync the folder: the first sync of a file that may be new
+	// does so, as in SQLite's own VFS
 	bool names_synced;
 	char path[DISK_PATH_BYTES];
 } disk_handle;
@@ -202,7 +203,8 @@ static int file_close(sqlite3_file *file)
 		at = &(*at)->next;
 	if (*at)
 		*at = h->next;
-	if (!h->inode->handles) // last handle: the next connection opens the log from the beginning
+	// This was the last handle, so the next connection must open the log from the beginning.
+	if (!h->inode->handles)
 		shared_unmap(file, 1);
 	if (h->delete_on_close && h->path[0])
 		disk_unlink(h->path);
@@ -338,8 +340,8 @@ static sqlite3_vfs vfs = {
 	.xCurrentTimeInt64 = vfs_time,
 };
 
-// SQLite needs no locks of its own. Fibers are switched only within the calls above, and SQLite
-// holds no lock of its own during them.
+// Registers the VFS. SQLite is used without its own mutexes: fibers are switched only within the
+// calls above, and SQLite holds no mutex during them.
 void disk_vfs_register(void)
 {
 	sqlite3_config(SQLITE_CONFIG_SINGLETHREAD);

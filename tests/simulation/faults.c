@@ -17,7 +17,7 @@
 #define WRAPPED __attribute__((used)) // called by the linker's --wrap
 #define LATE_S 0.5
 
-enum { UNBOUNDED = 8 }; // a disabled limit is this multiple of the configured limit
+enum { UNBOUNDED = 8 }; // factor on a configured limit that gives a disabled limit
 
 sim_fault sim_planted;
 static sim_random choices;

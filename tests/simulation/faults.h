@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// word, promise that detects it, the seed that found it last, what is wrong. The search begins with
-// that seed, so it is short if the seed still finds the fault.
+// Columns: word; promise that detects the fault; seed that found the fault last; what is wrong. The
+// search begins with that seed, so it is short if the seed still finds the fault.
 #define FAULT_TABLE(X)                                                                             \
 	X(watchdog_oversleeps, energy_silent, 14, "the watchdog looks half a second after it should")  \
 	X(worker_wake_lost, energy_cut, 49, "one in three wakes of a worker is lost")                  \

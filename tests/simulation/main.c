@@ -12,7 +12,8 @@
 
 enum {
 	LONG_S = 3600,
-	FAULT_SEEDS = 100, // number of seeds that the suite runs; one of them must find each fault
+	// number of seeds that the suite runs; the suite must find each fault in one of them
+	FAULT_SEEDS = 100,
 };
 
 typedef struct asked {
@@ -190,7 +191,7 @@ static int replay(const asked *a)
 // ---- planted faults
 typedef struct hunt {
 	sim_fault fault;
-	char others[256]; // other promises that were broken instead
+	char others[256]; // other promises that were broken instead of the named one
 } hunt;
 
 // True if this seed breaks the promise that is named for the fault.
@@ -214,8 +215,8 @@ static bool finds(hunt *h, uint64_t seed)
 }
 
 // Searches for a seed that breaks the named promise. Most faults break several promises, and a run
-// ends at the first. The search begins with the seed that found the fault last, if the suite has
-// it.
+// ends at the first broken promise. The search begins with the seed that found the fault last, if
+// the suite has this seed.
 static bool find_fault(const asked *a, sim_fault fault)
 {
 	hunt h = {.fault = fault};

@@ -11,13 +11,13 @@
 #include "simulation/faults.h"
 #include "simulation/scheduler.h"
 
-#define TICK_NS (100 * SIM_MS)  // the same as in the real network
-#define WAITED_NS (20 * SIM_MS) // WAITED_S of the real network
+#define TICK_NS (100 * SIM_MS)  // interval of the handler's `tick`, the same as in the real network
+#define WAITED_NS (20 * SIM_MS) // the same as WAITED_S of the real network
 
 struct sim_link {
-	cau_connection connection; // must be first: the handlers' pointer points to it
+	cau_connection connection; // must be first: a pointer to it is converted to the link
 	void *client;
-	int64_t open_ns;  // when its request arrives
+	int64_t open_ns;  // time when the link's request arrives
 	int64_t empty_ns; // time when no message was waiting
 	int64_t due_ns;   // time at which the present message could have been read
 	bool opened, lost, wants_frame, reads;
@@ -153,7 +153,8 @@ static void admit(cau_network *network, sim_link *link)
 		c->next->previous = c;
 	network->connections = c;
 	link->opened = true;
-	link->empty_ns = link->open_ns; // no message was sent before the link opened
+	// No message was sent before the link opened.
+	link->empty_ns = link->open_ns;
 	network->counts.accepted++;
 	bool opened = network->def.handler.opened(network->def.handler.user, c, "");
 	assert(opened);

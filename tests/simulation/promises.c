@@ -10,13 +10,15 @@
 
 #define DEADLINE_NS (250 * SIM_MS) // the setting browser_deadline_s
 #define TICK_NS (SIM_SECOND / 60)
-// The clock was read before the lock was taken, and a thread may have stalled in between.
+// Time that is added to the deadline, because the daemon reads the clock before it takes the lock,
+// and a thread may stall between the two.
 #define SLACK_NS (10 * SIM_MS)
-// A disk may fail for some seconds. A daemon may be without its session for as long.
+// Longest time until a request must be answered. A disk may fail for some seconds, and a daemon may
+// be without its session for as long.
 #define ANSWER_MOST_NS (8 * SIM_SECOND)
 #define LOOK_NS (5 * SIM_MS)
 
-enum { SILENT_TICKS = 15 }; // the deadline in lock-step, in ticks
+enum { SILENT_TICKS = 15 }; // the deadline of a driver in lock-step, in ticks
 
 promise_counts promises_counted;
 session_book sim_books[SESSIONS];
@@ -98,7 +100,7 @@ int promises_by_ticks(int place, int tool, int64_t at_ns)
 }
 
 // ---- requests
-// True if the request is about a session of the daemon that receives it.
+// True if the request is about a session that the receiving daemon has.
 static bool meets_session(const sim_request *r)
 {
 	int gravity;
@@ -131,7 +133,8 @@ void promises_arriving(uint64_t number)
 		books_line_leaves(book);
 }
 
-// Off and pause act regardless of the queue and the store, except resent requests.
+// Energy off and pause take effect regardless of the queue and the store, except for resent
+// requests.
 void promises_arrived(uint64_t number)
 {
 	const sim_request *r = clients_request(number);
@@ -143,8 +146,8 @@ void promises_arrived(uint64_t number)
 		void_enables(r->session, -1, EVERY_CLIENT, r->arriving_ns);
 }
 
-// True if the daemon looked for a stored answer. Some refusals come before that, so they say
-// nothing about the first answer.
+// True if the daemon looked for a stored answer. Some refusals come before this look-up, so they
+// prove nothing about the first answer.
 static bool was_looked_up(const sim_request *r)
 {
 	static const char *const refusals[] = {"\"moved\"", "not_here",      "store_full",
@@ -155,8 +158,8 @@ static bool was_looked_up(const sim_request *r)
 	return true;
 }
 
-// Checks that a resent request gets the first answer. The answers of a session move with it, so its
-// old daemon has none of them.
+// Checks that a resent request gets the first answer again. The answers of a session move with it,
+// so the session's old daemon has no answers left.
 static void check_same(const sim_request *r)
 {
 	if (sim_sessions[r->session].machine != r->machine || !was_looked_up(r))
@@ -178,8 +181,9 @@ static void check_refusal(const sim_request *r)
 		sim_fail("sound", "%s is answered with %s", r->method, r->result);
 }
 
-// Checks a quota. It allows the requests of one minute and refills evenly. A request that is
-// answered from the store costs as much as the first.
+// Checks that a client stays within its quota. The quota allows the requests of one minute at once,
+// and refills evenly. A request that is answered from the store uses as much quota as the first
+// one.
 static void check_quota(const sim_request *r, int64_t now_ns)
 {
 	int most = clients_quota(r->client);
@@ -248,7 +252,7 @@ void promises_moving(int place, int target)
 	sim_books[place].full = false;
 }
 
-// Checks notifications that must not occur here.
+// Checks notifications: some must not occur in the simulation.
 void promises_told(int client, const char *text)
 {
 	if (strstr(text, "\"session.faulted\""))

@@ -9,7 +9,7 @@
 #include "simulation/network.h"
 #include "simulation/world.h"
 
-// word, what is promised
+// Columns: word, what is promised.
 #define PROMISE_TABLE(X)                                                                           \
 	X(energy_cut, "no tick that begins after a cut is computed with energy")                       \
 	X(energy_silent, "energy goes off when its driver is silent, within a tick")                   \
@@ -36,23 +36,24 @@ void promises_begin(const sim_profile *profile);
 const char *promises_meaning(const char *word); // NULL if there is no such promise
 
 // ---- seen by clients (clients.c)
-void promises_arriving(uint64_t number); // the daemon is about to read it
-void promises_arrived(uint64_t number);  // the daemon has read it
+void promises_arriving(uint64_t number); // the daemon is about to read the request
+void promises_arrived(uint64_t number);  // the daemon has read the request
 void promises_answered(uint64_t number);
-// its page is hidden, or its connection has ended, and the daemon knows
+// the daemon knows that the client's page is hidden or its connection has ended
 void promises_away(int client);
-// The source has decided: from now on the session belongs to the target.
+// The source daemon has decided: from now on the session belongs to the target daemon.
 void promises_moving(int session, int target);
 void promises_told(int client, const char *text);
 
-void promises_store_takes(const char *id, bool takes); // the daemon has notified the session
+// the daemon has notified the session whether its store accepts writes
+void promises_store_takes(const char *id, bool takes);
 
 // ---- events of daemons (daemons.c)
-void promises_killed(int machine); // killed, or ended in order
+void promises_killed(int machine); // the daemon was killed, or has ended in order
 void promises_started(int machine);
 
 // ---- end of a run
-// from now on everything works, so all requests must be answered in time
+// From now on everything works, so all requests must be answered in time.
 void promises_calm(void);
 void promises_settled(void); // checks the state after promises_calm
 

@@ -19,9 +19,9 @@
 #include "simulation/courier.h"
 #include "simulation/threads.h"
 
-// Limits for one seed, which takes less than a second, and thirty with the address sanitizer.
-// CPU_MOST_S limits its processor time. REAL_MOST_S limits its real time, for a run that waits
-// without computing or gets no processor.
+// Limits of time for one seed. A seed usually takes less than a second, or thirty with the address
+// sanitizer. CPU_MOST_S limits the processor time. REAL_MOST_S limits the real time, for a run that
+// waits without computing or gets no processor.
 #if defined(__SANITIZE_ADDRESS__)
 enum { CPU_MOST_S = 300, REAL_MOST_S = 1800 };
 #else
@@ -38,7 +38,9 @@ static int result_pipe = -1;
 static run_result now;
 static int machines; // number of machines with a daemon in this run
 
-double real_s(void) // time() and clock_gettime are simulated here
+// Returns the real time, s. It uses timespec_get, because time() and clock_gettime are simulated
+// here.
+double real_s(void)
 {
 	struct timespec time;
 	timespec_get(&time, TIME_UTC);
@@ -163,7 +165,7 @@ static void settle(void)
 static void do_run(uint64_t seed, const workload *work)
 {
 	sim_profile profile = sim_profile_of(seed);
-	mallopt(M_MMAP_THRESHOLD, 1 << 30); // freed memory is reused at once
+	mallopt(M_MMAP_THRESHOLD, 1 << 30); // the allocator must reuse freed memory at once
 	mallopt(M_TRIM_THRESHOLD, 1 << 30);
 	mallopt(M_TOP_PAD, 16 << 20);
 	sim_failed = on_failed;

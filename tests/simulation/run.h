@@ -22,7 +22,7 @@ enum { RUNS_MOST = 256 }; // largest number of runs at the same time
 typedef struct run_child {
 	uint64_t seed;
 	int process, from; // from: the pipe with the result
-	double most_s;     // limit of real time, after which the run counts as hanging
+	double most_s;     // limit of real time, s; a run that takes longer counts as hanging
 } run_child;
 
 double real_s(void);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#undef _FORTIFY_SOURCE // its longjmp takes a jump to another stack for an error
+#undef _FORTIFY_SOURCE // with it, longjmp would report a jump to another stack as an error
 #include "simulation/scheduler.h"
 
 #include <assert.h>
@@ -16,13 +16,15 @@
 #endif
 
 enum {
-	// two daemons of 16 threads, twice while one ends, and the simulation's own
+	// Largest number of fibers: two daemons of 16 threads each, twice because an ending daemon
+	// overlaps with the next, and the simulation's own fibers.
 	FIBERS_MOST = 96,
-	STACK_BYTES = 1 << 20, // only used pages take memory; the sanitizer's frames are the largest
+	STACK_BYTES = 1 << 20, // only used pages take memory; the address sanitizer needs the most
 	GUARD_BYTES = 4096,
 	MACHINES_MOST = 2,
 	NAME_BYTES = 16,
-	CLOCK_READ_NS = 50, // so that a loop that waits for the clock always ends
+	// advance of the clock at each reading, so that a loop that waits for the clock always ends
+	CLOCK_READ_NS = 50,
 };
 
 typedef enum fiber_state { FREE, READY, WAITING, ENDED } fiber_state;
@@ -33,17 +35,17 @@ typedef struct fiber {
 	int machine;
 	char name[NAME_BYTES];
 	ucontext_t context; // context of the fiber's start
-	jmp_buf place;      // where it continues
+	jmp_buf place;      // the point where the fiber continues
 	bool begun;
 	void *stack;
 	const void *waits_for;
 	int64_t until_ns;
 	bool timed_out;
-	bool nobodys; // detached: no fiber joins it
+	bool nobodys; // the fiber is detached: no fiber joins it
 	void *(*run)(void *);
 	void *argument, *result;
 	int64_t processor_ns;
-	void *fake_stack; // stack of the address sanitizer
+	void *fake_stack; // address sanitizer's stack of this fiber
 } fiber;
 
 static struct {
@@ -116,7 +118,9 @@ static void end_switch(const fiber *here)
 	const void *bottom;
 	size_t bytes;
 	__sanitizer_finish_switch_fiber(here->fake_stack, &bottom, &bytes);
-	if (!world_stack.bytes) // the first fiber that continues comes from the world's stack
+	// The first fiber that continues comes from the program's own stack, whose bounds are learned
+	// here.
+	if (!world_stack.bytes)
 		world_stack.bottom = bottom, world_stack.bytes = bytes;
 #else
 	(void)here;
@@ -124,14 +128,15 @@ static void end_switch(const fiber *here)
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-// The sanitizer takes longjmp for the end of calls, so fibers use contexts here.
+// Switches fibers. The address sanitizer treats longjmp as the end of calls, so this build switches
+// by contexts.
 static void change_stacks(fiber *from, fiber *next)
 {
 	swapcontext(&from->context, &next->context);
 }
 #else
-// swapcontext calls the kernel for the signal mask each time. This code does so once for each
-// fiber.
+// Switches fibers. swapcontext would call the kernel for the signal mask each time. This function
+// uses a context only at each fiber's start, and longjmp later.
 static void change_stacks(fiber *from, fiber *next)
 {
 	if (_setjmp(from->place))
@@ -156,7 +161,8 @@ static void go_to(fiber *next)
 	end_switch(sim.present);
 }
 
-// Returns the time at which the fiber can continue, but not before its machine can.
+// Returns the time at which the fiber can continue. A fiber of a stopped machine continues only
+// after the stop.
 static int64_t due_of(const fiber *f)
 {
 	int64_t due_ns = f->state == WAITING ? f->until_ns : sim.now_ns;
@@ -164,7 +170,7 @@ static int64_t due_of(const fiber *f)
 	return due_ns > stopped_ns ? due_ns : stopped_ns;
 }
 
-// Marks the fibers whose time has come as ready. Returns the earliest time of the others.
+// Marks the fibers whose time has come as ready. Returns the earliest time of all other fibers.
 static int64_t wake_due(void)
 {
 	int64_t earliest = SIM_NEVER;
@@ -316,7 +322,8 @@ void sim_begin(uint64_t seed, const sim_roughness *roughness)
 	memset(&sim, 0, sizeof sim);
 	sim.random = sim_random_of(seed, 1);
 	sim.roughness = *roughness;
-	sim.now_ns = 1000 * SIM_SECOND; // as on a machine that has been running for a while
+	// start of the clock: as on a machine that has been running for a while
+	sim.now_ns = 1000 * SIM_SECOND;
 	sim.trace = seed;
 	sim.used = 1;
 	sim.present = &sim.fibers[0];

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_S 30. // real time in s
+#define MOST_S 30. // longest real time for shrinking, s
 
 static bool still_fails(uint64_t seed, const workload *work, run_result *result)
 {

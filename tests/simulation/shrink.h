@@ -6,7 +6,8 @@
 
 #include "simulation/run.h"
 
-// Leaves out steps while the same promise is still broken. *result is of the last failing run.
+// Leaves out steps as long as the same promise is still broken. *result is the result of the last
+// failing run.
 void shrink(uint64_t seed, workload *work, run_result *result);
 // Prints the remaining steps, such as `0-3,7`.
 void shrink_print(const workload *work);

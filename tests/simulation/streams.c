@@ -13,12 +13,12 @@
 #include "simulation/world.h"
 
 #define WRAPPED __attribute__((used))
-#define ACK_NS (100 * SIM_MS) // interval of acknowledgements, as the protocol says
+#define ACK_NS (100 * SIM_MS) // interval of a client's acknowledgements, as the protocol says
 
 enum {
 	SEEN = 1024,       // states of a session that are kept for late frames
 	SENT = 256,        // largest number of unacknowledged frames of a stream
-	FRAME_MOST = 4096, // bytes; frames of nine vertices are shorter
+	FRAME_MOST = 4096, // largest number of bytes of a frame; frames of nine vertices are shorter
 };
 
 typedef struct stream {
@@ -28,8 +28,8 @@ typedef struct stream {
 	cau_frame_decoder *decoder;
 	void *storage;
 	uint64_t tick, epoch;
-	bool lost;         // it waits for a requested key frame
-	bool acknowledged; // acknowledged at least once
+	bool lost;         // the client waits for a requested key frame
+	bool acknowledged; // a frame of the stream was acknowledged at least once
 	size_t in_flight;
 	struct {
 		uint64_t sequence;
@@ -43,7 +43,7 @@ typedef struct seen_state {
 	bool used;
 	uint64_t tick;
 	double height_m; // height of the first vertex
-	unsigned lit;    // energy on, one bit a tool
+	unsigned lit;    // tools with energy on, one bit for each tool
 } seen_state;
 
 static struct {
@@ -83,7 +83,7 @@ WRAPPED void __wrap_cau_frames_publish(cau_hosted *h, double now_s)
 	__real_cau_frames_publish(h, now_s);
 }
 
-// Compares the frame with the states of its tick. There may be several of them after rewinds.
+// Compares the frame with the states of its tick. After rewinds, one tick may have several states.
 static void compare(const stream *s, int client)
 {
 	double position[3 * 9];
@@ -208,7 +208,8 @@ static void decode(stream *s, int client, const cau_frame_header *header,
 		sim_fail("stream", "client %d gets tick %llu after %llu of one epoch", client,
 		         (unsigned long long)header->tick, (unsigned long long)s->tick);
 	for (int i = 0; header->epoch != s->epoch && i < SENT; i++)
-		s->sent[i].sequence = 0; // acknowledging the new epoch acknowledges these frames, too
+		// An acknowledgement of the new epoch acknowledges these frames, too.
+		s->sent[i].sequence = 0;
 	s->epoch = header->epoch;
 	s->tick = header->tick;
 	compare(s, client);

@@ -61,9 +61,11 @@ WRAPPED pthread_t __wrap_pthread_self(void)
 }
 
 // ---- locks
-// Uses the memory of the C library's mutex, whose static initialiser is all zeros.
+// A simulated mutex. It uses the memory of the C library's mutex, whose static initialiser is all
+// zeros.
 typedef struct sim_mutex {
-	uint64_t owner; // a fiber, or 0 if free; a fiber of a killed machine holds no lock
+	// fiber that has locked the mutex; 0 if free. A fiber of a killed machine holds no lock
+	uint64_t owner;
 } sim_mutex;
 _Static_assert(sizeof(sim_mutex) <= sizeof(pthread_mutex_t), "it fits");
 
@@ -141,7 +143,8 @@ WRAPPED int __wrap_pthread_cond_destroy(pthread_cond_t *condition)
 	return 0;
 }
 
-// POSIX lets a wait end without a reason. So does this function now and then.
+// Waits on a condition. POSIX lets a wait end without a reason, and this function does so now and
+// then.
 static int wait_on(pthread_cond_t *condition, pthread_mutex_t *mutex, int64_t until_ns)
 {
 	let_go((sim_mutex *)mutex);

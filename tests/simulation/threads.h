@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Seeds the random numbers of the wrapped system calls.
+// Replaces threads, locks and clocks. sim_threads_begin seeds the random numbers of the wrapped
+// system calls.
 #pragma once
 
 #include <stdint.h>

@@ -11,7 +11,7 @@
 #include "simulation/courier.h"
 #include "simulation/promises.h"
 
-// the value of c, 0 to 5, that makes STEP_CREATE create an ephemeral session
+// The value of the argument c of STEP_CREATE, which is 0 to 5, that creates an ephemeral session.
 enum { EPHEMERAL = 5 };
 #define TENTH_NS (SIM_SECOND / 10)
 
@@ -22,7 +22,7 @@ typedef struct maker {
 	workload *work;
 	sim_random random;
 	int64_t at_ns;
-	bool moves; // in this run sessions move between two machines
+	bool moves; // true if sessions move between two machines in this run
 	int machines;
 } maker;
 
@@ -100,7 +100,8 @@ static void befall(maker *m)
 {
 	static const struct {
 		step_kind kind;
-		int weight, a, b, c; // a, b, c: the argument is below this; 0 means no such argument
+		// a, b, c: each argument is below this value; 0: the step has no such argument
+		int weight, a, b, c;
 	} kinds[] = {
 		{STEP_CUT, 6, CLIENTS, 0, 0},
 		{STEP_HIDE, 6, CLIENTS, 0, 0},
@@ -216,7 +217,7 @@ static bool exists(const work_step *s)
 	return sim_sessions[s->b].wanted;
 }
 
-// Begins the record of a new session. Returns false if the client may not create it.
+// Begins the record of a new session. Returns false if the client may not create the session.
 static bool begin_session(int client, int place, char name[NAME_MOST])
 {
 	sim_session *made = &sim_sessions[place];
@@ -266,7 +267,7 @@ static void destroy(const work_step *s)
 	sim_sessions[s->b].wanted = sim_sessions[s->b].made = false;
 }
 
-// Sets gravity after `ticks` ticks, or at once if 0.
+// Sets gravity after `ticks` ticks; 0: at once.
 static void set_gravity(int client, int place, int ticks)
 {
 	char params[96], at_tick[32] = "";
@@ -373,7 +374,7 @@ static void set_speed(const work_step *s)
 	clients_ask(s->a, ASK_OTHER, "session.speed", s->b, -1, true, params);
 }
 
-// Steps that are one request each, with at most a tool as params.
+// Steps that are one request each. The params have at most a tool and `more`.
 static const struct {
 	step_kind kind;
 	ask what;

@@ -7,7 +7,7 @@
 
 enum { STEPS_MOST = 512 };
 
-// code, word: the step's arguments a, b, c
+// Columns: code, word. The comments name the step's arguments a, b, c.
 #define STEP_TABLE(X)                                                                              \
 	X(CONNECT, "connect") /* client, machine */                                                    \
 	X(CUT, "cut")         /* client: its connection is lost */                                     \
@@ -67,7 +67,7 @@ typedef enum step_kind {
 } step_kind;
 
 typedef struct work_step {
-	int64_t at_ns; // since the start
+	int64_t at_ns; // time since the start of the run
 	step_kind kind;
 	int a, b, c;
 	bool left_out;

@@ -12,7 +12,7 @@
 
 enum {
 	CLIENTS = 4,
-	COURIERS = 2, // connections of the courier, which are the clients after the others
+	COURIERS = 2, // connections of the courier; they follow the CLIENTS in the list of clients
 	SESSIONS = 3,
 	TOOLS = 2, // tools of the scene
 	REQUESTS_MOST = 1 << 14,
@@ -58,22 +58,22 @@ typedef enum ask {
 	ASK_JOIN,
 	ASK_KEY_FRAME,
 	ASK_LIST,
-	ASK_MOVING, // requests of a move
+	ASK_MOVING, // requests that move a session
 	ASK_OTHER,
 } ask;
 
 typedef struct sim_request {
 	ask what;
-	int client, session, tool; // -1 if there is none
-	int life;                  // number of the session with this name
-	int64_t sequence;          // client_sequence, or 0
-	int gravity;               // GRAVITY: number of the gravity
-	int ticks;                 // ADVANCE: number of ticks
-	uint64_t first;            // number of the original of a resent request, or 0
-	int connection, machine;   // connection: counts the client's connections
+	int client, session, tool; // -1 if the request concerns none
+	int life;                  // number of the session among all sessions of its name
+	int64_t sequence;          // client_sequence; 0: the request has none
+	int gravity;               // only for ASK_GRAVITY: number of the gravity
+	int ticks;                 // only for ASK_ADVANCE: number of ticks
+	uint64_t first;            // number of the original of a resent request; 0: not resent
+	int connection, machine;   // connection: number of the client's connection, in order
 	int64_t sent_ns, arriving_ns, answered_ns;
-	bool later; // it waits for a tick, so its answer may wait while its session is paused
-	bool met;   // its session existed when it arrived
+	bool later; // the request waits for a tick, so its answer may wait while the session is paused
+	bool met;   // the request's session existed when the request arrived
 	bool arrived, answered, ok, unstored;
 	char *method, *params; // copies for resending
 	char *result;          // text of the result
@@ -84,19 +84,19 @@ typedef struct sim_client {
 	char client_id[16], resume[65];
 	sim_link *link; // NULL if not connected
 	int machine;
-	int connection; // counts connections
+	int connection; // number of the present connection, in order
 	bool greeted, beats, visible;
 	uint32_t number; // the daemon's number of the client
 	int64_t sequence, beat_ns;
-	bool clocked;           // its heartbeats have the time of sending
-	bool clock_counts;      // the daemon knows its clock
-	int64_t clock_ahead_ns; // relative to the daemons' clock
-	int64_t late_until_ns;  // its messages are held back until then
+	bool clocked;           // the client's heartbeats have the time of sending
+	bool clock_counts;      // the daemon knows the client's clock
+	int64_t clock_ahead_ns; // difference to the daemons' clock, ns
+	int64_t late_until_ns;  // the client's messages are held back until this time
 	// latest time at which the client was alive, as far as a daemon can know
 	int64_t heard_ns;
-	bool reads;       // it reads its messages
-	int64_t reads_ns; // when it began to read
-	uint64_t newest;  // newest request that changes something, for resending; 0 if none
+	bool reads;       // the client reads its messages
+	int64_t reads_ns; // time when the client began to read
+	uint64_t newest;  // newest request that changes something, for resending; 0: no such request
 	struct stream *streams[SESSIONS];
 } sim_client;
 
@@ -107,13 +107,14 @@ extern int sim_request_count;
 void clients_begin(uint64_t seed, const sim_profile *profile);
 void clients_connect(int client, int machine);
 void clients_cut(int client);
-// True if the client's token allows this request in this session (-1 for none).
+// True if the client's token allows this request in this session (-1: in no session).
 bool clients_may(int client, ask what, int session);
-int clients_quota(int client); // expensive requests a minute that its token allows; 0 for no limit
-void clients_beat(void);       // sends the heartbeats that are due
+// expensive requests a minute that the client's token allows; 0: no limit
+int clients_quota(int client);
+void clients_beat(void); // sends the heartbeats that are due
 int64_t clients_beat_due(void);
 void clients_show(int client, bool visible);
-void clients_late(int client, int64_t ns); // holds its messages back
+void clients_late(int client, int64_t ns); // holds the client's messages back for `ns`
 void clients_read(int client, bool reads, int frames);
 // Sends a request and returns its number, or 0 if the client has no connection. `params` has no
 // session and no client_sequence, and may be "".
@@ -129,17 +130,17 @@ sim_request *clients_request(uint64_t number);
 // ---- sessions, by index
 typedef struct sim_session {
 	int life;       // number of times that a session of this name was created
-	int machine;    // machine that should have it
-	bool made;      // its creation was answered
-	bool wanted;    // it was created and not destroyed
-	bool moving;    // a courier moves it
-	bool ephemeral; // it is not on the disk, and ends with its creator
+	int machine;    // machine that should have the session
+	bool made;      // the session's creation was answered
+	bool wanted;    // the session was created and not destroyed
+	bool moving;    // a courier moves the session
+	bool ephemeral; // the session is not on the disk, and ends with its creator
 } sim_session;
 
 extern sim_session sim_sessions[SESSIONS];
 void sim_session_name(int session, char name[NAME_MOST]);
 void sim_session_id(int session, int machine, char id[NAME_MOST]);
-int sim_session_of(const char *id); // index of a present session, or -1 if there is none
+int sim_session_of(const char *id); // returns the index of a present session, or -1
 
 // ---- daemons
 void daemons_begin(const sim_profile *profile);

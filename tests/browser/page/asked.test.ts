@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tissue stops is drawn twice: where it is, and as a ghost where it is led to; tools, and jaws on what they hold.
+// Tests how the page draws a tool that tissue stops: the tool where it is, and a ghost where the hand leads it. Jaws
+// are drawn on the tissue that they hold.
 import { Stage } from './stage';
 import type { Colour, ViewerPage } from './viewer_page';
 
 type Point = [number, number, number];
-const MIDDLE: Point = [0, 0, 0]; // of the slab's surface
-const OVER_M = 0.008; // that a tool hovers over it
-const BEHIND_M = 0.002; // the pinned floor of the slab stops the tool when it is led on
-const NOTCHES = 4; // of the wheel at a time
+const MIDDLE: Point = [0, 0, 0]; // middle of the slab's surface
+const OVER_M = 0.008; // largest horizontal distance of the tip from the slab's middle at which the tool counts as over it
+const BEHIND_M = 0.002; // height by which the slab stops the tool above where it is led; its floor is pinned
+const NOTCHES = 4; // notches of the wheel for a step
 const NOTCH_M = 0.0005;
-const LIFT = 20; // notches
-const BESIDE: Point = [-0.02, 0, 0]; // where the tool in the middle hides no jaws
-const ZOOM = 4, ZOOM_JAWS = 1; // notches: they fill some of the picture
-const RESTED_M = 1e-4; // that a tool at rest moves at most, in so many frames
+const LIFT = 20; // notches of the wheel that lift the tool
+const BESIDE: Point = [-0.02, 0, 0]; // a place where the tool in the middle does not hide the jaws
+const ZOOM = 4, ZOOM_JAWS = 1; // notches of the wheel: tool and jaws fill part of the picture
+const RESTED_M = 1e-4; // largest motion of a tool at rest, in RESTED_FRAMES frames
 const RESTED_FRAMES = 10;
-const RIM = 0.92; // of the ball's radius
-const RIM_BLUE = 10; // of 255, blue less red: 170 of the ghost, -50 of metal and tissue without it
+const RIM = 0.92; // distance of the looked-at rim from the ball's middle, as a share of the ball's radius
+// least difference of blue and red, of 255: it is 170 on the ghost, and -50 on metal and tissue without the ghost
+const RIM_BLUE = 10;
 
 const blue = ([r, , b]: Colour): number => b - r;
 
@@ -34,7 +36,8 @@ describe('what tissue stops', () => {
     await viewer.page.mouse.move(x, y);
   };
 
-  /** Where the tool is and where it is led to, once it has come to rest: on its way it is behind, too. */
+  /** Returns where the tool is and where it is led, once the tool has come to rest. While it moves, it is also
+   * behind. */
   const rested = async (): Promise<{ tip: readonly number[]; asked: readonly number[] }> => {
     for (let before = await viewer.state(); ; ) {
       await viewer.until((count) => window.cautery.framesDecoded >= count, before.framesDecoded + RESTED_FRAMES, 'frames later');

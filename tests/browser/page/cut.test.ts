@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Join the demo, drag the hook across the fascia with energy on, see faces go; fork; rewind; whole again.
+// Joins the demo, drags the hook across the fascia with energy on, and checks that faces go. Then forks the session,
+// rewinds it, and finds the tissue whole again.
 
 import { Stage } from './stage';
 import { shareChanged, ViewerPage } from './viewer_page';
 
-const FACES = 6000; // of deploy/scenes/fascia.json
+const FACES = 6000; // number of faces in deploy/scenes/fascia.json
 const HOT_C = 900;
-/** Tissue and drape differ by about 130 of 441; drawing, light and antialiasing by less than 15. */
+/** Least distance of two colours that counts as another colour, of 441. Tissue and drape differ by about 130;
+ * drawing, light and antialiasing by less than 15. */
 const ANOTHER_COLOUR = 60;
-/** Where the cut goes. Strands stay across it, more of them where the hook went on sooner. */
+/** The points along the cut. Strands stay across it, and more strands if the hook moved on sooner. */
 const WAY = Array.from({ length: 33 }, (_, i): [number, number, number] => [-0.016 + 0.001 * i, 0, 0]);
 const SHARE_OPEN = 0.3;
 
@@ -29,7 +31,7 @@ describe('a cut in the demo', () => {
     await viewer.cut(0, 0, -0.02, 0.02, 10);
     const left = await viewer.faces();
     expect(left).toBeLessThan(FACES - 20);
-    await viewer.page.keyboard.down('KeyS'); // the hook out of the picture's middle
+    await viewer.page.keyboard.down('KeyS'); // moves the hook out of the picture's middle
     await viewer.until(() => window.cautery.tip[2] > 0.02, null, 'the hook is lifted');
     await viewer.page.keyboard.up('KeyS');
     await viewer.drawn();
@@ -39,7 +41,8 @@ describe('a cut in the demo', () => {
   it('marks the cut in the timeline', async () => {
     await viewer.until(() => document.querySelector('#time .mark.cut') !== null, null, 'a cut is marked');
     const moments = viewer.page.locator('#moments');
-    const cut = (await moments.locator('option').allTextContents()).find((words) => /^\d+\.\d\d to \d+\.\d\d s: cut, hook$/.test(words)); // many edges parted one after another
+    // The cut has two times, because many edges parted one after another.
+    const cut = (await moments.locator('option').allTextContents()).find((words) => /^\d+\.\d\d to \d+\.\d\d s: cut, hook$/.test(words));
     expect(cut).toBeDefined();
     await moments.selectOption({ label: cut! });
     await viewer.until((at) => document.querySelector('#rewind')?.textContent === `Rewind to ${at}`, `${cut!.split(' ')[0]} s`, 'the moment of the cut is offered');
@@ -64,7 +67,7 @@ describe('a cut in the demo', () => {
     await viewer.page.locator('#tick').focus();
     await viewer.page.keyboard.press('Home');
     await viewer.page.locator('#rewind').click();
-    await viewer.page.keyboard.press('Escape'); // it asks first
+    await viewer.page.keyboard.press('Escape'); // the page asks first whether to do this
     expect((await viewer.state()).epoch).toBe(epoch);
     await viewer.page.locator('#rewind').click();
     await viewer.page.locator('dialog').getByRole('button', { name: 'Rewind' }).click();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real cauteryd with a store of its own, serving the built viewer.
+// A real cauteryd with a store of its own. It serves the built viewer.
 import { spawn, type ChildProcess } from 'node:child_process';
 import { once } from 'node:events';
 import { mkdtempSync, rmSync } from 'node:fs';
@@ -22,7 +22,7 @@ export class Daemon {
     return `http://127.0.0.1:${this.port}/`;
   }
 
-  /** Starts, or starts again on the same port and store; resolves when it listens. */
+  /** Starts the daemon, or restarts it on the same port and store. Resolves when the daemon listens. */
   async start(): Promise<void> {
     const program = process.env['CAUTERYD'];
     if (program === undefined) throw new Error('CAUTERYD names no daemon');
@@ -31,10 +31,10 @@ export class Daemon {
       '--store', join(this.folder, 'cautery.db'),
       '--scenes', join(root, 'deploy/scenes'),
       '--viewer', join(root, 'clients/web/dist'),
-      // Software drawing beside other tests may hold a page up for longer than a hand would be forgiven.
+      // Software drawing beside other tests may stop a page for longer than the usual deadline of a driver.
       '--browser-deadline-s', '5',
       ...this.settings,
-    ], { env: { PATH: process.env['PATH'] } }); // each CAUTERY_* would be a setting
+    ], { env: { PATH: process.env['PATH'] } }); // otherwise each CAUTERY_* variable would be a setting
     this.child = child;
     await new Promise<void>((resolve, reject) => {
       createInterface({ input: child.stderr }).on('line', (line) => {
@@ -49,7 +49,7 @@ export class Daemon {
     });
   }
 
-  /** As a power cut would. */
+  /** Kills the daemon, as a loss of power would. */
   async kill(): Promise<void> {
     const { child } = this;
     this.child = null;

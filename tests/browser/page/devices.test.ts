@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A foot pedal, which is a keyboard with one key, and a 3D mouse by WebHID. The browser's chooser cannot be
-// automated: a fake answers it, as the page says that only a person can.
+// Tests a foot pedal, which is a keyboard with one key, and a 3D mouse by WebHID. The browser's chooser cannot be
+// automated, so a fake answers it. On the page, only a person can answer it.
 
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
 
-/** In the page, before its scripts: a WebHID with one 3D mouse that tests hold. */
+/** In the page, before its scripts: installs a WebHID with one 3D mouse that tests control. */
 function holdSpaceMouse(): void {
   const device = Object.assign(new EventTarget(), {
     productName: 'Test SpaceMouse', opened: false,
@@ -47,7 +47,7 @@ describe('devices beside mouse and keys', () => {
     expect(await page.locator('#pedal').textContent()).toContain('The pedal is the key F9');
     await page.reload();
     await viewer.live('d1-fascia');
-    await page.locator('#devices > summary').click(); // which has the focus now
+    await page.locator('#devices > summary').click(); // this click gives the focus to the summary
     await page.keyboard.down('F9');
     await viewer.until(() => window.cautery.energized, null, 'energy is on');
     await page.keyboard.up('F9');
@@ -68,9 +68,9 @@ describe('devices beside mouse and keys', () => {
     await page.evaluate(() => (window as unknown as { unplug(): void }).unplug());
     await viewer.until(() => !window.cautery.energized, null, 'energy is off without it');
     expect(await page.locator('#space-mouse').textContent()).toContain('The cap of a 3D mouse moves');
-    await page.evaluate(() => (window as unknown as { plugIn(): void }).plugIn()); // nobody has to choose it again
+    await page.evaluate(() => (window as unknown as { plugIn(): void }).plugIn()); // the user need not choose the device again
     await page.locator('#space-mouse').getByText('Test SpaceMouse moves the tool').waitFor();
-    await report(3, [1]); // still down from before: no press
+    await report(3, [1]); // the button is still down from before, so this is no new press
     const { tick } = await viewer.state();
     await viewer.until((from) => window.cautery.tick > from + 30, tick, 'half a second passes');
     expect((await viewer.state()).energized).toBe(false);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A door in front of a daemon: what pages and daemon say to each other passes through it, can be looked at,
-// and can be held up until a test lets it go.
+// A proxy ("door") in front of a daemon. All messages between pages and the daemon pass through it. A test can read
+// them, and can hold them until it releases them.
 import { once } from 'node:events';
 import { createServer, request, type IncomingMessage, type ServerResponse } from 'node:http';
 import type { AddressInfo } from 'node:net';
@@ -10,7 +10,7 @@ import { MessageSocket } from './socket';
 
 export const PROTOCOL = 'cautery.v1';
 
-/** What a daemon says on its way to a page: the answer to a method, or with null unasked. */
+/** A message of the daemon on its way to a page: the answer to `method`, or a notification if `method` is null. */
 export interface Said {
   page: MessageSocket;
   text: string;
@@ -40,24 +40,24 @@ export class Door {
     await once(this.server, 'close');
   }
 
-  /** Told of each call or notification of a page, as it arrives here. */
+  /** Called for each call or notification of a page, as it arrives here. */
   heard: ((method: string, params: Readonly<Record<string, unknown>>) => void) | null = null;
 
-  /** Changes what the daemon says to pages. */
+  /** Changes the daemon's messages to pages. */
   change: ((text: string) => string) | null = null;
 
   protected text({ page, text }: Said): void {
     page.sendText(text);
   }
 
-  /** A frame, or a piece of a file, on its way to a page. */
+  /** Passes on a frame, or a piece of a file, to a page. */
   protected binary(page: MessageSocket, bytes: Buffer): void {
     page.sendBinary(bytes);
   }
 
   private serve(asked: IncomingMessage, answer: ServerResponse): void {
     const headers = { ...asked.headers, host: new URL(this.daemonUrl).host };
-    delete headers.origin; // the door's, which is not the daemon's
+    delete headers.origin; // this is the proxy's origin, not the daemon's
     const onwards = request(new URL(asked.url ?? '/', this.daemonUrl), { method: asked.method ?? 'GET', headers }, (got) => {
       answer.writeHead(got.statusCode ?? 502, got.headers);
       got.pipe(answer);
@@ -89,17 +89,17 @@ export class Door {
   }
 }
 
-/** Holds up answers to one method, or frames; everything else goes by. */
+/** Holds answers to one method, or frames. All other messages pass. */
 export class HoldingDoor extends Door {
   private held: string | null = null;
   private readonly waiting: (() => void)[] = [];
 
-  /** From now on answers to a method stay here, or `frames`. */
+  /** From now on, holds answers to the method `what`, or frames if `what` is "frames". */
   hold(what: string): void {
     this.held = what;
   }
 
-  /** Lets the first of what waits pass, once there is one; the rest stays. */
+  /** Releases the first held message, once there is one. The other messages stay. */
   async letOnePass(): Promise<void> {
     while (this.waiting.length === 0) await new Promise(setImmediate);
     this.waiting.shift()!();

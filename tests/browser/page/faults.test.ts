@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults that the page once had: messages under the veil, numbers that are cut off, units among the words, a tool that is
-// taken from its driver without a question.
+// Tests against faults that the page once had: messages under the veil, numbers that are cut off, units among the
+// words, and a tool that is taken from its driver without a question.
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
 
-/** In the page: inputs of numbers that are narrower than what they show, of those that are seen. */
+/** In the page: returns the visible inputs of numbers that are narrower than their content. */
 function clippedNumbers(): string[] {
   return [...document.querySelectorAll<HTMLInputElement>('input[type=number]')]
     .filter((input) => input.checkVisibility() && input.scrollWidth > input.clientWidth)

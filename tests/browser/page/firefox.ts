@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's Firefox, without a window, by WebDriver BiDi: as much of it as the tests of holds need.
+// Drives Debian's Firefox without a window, by WebDriver BiDi. It has only what the tests of holds need.
 import { spawn, type ChildProcess } from 'node:child_process';
 import { once } from 'node:events';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -8,7 +8,8 @@ import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 
 export const FIREFOX = '/usr/bin/firefox-esr';
-/** No first run, nothing of its own from the network, and elements get the focus though no window has it. */
+/** Firefox shows no first run and loads nothing of its own from the network. Elements get the focus although no
+ * window has it. */
 const PREFERENCES: Readonly<Record<string, boolean | number | string>> = {
   'app.update.disabledForTesting': true,
   'browser.shell.checkDefaultBrowser': false,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A newcomer's first half minute: tissue and tool in the picture, one cue where to cut and nothing else in
-// the way; who follows the cue has cut. What destroys asks first.
+// Tests the first half minute of a new user. Tissue and tool are in the picture. A cue shows where to cut, and nothing
+// else covers the picture. A user who follows the cue makes a cut. Actions that destroy something ask first.
 
 import type { CDPSession, Page } from 'playwright-core';
 
@@ -14,15 +14,15 @@ const SCREENS = [
   ['a phone in landscape', 'first-view-in-landscape', { ...PHONE, viewport: { width: 780, height: 390 } }],
 ] as const;
 
-const CUT_FACES = 24; // enough to be seen
-const CUE_PICTURES_PER_S = 5.01; // where drawing is work
+const CUT_FACES = 24; // number of faces that makes a visible cut
+const CUE_PICTURES_PER_S = 5.01; // largest rate of the cue's pictures if drawing is slow
 
 interface Place {
   x: number;
   y: number;
 }
 
-/** Corners of the tissue and the tip, and the free part of the picture, in CSS pixels. */
+/** Returns the corners of the tissue and the tip, and the free part of the picture, in CSS pixels. */
 async function inPicture(viewer: ViewerPage): Promise<{ points: Place[]; free: { left: number; right: number; top: number; bottom: number } }> {
   const { least, most } = await viewer.page.evaluate(() => window.cautery.extent());
   const corners = [0, 1, 2, 3].map((i): [number, number, number] => [i & 1 ? most[0] : least[0], i & 2 ? most[1] : least[1], most[2]]);
@@ -33,14 +33,14 @@ async function inPicture(viewer: ViewerPage): Promise<{ points: Place[]; free: {
   return { points, free: { left: box.x, right: box.x + box.width, top: box.y, bottom: handles.y } };
 }
 
-/** Both ends of the cue's stroke. */
+/** Returns both ends of the cue's stroke. */
 async function cue(viewer: ViewerPage): Promise<[Place, Place]> {
   const box = (await viewer.page.locator('#picture').boundingBox())!;
   const [x1, y1, x2, y2] = await viewer.page.locator('#cue line').evaluate((line) => ['x1', 'y1', 'x2', 'y2'].map((name) => Number(line.getAttribute(name))));
   return [{ x: box.x + x1, y: box.y + y1 }, { x: box.x + x2, y: box.y + y2 }];
 }
 
-/** From now on, counts how often the cue comes up. */
+/** From now on, counts how often the cue appears. */
 async function countCues(viewer: ViewerPage): Promise<void> {
   await viewer.page.evaluate(() => {
     const cue = document.querySelector<HTMLElement>('#cue')!;
@@ -50,7 +50,7 @@ async function countCues(viewer: ViewerPage): Promise<void> {
 }
 const cues = (viewer: ViewerPage): Promise<number> => viewer.page.evaluate(() => (window as unknown as { cues: number }).cues);
 
-/** Pictures in a second that the cue's animations ask for: Infinity where they go smoothly. */
+/** Returns the pictures in a second that the cue's animations request; Infinity if the animations are continuous. */
 function stepsPerSecond(viewer: ViewerPage): Promise<number> {
   return viewer.page.evaluate(() => {
     const rates = document.getAnimations().flatMap(({ effect }) => {
@@ -65,7 +65,7 @@ function stepsPerSecond(viewer: ViewerPage): Promise<number> {
   });
 }
 
-/** Presses on the picture, drags and lets go. */
+/** A way to press on the picture, drag, and release. */
 interface Hand {
   press(at: Place): Promise<unknown>;
   drag(to: Place): Promise<unknown>;
@@ -91,8 +91,8 @@ class Mouse implements Hand {
   release = (): Promise<unknown> => this.page.mouse.up();
 }
 
-/** Follows the cue until at most so many faces of the fascia are left. A page that stood still for too long loses its energy,
- * and asks whoever holds it to press again. */
+/** Follows the cue until at most `left` faces of the fascia are left. A page that stalls for too long loses its
+ * energy, and asks the user to press again. */
 async function follow(viewer: ViewerPage, hand: Hand, from: Place, to: Place, left: number): Promise<void> {
   for (;;) {
     await hand.press(from);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A gamepad with the standard mapping that tests hold.
+// A gamepad with the standard mapping that tests control.
 import type { ViewerPage } from './viewer_page';
 
 export const RIGHT_TRIGGER = 7;
@@ -10,7 +10,7 @@ interface TestPad {
   buttons: { pressed: boolean; value: number }[];
 }
 
-/** In the page: the only gamepad there is. */
+/** In the page: installs the only gamepad. */
 export function holdGamepad(): void {
   const pad = {
     id: 'test', index: 0, connected: true, mapping: 'standard', timestamp: 0,

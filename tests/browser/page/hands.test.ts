@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hands other than a mouse: fingers, a gamepad, keys; and a page out of sight, which loses its energy.
+// Tests inputs other than a mouse: fingers, a gamepad, keys. Also tests a hidden page, which loses its energy.
 import type { CDPSession } from 'playwright-core';
 
 import { A, holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
@@ -8,9 +8,9 @@ import { COARSE, ViewerPage } from './viewer_page';
 
 const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
 const NEAR_M = 0.004;
-const REST_M = 1e-5; // a tool that is led moves further than this in REST_TICKS
+const REST_M = 1e-5; // largest motion in REST_TICKS of a tool that is not led any more
 const REST_TICKS = 15;
-const LIFT_M = 0.006; // of a pinch, which asks for 10 mm
+const LIFT_M = 0.006; // least lift of the tool by a pinch that requests 10 mm
 const LOWER_M = 0.002;
 
 interface Finger {
@@ -44,7 +44,7 @@ describe('hands', () => {
 
   it('a finger leads the tool, which follows', async () => {
     const from = await viewer.project([-0.02, 0, 0]);
-    const to = await viewer.project([-0.008, 0.006, 0]); // at the pace of a cut, which heat sets
+    const to = await viewer.project([-0.008, 0.006, 0]); // the finger moves at the pace of a cut, which heat limits
     await touch('touchStart', [{ ...from, id: 1 }]);
     await viewer.until(() => window.cautery.driving, null, 'the tool is taken');
     await touch('touchMove', [{ ...to, id: 1 }]);
@@ -65,10 +65,11 @@ describe('hands', () => {
       await touch('touchMove', pair(to));
       await touch('touchEnd', []);
     };
-    // The first of the two fingers may lead the tool to its place: depth is told from there on.
+    // The first of the two fingers may lead the tool to its place. Depth counts from there.
     await pinch(250, 250);
     const height = async (): Promise<number> => {
-      for (let last = NaN; ; ) { // once it has come to where the finger led it
+      // The loop waits until the tool has come to where the finger led it.
+      for (let last = NaN; ; ) {
         const { tip, tick } = await viewer.state();
         if (Math.abs(tip[2] - last) < REST_M) return tip[2];
         last = tip[2];
@@ -151,7 +152,7 @@ describe('hands that need a page in front', () => {
     const said = await page.evaluate(() => {
       Object.defineProperty(document, 'hidden', { configurable: true, get: () => true });
       document.dispatchEvent(new Event('visibilitychange'));
-      return document.querySelector('#said')?.textContent; // for some seconds
+      return document.querySelector('#said')?.textContent; // the message is shown for some seconds
     });
     expect(said).toContain('Energy is off');
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');

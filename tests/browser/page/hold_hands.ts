@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a browser does for the tests of holds: real input where the browser can be asked for it, and functions
-// that run in the page. One implementation drives Chromium, another one Firefox.
+// What a browser must do for the tests of holds: real input if the browser can produce it, and functions that run in
+// the page. One implementation drives Chromium, another drives Firefox.
 
 export interface Point {
   x: number;
@@ -11,12 +11,12 @@ export type Pointing = 'mouse' | 'pen' | 'touch';
 
 export interface HoldHands {
   evaluate<A, R>(work: (argument: A) => R, argument: A): Promise<R>;
-  /** Presses a button of a pointer; a finger has one only. Held buttons stay held. */
+  /** Presses a button of a pointer. A finger has only one button. Held buttons stay held. */
   down(kind: Pointing, at: Point, button?: 0 | 2): Promise<void>;
   up(kind: Pointing, button?: 0 | 2): Promise<void>;
-  /** Moves a pointer by a pixel, with what is pressed. */
+  /** Moves a pointer by a pixel. Its pressed buttons stay pressed. */
   move(kind: Pointing): Promise<void>;
-  /** The browser takes the pointer over. */
+  /** Makes the browser take the pointer over. */
   cancel(kind: Pointing): Promise<void>;
   secondFinger(at: Point): Promise<void>;
   keyDown(key: string): Promise<void>;
@@ -24,17 +24,17 @@ export interface HoldHands {
   end(): Promise<void>;
 }
 
-/** In the page: what tests know and change there. */
+/** In the page: values that tests read and change there. */
 export interface HoldPage {
-  /** when the first event arrived since it was last set to null, ms since 1970 */
+  /** time of the first event since this was last set to null, ms since 1970 */
   at: number | null;
-  /** of the last press */
+  /** id of the pointer of the last press */
   pointerId: number;
   pad: { connected: boolean; buttons: { pressed: boolean; value: number }[] } | null;
-  /** reports of the 3D mouse, and its plug */
+  /** sends a report of the 3D mouse; unplug() removes it */
   cap(values: number[]): void;
   unplug(): void;
-  /** puts back what was taken out of the page */
+  /** puts back what a test took out of the page */
   undo: (() => void) | null;
 }
 
@@ -64,7 +64,8 @@ export function prepareHolds(): void {
     },
     unplug: () => {
       hid.dispatchEvent(Object.assign(new Event('disconnect'), { device }));
-      hid.dispatchEvent(Object.assign(new Event('connect'), { device })); // its button still down: no fresh press
+      // the device's button is still down, so this is no new press
+      hid.dispatchEvent(Object.assign(new Event('connect'), { device }));
       holds.cap([1]);
     },
   };

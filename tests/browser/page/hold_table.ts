@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every way to hold energy, every way to lose the hold, and what each pair of them does.
+// Lists every way to hold energy, every way to lose the hold, and what each pair of them does.
 import type { HoldHands, Point, Pointing } from './hold_hands';
 
 export interface Places {
@@ -13,7 +13,7 @@ export interface Way {
   kind: Pointing | 'key' | 'device' | 'latch';
   on: 'picture' | 'energy' | 'latch' | null;
   begin(hands: HoldHands, places: Places): Promise<void>;
-  /** lets go as a person does */
+  /** releases the hold as a person does */
   readonly release: (hands: HoldHands, places: Places) => Promise<void>;
 }
 
@@ -69,7 +69,7 @@ export const WAYS: readonly Way[] = [
         const pad = { id: 'test', index: 0, connected: true, mapping: 'standard', timestamp: 0, axes, buttons };
         Object.defineProperty(pad, 'buttons', { get: () => (reads.count++, buttons) });
         holds.pad = pad;
-        while (reads.count < 4) await new Promise(requestAnimationFrame); // it was seen at rest
+        while (reads.count < 4) await new Promise(requestAnimationFrame); // the page has seen the gamepad at rest
       }, null);
       await pull(hands, 1);
     },
@@ -97,19 +97,19 @@ export const WAYS: readonly Way[] = [
 
 export interface Loss {
   name: string;
-  /** off: energy ends; stays: it must not, because the hold goes on; null: the pair does not exist */
+  /** off: energy ends; stays: energy must not end, because the hold continues; null: the pair does not exist */
   does(way: Way): 'off' | 'stays' | null;
   happen(hands: HoldHands, way: Way, places: Places): Promise<void>;
-  /** makes the page as it was */
+  /** restores the page */
   undo?(hands: HoldHands, way: Way): Promise<void>;
 }
 
 const isPointer = ({ kind }: Way): boolean => kind === 'mouse' || kind === 'pen' || kind === 'touch';
 const hasButtons = ({ kind }: Way): boolean => kind === 'mouse' || kind === 'pen';
 const always = (): 'off' => 'off';
-/** Something that the page does by itself. */
+/** Makes a loss that happens in the page. */
 const inPage = (work: () => void) => (hands: HoldHands): Promise<void> => hands.evaluate(work, null);
-/** The same to one of its elements, or with an event. */
+/** Makes a loss that happens in the page, with an argument for an element or an event. */
 const inPageTo = (work: (argument: string) => void) => (hands: HoldHands, argument: string): Promise<void> => hands.evaluate(work, argument);
 const undo = (hands: HoldHands): Promise<void> =>
   hands.evaluate(() => {
@@ -214,7 +214,7 @@ export const LOSSES: readonly Loss[] = [
     happen: (hands) => focusOn(hands, '#pause'),
   },
   {
-    // Left again afterwards: a pair that is played again has to move it there again.
+    // The focus leaves the field again afterwards, because a repeated pair has to move it there again.
     name: 'focus moved to a field', does: always, happen: (hands) => focusOn(hands, 'input[name=person]'),
     undo: (hands) => hands.evaluate(() => document.querySelector<HTMLElement>('input[name=person]')!.blur(), null),
   },

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays every pair of hold_table.ts on one page: after each way to lose the hold, the command that turns energy
-// off has left the page within 100 ms, and no command turns it on again until the next press.
+// Plays every pair of hold_table.ts on one page. After each loss of the hold, the command that turns energy off must
+// leave the page within 100 ms. No command may turn energy on again until the next press.
 import type { Door } from './door';
 import type { HoldHands } from './hold_hands';
 import { LOSSES, WAYS, type Loss, type Places, type Way } from './hold_table';
 
 const LIMIT_MS = 100;
-const PLAYS = 10; // of a pair at most
+const PLAYS = 10; // largest number of plays of a pair
 const STAYS_TICKS = 5;
-const BODY_C = 37; // a tip that heats nothing: hundreds of presses leave the tissue whole
+const BODY_C = 37; // temperature of a tip that heats nothing: hundreds of presses leave the tissue whole
 const PATIENCE_MS = 8_000;
 
 export const PAIRS = WAYS.flatMap((way) =>
@@ -16,14 +16,14 @@ export const PAIRS = WAYS.flatMap((way) =>
 
 interface Order {
   energized: boolean;
-  /** when it came by, ms since 1970 */
+  /** time when the order passed, ms since 1970 */
   at: number;
 }
 
-/** The daemon turned energy off: a slow machine delayed the page for longer than a driver may be silent. */
+/** The daemon turned energy off, because a slow machine delayed the page for longer than a driver may be silent. */
 class EndedByDaemon extends Error {}
 
-/** The commands about energy that pass a door. */
+/** Notes the commands about energy that pass a door. */
 class Wire {
   readonly orders: Order[] = [];
   private look = (): void => undefined;
@@ -36,7 +36,7 @@ class Wire {
     };
   }
 
-  /** The first order from a place of the list on that says so. */
+  /** Returns the first order with this value of `energized`, from index `from` of the list on. */
   order(from: number, energized: boolean): Promise<Order> {
     return new Promise((resolve, reject) => {
       const late = setTimeout(() => reject(new Error(`no order ${energized ? 'on' : 'off'} came`)), PATIENCE_MS);
@@ -75,7 +75,8 @@ export class HoldStage {
       [...document.querySelectorAll<HTMLElement>('#panel-tools button')].find(({ textContent }) => textContent === 'Apply')!.click();
     }, BODY_C);
     await this.until((celsius) => window.cautery.tool?.temperature_c === celsius, BODY_C);
-    await hands.evaluate(() => document.getElementById('veil')!.style.setProperty('display', 'none'), null); // "no WebGL"
+    // the veil says that there is no WebGL
+    await hands.evaluate(() => document.getElementById('veil')!.style.setProperty('display', 'none'), null);
     this.places = await hands.evaluate(() => {
       const middle = (id: string): { x: number; y: number } => {
         const { x, y, width, height } = document.getElementById(id)!.getBoundingClientRect();
@@ -86,7 +87,7 @@ export class HoldStage {
     }, null);
   }
 
-  /** A pair that was too slow is played again. On a busy machine the fastest play is nearest to the time that the page takes. */
+  /** Plays a pair, again if it was too slow. On a busy machine the fastest play is nearest to the page's own time. */
   async pair(way: Way, loss: Loss, does: 'off' | 'stays'): Promise<void> {
     let fastest = Infinity;
     for (let played = 0; played < PLAYS && fastest > LIMIT_MS; played++)
@@ -98,7 +99,7 @@ export class HoldStage {
     if (does === 'off') this.latencies.push(fastest);
   }
 
-  /** Returns the milliseconds from the loss to the command; 0 where the hold stays. */
+  /** Returns the milliseconds from the loss to the command; 0 if the hold stays. */
   private async play(way: Way, loss: Loss, does: 'off' | 'stays'): Promise<number> {
     const { hands, wire, places } = this;
     const from = wire.orders.length;
@@ -121,7 +122,7 @@ export class HoldStage {
     return latency;
   }
 
-  /** Says how long the slowest took, and checks that all were counted. */
+  /** Reports the slowest time, and checks that all pairs were counted. */
   report(browser: string): void {
     const sorted = [...this.latencies].sort((a, b) => a - b);
     expect(sorted.length).toBe(PAIRS.filter(([, , does]) => does === 'off').length);
@@ -144,7 +145,7 @@ export class HoldStage {
     expect(this.wire.orders.length).toBe(from + 1);
   }
 
-  /** Nothing is pressed any more. */
+  /** Releases everything that is pressed. */
   private async tidy({ kind, release }: Way): Promise<void> {
     const { hands, places } = this;
     if (kind !== 'latch') await release(hands, places);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Holds of energy in Chromium. Mouse, pen, fingers and keys are the browser's own; gamepad and 3D mouse are stubs.
+// Tests holds of energy in Chromium. Mouse, pen, fingers and keys are real inputs of the browser; gamepad and 3D mouse
+// are stubs.
 import type { CDPSession, Page } from 'playwright-core';
 
 import { Door } from './door';
@@ -83,7 +84,7 @@ class ChromiumHands implements HoldHands {
   }
 }
 
-/** As PointerEvent.buttons has it. */
+/** Returns the button's bit in PointerEvent.buttons. */
 function maskOf(button: 0 | 2): number {
   return button === 0 ? 1 : 2;
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Holds of energy in Debian's Firefox. Mouse, fingers and keys are the browser's own, by WebDriver BiDi, which
-// has no pen there: pen, gamepad and 3D mouse are stubs.
+// Tests holds of energy in Debian's Firefox. Mouse, fingers and keys are real inputs by WebDriver BiDi. BiDi has no pen
+// there, so pen, gamepad and 3D mouse are stubs.
 import { Daemon } from './daemon';
 import { Door } from './door';
 import { Firefox } from './firefox';
 import { prepareHolds, type HoldHands, type Point, type Pointing } from './hold_hands';
 import { HoldStage, PAIRS } from './holds';
 
-const PEN = 77; // the id of its pointer
+const PEN = 77; // the id of the pen's pointer
 const KEYS: Readonly<Record<string, string>> = { Space: ' ', Enter: '\uE006', Escape: '\uE00C', F9: '\uE039' };
 
-/** In the page: the focus and its events, which Firefox gives only to a window on a screen; and a pen that can be captured. */
+/** In the page: makes the focus and its events, which Firefox gives only to a window on a screen, and a pen that can
+ * be captured. */
 function prepareFirefox(): void {
   document.hasFocus = () => true;
   const ownFocus = Object.getOwnPropertyDescriptor(HTMLElement.prototype, 'focus')!.value as (this: HTMLElement, options?: FocusOptions) => void;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each input alone, from a page that has just come up to faces that are gone: a mouse, a keyboard, a
-// gamepad, one finger, two fingers. None of them presses a button of the page first.
+// Tests each input alone, from a new page until faces are gone: a mouse, a keyboard, a gamepad, one finger, two
+// fingers. No input presses a button of the page first.
 import type { CDPSession } from 'playwright-core';
 
 import { holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
 import { BrowserStage, daemonForTest } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
 
-const FACES = 6000; // of deploy/scenes/fascia.json
+const FACES = 6000; // number of faces in deploy/scenes/fascia.json
 const CUT_FACES = 8;
 const FROM: [number, number, number] = [-0.01, 0.005, 0];
 const TO: [number, number, number] = [0.01, 0.005, 0];
@@ -51,9 +51,9 @@ const INPUTS: readonly (readonly [string, (viewer: ViewerPage) => Promise<void>]
     await cut(viewer);
     await mouse.up();
     await dark(viewer);
-    await mouse.move(to.x, to.y); // without a button: the tool follows, cold
+    await mouse.move(to.x, to.y); // without a button the tool follows, with energy off
     await viewer.until(() => window.cautery.tip[0] > 0.005, null, 'the tool follows the mouse');
-    await mouse.move(from.x, from.y); // where the tissue is gone now
+    await mouse.move(from.x, from.y); // the tissue is gone at this place
     await viewer.until(() => window.cautery.tip[0] < -0.005, null, 'the tool follows the mouse over the gap');
     expect((await viewer.state()).energized).toBe(false);
   }],

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking closely: what is under the pointer, a ruler, a plane that cuts tissue away from the picture, views
-// that are kept.
+// Tests tools for a close look: the values under the pointer, a ruler, a plane that hides tissue in the picture, and
+// stored views.
 
 import { daemonForTest, Stage } from './stage';
 import { ViewerPage } from './viewer_page';
 
-const ANOTHER_COLOUR = 60; // see cut.test.ts
-const NEAR_MM = 0.6; // a picture has three pixels a millimetre
+const ANOTHER_COLOUR = 60; // least distance of another colour, of 441; see cut.test.ts
+const NEAR_MM = 0.6; // tolerance: a picture has three pixels a millimetre
 
 describe('looking closely', () => {
   const stage = new Stage(['--demo', 'fascia']);
@@ -37,7 +37,8 @@ describe('looking closely', () => {
     expect(heat).toBe('0 % of the heat exposure at which this tissue parts');
     const answered = await page.evaluate(() => {
       const canvas = document.querySelector('#picture')!;
-      canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: 400, clientY: 300 })); // asks
+      // the motion makes the page request the value
+      canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: 400, clientY: 300 }));
       canvas.dispatchEvent(new PointerEvent('pointerleave'));
       return window.cautery.tick + 60;
     });
@@ -60,7 +61,7 @@ describe('looking closely', () => {
     await forces.getByRole('button', { name: 'Apply the force' }).click();
     await other.page.getByRole('tab', { name: 'View' }).click();
     await other.page.getByLabel('Show what is under the pointer').check();
-    // Of a request that takes long there are words over the middle of the picture, which would take the pointer.
+    // While a request takes long, a message lies over the middle of the picture and would take the pointer.
     await other.until(() => document.querySelector('[aria-busy=true]') === null && document.querySelector('#veil')?.checkVisibility() === false, null, 'nothing is over the picture');
     const { x, y } = await other.project([0.004, 0.003, 0]);
     await other.page.mouse.move(x, y);
@@ -104,7 +105,7 @@ describe('looking closely', () => {
     await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true, null, 'what is left is told');
     await pointAt(places[0]);
     await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === false, null, 'what is cut away is not');
-    await page.mouse.down(); // as beside the tissue: the view is turned, and no tool is taken
+    await page.mouse.down(); // the press is beside the tissue: the view turns, and no tool is taken
     const corner = await viewer.project(places[1]);
     const { x, y } = await viewer.project(places[0]);
     await page.mouse.move(x + 60, y);

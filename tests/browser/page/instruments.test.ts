@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With energy `tissue` the tool in hand becomes another instrument, in a mode and with a power that its generator has.
-// Without it there is no generator to set: panels.test.ts.
+// With energy `tissue`, the selected tool becomes another instrument, in a mode and with a power that its generator
+// has. Without this kind of energy there is no generator to set: panels.test.ts.
 import AxeBuilder from '@axe-core/playwright';
 import type { Locator } from 'playwright-core';
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The layers scene is cut through its fascia at the daemon, step by step, and its frames are recorded. Played at
-// 60 Hz sharp, whatever the machine's load, they show that the page keeps up: one that fell behind would
-// show it as latency that grows with the stream. Then the cut itself is looked at; README.md shows it.
+// Tests that a page keeps up with a stream. The layers scene is cut through its fascia at the daemon, step by step, and
+// the frames are recorded. The recording is played at exactly 60 Hz, whatever the machine's load. A page that is too
+// slow would show a latency that grows with the stream. Then the test looks at the cut itself; README.md shows it.
 import type { CDPSession } from 'playwright-core';
 
 import { slowness } from '../../e2e/wire/machine.mjs';
@@ -12,22 +12,23 @@ import { ViewerPage } from './viewer_page';
 
 const SESSION = 'd1-layers';
 const RATE_HZ = 60;
-const DRAWN = 240; // ticks in which the hook is drawn along the cut
-const TICKS = 300; // and a second in which it is lifted
-const WORK_MS_MAX = 4; // of the page's main thread for a frame of the stream, times slowness()
-/** A page that takes a tenth longer than a frame lasts is 500 ms behind after these frames. */
+const DRAWN = 240; // ticks in which the hook moves along the cut
+const TICKS = 300; // ticks in all; in the last second the hook is lifted
+const WORK_MS_MAX = 4; // largest time of the page's main thread for a frame of the stream, times slowness()
+/** Largest delay at the end. A page that takes a tenth longer than a frame lasts is 500 ms behind after these
+ * frames. */
 const BEHIND_MS_MAX = 400;
 const TRIALS = 4;
-const HOT_C = 1200; // does in four seconds what half a minute does at 170 degC
+const HOT_C = 1200; // so hot that four seconds cut as much as half a minute at 170 degC
 const FASCIA_Z_M = 0.002;
-const REACH_M = 0.025; // of the cut, to both sides
+const REACH_M = 0.025; // half length of the cut
 const LIFT_M = 0.03;
-const STEP_M = 0.0005; // between the places where strands are looked for
+const STEP_M = 0.0005; // distance of the places where strands are looked for
 
 const median = (values: readonly number[]): number => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-/** The hook goes down at once, is drawn through the fascia, hot, and lifted. It is told to be hot before each step,
- * since the daemon darkens the tool of a driver who is silent for long. */
+/** Commands for a cut. The hook goes down at once, moves through the fascia with energy on, and is lifted. Energy is
+ * ordered before each step, because the daemon turns off the energy of a driver that is silent for long. */
 function cutting(): Command {
   const tool = { session: SESSION, tool: 'hook' };
   let sequence = 0;
@@ -44,7 +45,7 @@ function cutting(): Command {
   };
 }
 
-/** Processor time of the page's main thread in all its tasks: scripts, layout, collection of garbage. */
+/** Measures the processor time of the page's main thread in all its tasks: scripts, layout, garbage collection. */
 class ThreadMeter {
   private constructor(
     private readonly session: CDPSession,
@@ -67,7 +68,7 @@ async function taskMs(session: CDPSession): Promise<number> {
   return 1000 * (metrics.find(({ name }) => name === 'TaskDuration')?.value ?? NaN);
 }
 
-/** Pieces of fascia on the line of the cut with a gap on both sides. */
+/** Counts pieces of fascia on the line of the cut with a gap on both sides. */
 function strandsAcross(viewer: ViewerPage): Promise<number> {
   return viewer.page.evaluate(([reach, step]) => {
     let gaps = 0;
@@ -90,7 +91,7 @@ describe('the layers scene, cut', () => {
     recording = await record(url, SESSION, TICKS, cutting());
   });
 
-  /** Plays the recording to a page, checks that all of it comes, and returns by how much the page is behind at last. */
+  /** Plays the recording to a page, checks that the page gets all of it, and returns the page's delay at the end. */
   async function play(): Promise<{ lateMs: number; busyPerFrameMs: number }> {
     const replay = new Replay(stage.daemon.url, recording, RATE_HZ);
     const viewer = await ViewerPage.open(stage.browser, await replay.start());
@@ -114,7 +115,7 @@ describe('the layers scene, cut', () => {
     const deltas = recording.frames.length - 2;
     expect(deltas).toBeGreaterThanOrEqual(TICKS);
     expect(replay.sent).toBe(deltas);
-    expect(last.framesDecoded).toBe(deltas + 1); // and the key frame
+    expect(last.framesDecoded).toBe(deltas + 1); // all deltas and the key frame
     expect(last.framesSkipped).toBe(0);
     expect(replay.asked).not.toContain('stream.key_frame');
     expect(last.drawnFaces['fascia']).toBeLessThan(first.drawnFaces['fascia']);
@@ -124,7 +125,7 @@ describe('the layers scene, cut', () => {
     return { lateMs, busyPerFrameMs };
   }
 
-  // Other programs make a page late as well: the least of a few trials counts.
+  // Other programs delay a page too, so the least delay of a few trials is used.
   it('is decoded whole at 60 Hz and drawn without falling behind, with little work for the page', async () => {
     const played = [await play()];
     while (played.length < TRIALS && played.at(-1)!.lateMs >= BEHIND_MS_MAX) played.push(await play());
@@ -135,7 +136,8 @@ describe('the layers scene, cut', () => {
   it('gapes, with strands left across it and the fat under it', async () => {
     const viewer = await stage.openFirst();
     await viewer.live(SESSION);
-    expect((await viewer.state()).drawnFaces['fascia']).toBeLessThan(6000 - 50); // of deploy/scenes/layers.json
+    // the fascia in deploy/scenes/layers.json has 6000 faces
+    expect((await viewer.state()).drawnFaces['fascia']).toBeLessThan(6000 - 50);
     expect((await viewer.state()).drawnFaces['membrane']).toBeGreaterThan(0.8 * 6200);
     expect(await strandsAcross(viewer)).toBeGreaterThan(1);
     await viewer.until(() => window.cautery.idle, null, 'the sharp picture');

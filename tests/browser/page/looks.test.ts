@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture of the demo costs, by counting: draw calls, triangles, bytes of textures. A body around the
-// tissue may make each twice what the tissue alone on its cloth was. And what an eye looks for in it.
+// Tests the cost of a picture of the demo by counting draw calls, triangles and bytes of textures. With the body around
+// the tissue, each may be at most twice that of the tissue alone on its cloth. Also tests what a user must see in the
+// picture.
 import { Stage } from './stage';
 import type { Colour, ViewerPage } from './viewer_page';
 
-/** Of the tissue on its cloth alone, in the home view of `layers`. */
+/** Counts for the tissue alone on its cloth, in the home view of `layers`. */
 const ALONE = { calls: 10, triangles: 20_389, textureBytes: 48 ** 3 + 2 * 4 * 256 };
 
 interface Counts {
@@ -13,7 +14,7 @@ interface Counts {
   textureBytes: number;
 }
 
-/** In the page, before its scripts: counts what WebGL is told. */
+/** In the page, before its scripts: counts the calls of WebGL. */
 function countDrawing(): void {
   const counts: Counts = { calls: 0, triangles: 0, textureBytes: 0 };
   Object.assign(window, { counts });
@@ -33,7 +34,7 @@ function countDrawing(): void {
   const stored = (levels: number, format: number, width: number, height: number, depth: number, shrinks: number): void => {
     for (let level = 0; level < levels; level++) counts.textureBytes += (texel(format) * width * height * depth) / shrinks ** level;
   };
-  around('clear', () => Object.assign(counts, { calls: 0, triangles: 0 })); // a picture begins
+  around('clear', () => Object.assign(counts, { calls: 0, triangles: 0 })); // clear() begins a picture
   around('drawElements', ([mode, vertices]) => drawn(mode, vertices));
   around('drawArrays', ([mode, , vertices]) => drawn(mode, vertices));
   around('texStorage2D', ([, levels, format, width, height]) => stored(levels, format, width, height, 1, 4));
@@ -41,25 +42,29 @@ function countDrawing(): void {
 }
 
 type Point = [number, number, number];
-const SURFACE_Z_M = 0.002; // of the fascia in deploy/scenes/layers.json
-/** Of the tissue at home: enough to look wet, not so much that nothing else is seen. */
+const SURFACE_Z_M = 0.002; // height of the fascia in deploy/scenes/layers.json
+/** Share of nearly white pixels of the tissue in the home view: enough to look wet, and not so much that the tissue
+ * is covered. */
 const WET_LEAST = 0.004;
 const WET_MOST = 0.12;
-const SPARKS_MOST = 2e-4; // of its pixels; a hundred in a picture would be seen when the camera moves
-const BESIDE_M = 0.001; // a ring is a fifth of that wide
+const SPARKS_MOST = 2e-4; // largest share of sparkling pixels; a hundred in a picture would be visible when the camera moves
+const BESIDE_M = 0.001; // distance of the compared places from a ring, whose width is a fifth of this
 const HIGHER_M = 0.003;
 const TAP_MS = 50;
 const TAPS_MOST = 400;
-const BRIGHTER = 12; // of 255: a ring takes more than half of what it lies on to white
+// least difference of brightness, of 255: a ring moves the colour under it more than half of the way to white
+const BRIGHTER = 12;
 
 const light = (colours: readonly Colour[]): number => colours.reduce((sum, [r, g, b]) => sum + (r + g + b) / 3, 0) / colours.length;
 
-/** How much brighter the tissue is on the ring under the tip than on both sides of it, and the ring's radius. */
+/** Returns how much brighter the tissue is on the ring under the tip than on both sides of it, and the ring's
+ * radius. */
 async function ring(viewer: ViewerPage): Promise<{ brighter: number; radius: number }> {
   const { tip: [x, y, z], tool } = await viewer.state();
   const hot = tool?.hot_radius_m ?? 0.003;
   const radius = hot + 0.5 * (z - hot - SURFACE_Z_M);
-  const angles = Array.from({ length: 15 }, (_, i) => -Math.PI / 2 + 0.08 * (i - 7)); // before the tool, where it hides nothing
+  // angles in front of the tool, where it hides nothing
+  const angles = Array.from({ length: 15 }, (_, i) => -Math.PI / 2 + 0.08 * (i - 7));
   const circle = (r: number): Point[] => angles.map((angle) => [x + r * Math.cos(angle), y + r * Math.sin(angle), SURFACE_Z_M]);
   const colours = await viewer.coloursAt([radius, radius - BESIDE_M, radius + BESIDE_M].flatMap(circle), 1);
   const part = (i: number): number => light(colours.slice(i * angles.length, (i + 1) * angles.length));
@@ -101,7 +106,8 @@ describe('the picture of the demo', () => {
     await viewer.resume();
     await viewer.page.locator('#picture').focus();
     const { tip } = await viewer.state();
-    // By taps: on a busy machine a key that is held is released late, and the tool is far above the tissue by then.
+    // The tool is lifted by taps. On a busy machine a held key is released late, and the tool would be far above the
+    // tissue.
     for (let taps = 0; (await viewer.state()).tip[2] < tip[2] + HIGHER_M && taps < TAPS_MOST; taps++) await viewer.page.keyboard.press('KeyS', { delay: TAP_MS });
     expect((await viewer.state()).tip[2]).toBeGreaterThan(tip[2] + HIGHER_M);
     await viewer.pause();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No accessibility fault in any panel, dark or light, wide or on a phone; every control can be reached by
-// keyboard and hit by a finger; text may be twice as large; the bundle is small.
+// Tests that no panel has an accessibility fault, dark or light, wide or on a phone. Every control can be reached by
+// keyboard and hit by a finger. Text may be twice as large. The bundle is small.
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -12,29 +12,30 @@ import { Stage } from './stage';
 import { COARSE, MOVING, ViewerPage } from './viewer_page';
 
 const TABS = ['Sessions', 'Tools', 'Materials', 'View', 'Plots'];
-const BUNDLE_BYTES_MAX = 1_000_000; // compressed
-const LAYOUT_SHIFT_MAX = 0.1; // "good" by the web's own measure, web.dev/cls
-const COLOUR_RULES = ['color-contrast', 'link-in-text-block']; // all that differs between dark and light
+const BUNDLE_BYTES_MAX = 1_000_000; // size after compression
+const LAYOUT_SHIFT_MAX = 0.1; // the limit of "good" by web.dev/cls
+const COLOUR_RULES = ['color-contrast', 'link-in-text-block']; // the only rules whose result differs between dark and light
 const DESK = { width: 1100, height: 720 };
 const PHONE = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true };
 const distribution = fileURLToPath(new URL('../../../clients/web/dist', import.meta.url));
 
-/** Screens of desks, tablets and phones. */
+/** Common sizes of screens of desks, tablets and phones. */
 const COMMON_SIZES = [[1920, 1080], [1366, 768], [1024, 768], [820, 1180], [390, 780], [360, 640], [780, 390]] as const;
-const TARGET_PX = 44; // what a finger hits
+const TARGET_PX = 44; // least size of a target for a finger
 
-/** All that a panel can show is shown. */
+/** Opens everything that a panel can show. */
 async function openAll(viewer: ViewerPage): Promise<void> {
   await viewer.page.evaluate(() => document.querySelectorAll('details').forEach((details) => (details.open = true)));
 }
 
-/** In the page: presses a tab, and waits until the page has laid its panel out. */
+/** In the page: presses a tab, and waits until the page has laid out the tab's panel. */
 async function showNow(tab: Element): Promise<void> {
   (tab as HTMLElement).click();
   for (let i = 0; i < 2; i++) await new Promise(requestAnimationFrame);
 }
 
-/** In the page: elements whose own words are wider than they are, and choices that do not show all of theirs. */
+/** In the page: returns elements that are narrower than their text, and selections that do not show all of their
+ * text. */
 function clippedWords(): string[] {
   const pen = document.createElement('canvas').getContext('2d')!;
   const ownWords = (one: Element): boolean => [...one.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.textContent!.trim() !== '');
@@ -48,23 +49,24 @@ function clippedWords(): string[] {
   };
   return [...document.body.querySelectorAll<HTMLElement>('*')]
     .filter((one) => (ownWords(one) || one instanceof HTMLSelectElement) && one.checkVisibility() && !one.matches('.reading, .unseen, option, noscript, script'))
-    .filter((one) => getComputedStyle(one).clipPath === 'none' && wide(one)) // clipped away are words for screen readers alone
+    .filter((one) => getComputedStyle(one).clipPath === 'none' && wide(one)) // clipped elements are only for screen readers
     .map((one) => one.outerHTML.slice(0, 100));
 }
 
-/** All that axe finds in a part of the page, its best practices included. An analysis of the whole page takes seconds. */
+/** Returns all faults that axe finds in a part of the page, best practices included. An analysis of the whole page
+ * takes seconds. */
 async function faults(viewer: ViewerPage, part: string, rules: string[] = []): Promise<string[]> {
-  // Details of what passes would take half of the time, and so would a second page, which only frames of other hosts need.
+  // Details of passed rules would take half of the time. So would a second page, which only frames of other hosts need.
   const axe = new AxeBuilder({ page: viewer.page }).options({ resultTypes: ['violations'] }).setLegacyMode().include(part);
   if (rules.length > 0) axe.withRules(rules);
   const { violations } = await axe.analyze();
   return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(' | ')}`);
 }
 
-/** Numbers as CSS has them: text of the size that a browser has by default, and of twice that. */
+/** Sizes of text: the browser's default, and twice that. */
 const TEXT = [{ standard: 16, rootPx: 14 }, { standard: 32, rootPx: 28 }] as const;
 
-/** In the page: how far its content is wider than the window. */
+/** In the page: returns how much wider its content is than the window. */
 const overflow = (): number => document.documentElement.scrollWidth - window.innerWidth;
 
 async function sizeText(viewer: ViewerPage, { standard, rootPx }: (typeof TEXT)[number]): Promise<void> {
@@ -95,7 +97,7 @@ async function holdsLargeText(viewer: ViewerPage, name: string): Promise<void> {
   await viewer.screenshot(`text-200-${name.replace('a ', '')}`);
 }
 
-/** Operate with its help, then Research, whole and panel by panel. */
+/** Analyses Operate with its help, then Research, as a whole and panel by panel. */
 async function findsNoFault(viewer: ViewerPage, tabs: readonly string[], rules: string[] = []): Promise<void> {
   await viewer.page.getByRole('button', { name: 'Operate' }).click();
   await viewer.page.getByRole('button', { name: 'Help' }).click();
@@ -112,8 +114,8 @@ async function findsNoFault(viewer: ViewerPage, tabs: readonly string[], rules: 
   await viewer.page.getByRole('button', { name: 'Understood' }).click();
 }
 
-// One page on a desk and one on a phone, which the tests look at in turn: a page that comes up costs more than most of them.
-// Tests that need panels as they come up are first; `openAll` is for good.
+// One page on a desk and one on a phone, which the tests use in turn: opening a page takes longer than most tests.
+// Tests that need panels in their first state come first, because `openAll` cannot be undone.
 describe('manners', () => {
   const stage = new Stage(['--demo', 'layers'], COARSE, 'processor');
   let viewer: ViewerPage;
@@ -122,7 +124,7 @@ describe('manners', () => {
     beforeAll(async () => {
       viewer = await stage.open();
       await viewer.live('d1-layers');
-      await viewer.pause(); // the processor is the browser's from here on
+      await viewer.pause(); // from here on, only the browser uses the processor
     });
     afterAll(() => viewer.close());
 
@@ -147,7 +149,7 @@ describe('manners', () => {
         await viewer.page.getByRole('tab', { name: TABS[0] }).click();
         const low = await viewer.page.evaluate(() =>
           [...document.querySelectorAll('input[type=range]')].filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 24).map((one) => one.outerHTML.slice(0, 90)));
-        expect.soft(low).toEqual([]); // WCAG 2.2, 2.5.8
+        expect.soft(low).toEqual([]); // rule 2.5.8 of WCAG 2.2
         for (const tab of TABS) {
           await viewer.page.getByRole('tab', { name: tab }).click();
           await openAll(viewer);
@@ -169,7 +171,8 @@ describe('manners', () => {
           expect.soft(await page.evaluate(clippedWords), `${width} x ${height}, Operate`).toEqual([]);
           await page.getByRole('button', { name: 'Research' }).click();
           for (const tab of TABS) {
-            await page.getByRole('tab', { name: tab }).evaluate(showNow); // a click of the mouse has the page drawn for it, which takes half a second
+            // A click of the mouse would make the browser draw the page, which takes half a second.
+            await page.getByRole('tab', { name: tab }).evaluate(showNow);
             await openAll(viewer);
             expect.soft(await page.evaluate(clippedWords), `${width} x ${height}, Research ${tab}`).toEqual([]);
           }

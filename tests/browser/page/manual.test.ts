@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The manual as a daemon serves it: whole, within the strict Content-Security-Policy, with a search that works.
+// Tests the manual as a daemon serves it: complete, within the strict Content-Security-Policy, and with a search that
+// works.
 import { fileURLToPath } from 'node:url';
 
 import { Stage } from './stage';
@@ -7,13 +8,13 @@ import { COARSE } from './viewer_page';
 
 const MANUAL = fileURLToPath(new URL('../../../clients/web/dist-manual', import.meta.url));
 const BEYOND = /^(https?|mailto):/;
-/** What `default-src 'none'; script-src 'self'; style-src 'self'` refuses. */
+/** Matches what the policy `default-src 'none'; script-src 'self'; style-src 'self'` refuses. */
 const INLINE = /<script(?![^>]*\bsrc=)[^>]*>|<style\b|\sstyle="|\son[a-z]+="/;
 const TYPES: [RegExp, RegExp][] = [[/\.html$|\/$/, /^text\/html/], [/\.css$/, /^text\/css/], [/\.js$/, /^text\/javascript/],
   [/\.svg$/, /^image\/svg/], [/\.png$/, /^image\/png/], [/\.jpg$/, /^image\/jpeg/],
   [/\.json$/, /^application\/json/]];
 
-/** Every address that pages link or load, from the first page on, with the text that is there. */
+/** Returns every address that pages link or load, beginning with the first page, and its text. */
 async function follow(first: string): Promise<Map<string, string>> {
   const [found, wanted] = [new Map<string, string>(), [first]];
   for (let url = wanted.pop(); url !== undefined; url = wanted.pop()) {
@@ -49,7 +50,7 @@ describe('the manual', () => {
     expect(found.size).toBeGreaterThan(60);
     const pages = [...found].filter(([, text]) => text !== '');
     expect(pages.filter(([, text]) => INLINE.test(text)).map(([url]) => url)).toEqual([]);
-    for (const [url, text] of pages) { // links within and between pages lead to headings that exist
+    for (const [url, text] of pages) { // links within and between pages must lead to headings that exist
       for (const [, link] of text.matchAll(/\bhref="([^"]*#[^"]+)"/g)) {
         if (BEYOND.test(link)) continue;
         const { href, hash } = new URL(link, url);
@@ -66,7 +67,7 @@ describe('the manual', () => {
     expect(await page.locator('article').isHidden()).toBe(true);
     expect(await page.locator('#found li').count()).toBeGreaterThan(1);
     expect(await page.locator('#found').innerText()).toMatch(/virtual coupling/i);
-    await page.getByLabel('Search').press('Enter'); // the first of them
+    await page.getByLabel('Search').press('Enter'); // opens the first result
     await page.waitForURL(/\/manual\/.+/);
     expect(await page.locator('article').innerText()).toMatch(/virtual coupling/i);
     await page.getByLabel('Search').fill('qqqqq');
@@ -88,7 +89,7 @@ describe('the manual', () => {
     const page = await open('computation.html');
     const heights = await page.locator('.equation math').evaluateAll((all) => all.map((each) => each.getBoundingClientRect().height));
     expect(heights.length).toBeGreaterThan(20);
-    expect(Math.min(...heights)).toBeGreaterThan(12); // px: a line of type at least
+    expect(Math.min(...heights)).toBeGreaterThan(12); // px: at least one line of text
     await page.goto(`${stage.daemon.url}manual/architecture.html`);
     expect(await page.locator('article img').evaluate((img) => (img as HTMLImageElement).naturalWidth)).toBe(860);
     await page.close();

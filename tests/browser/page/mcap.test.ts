@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cut recorded as MCAP, by the page and by `cautery record --mcap` beside it: the format's own library
-// reads both back.
+// Tests a cut that is recorded as MCAP, by the page and by `cautery record --mcap` at the same time. The format's own
+// library reads both files.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -16,7 +16,7 @@ import { Stage } from './stage';
 
 const HOT_C = 900;
 const STEP_NS = 100_000_000n;
-const SHARE_TAKEN = 0.5; // of the steps between first and last: a busy machine misses some
+const SHARE_TAKEN = 0.5; // least share of the steps between the first and the last: a busy machine misses some steps
 
 interface Recorded {
   schema: unknown;
@@ -43,7 +43,7 @@ async function read(file: string): Promise<Recorded> {
   return { schema: JSON.parse(new TextDecoder().decode(schema.data)), messages };
 }
 
-/** A schema without its words for people. */
+/** Returns a schema without its descriptions. */
 function bare(schema: unknown): unknown {
   if (Array.isArray(schema)) return schema.map(bare);
   if (typeof schema !== 'object' || schema === null) return schema;
@@ -99,12 +99,12 @@ describe('a recording as MCAP', () => {
     const url = stage.daemon.url.replace('http', 'ws');
     const command = spawn(program, ['record', '--mcap', written, '--seconds', '600', '--url', url], { stdio: ['ignore', 'ignore', 'pipe'] });
     const ended = once(command, 'exit');
-    await once(command.stderr, 'data'); // its first message is written
+    await once(command.stderr, 'data'); // the program has written its first message
     await viewer.grab([-0.02, 0, 0]);
     await viewer.cut(0, 0, -0.02, -0.012, 2);
-    await viewer.pause(); // both see the same last state
+    await viewer.pause(); // after the pause, both recorders get the same last state
     left = await viewer.faces();
-    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300))); // three steps of the recordings
+    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300))); // waits for three steps of the recordings
     const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Stop and save the MCAP file' }).click()]);
     expect(download.suggestedFilename()).toMatch(/^cautery-d1-fascia-\d+\.mcap$/);
     await download.saveAs(saved);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the panels change reaches the tissue: forces, pins, limits for each direction, snapshots. And what
-// is refused is said where it was asked.
+// Tests that changes in the panels reach the tissue: forces, pins, limits for each direction, snapshots. A refusal is
+// shown where the user made the request.
 import type { Locator } from 'playwright-core';
 
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
 
 const LIFTED_M = 0.003;
-const LIST_READ_AGAIN_MS = 5500; // REFRESH_MS of panels/sessions.ts, and a little
+const LIST_READ_AGAIN_MS = 5500; // REFRESH_MS of panels/sessions.ts, and a little more
 
 describe('panels', () => {
   const stage = new Stage(['--demo', 'fascia'], COARSE);

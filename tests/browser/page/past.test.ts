@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking back: the timeline shows the tissue as it was, in one page alone, while the session goes on.
+// Tests a look at the past: the timeline shows the tissue at an earlier time, in one page only, while the session
+// continues.
 import { Stage } from './stage';
 import { COARSE, type ViewerPage } from './viewer_page';
 
-const FACES = 6000; // of deploy/scenes/fascia.json
+const FACES = 6000; // number of faces in deploy/scenes/fascia.json
 const HOT_C = 900;
 
 describe('looking back', () => {
@@ -18,7 +19,7 @@ describe('looking back', () => {
     await viewer.heatTool(HOT_C);
     await viewer.grab([-0.02, 0, 0]);
     await viewer.cut(0, 0, -0.02, 0, 4);
-    // What is hot still parts a face or two after the hand has gone.
+    // Hot tissue still parts a face or two after the hand has gone.
     for (let before = -1; left !== before; ) {
       before = left;
       const { tick } = await viewer.state();

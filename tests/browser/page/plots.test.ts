@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tools did over the session is plotted, with one cursor in all plots that is the timeline's too.
+// Tests the plots of the tools over the session. They share one cursor with each other and with the timeline.
 
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
 
 const HOT_C = 150;
 const BODY_C = 37;
-const FRAMES_APART_S = 0.2; // that a busy machine does not tell
+const FRAMES_APART_S = 0.2; // a busy machine may leave this time between two frames
 
-/** In the page, before anything else: keeps what plots write outside of their canvas. */
+/** In the page, before its scripts: stores what plots write outside of their canvas. */
 function watchPlotWords(): void {
   const canvas = CanvasRenderingContext2D.prototype;
   const write = Reflect.get<CanvasRenderingContext2D, 'fillText'>(canvas, 'fillText');
@@ -40,7 +40,7 @@ describe('plots over the session', () => {
     expect(seconds, words).toBeDefined();
     return { seconds: Number(seconds), celsius: Number(celsius), joules: Number(joules) };
   };
-  /** How far right each plot has drawn the cursor, pixels. */
+  /** Returns the x position of the cursor in each plot, pixels. */
   const cursors = (): Promise<number[]> =>
     viewer.page.evaluate(() => [...document.querySelectorAll<HTMLElement>('[aria-label="Tools over the session"] .u-cursor-x')].map(({ style }) => new DOMMatrix(style.transform).e));
   const spread = (places: readonly number[]): number => Math.max(...places) - Math.min(...places);
@@ -65,8 +65,8 @@ describe('plots over the session', () => {
     const { seconds, celsius } = await told();
     const { tick, tipTemperatureC } = await viewer.state();
     expect(Math.abs(60 * seconds - tick)).toBeLessThan(2);
-    expect(Math.abs(celsius - tipTemperatureC!)).toBeLessThanOrEqual(0.5); // it is told in whole degrees
-    expect(celsius).toBeGreaterThan(BODY_C + 5); // it cools until the session pauses
+    expect(Math.abs(celsius - tipTemperatureC!)).toBeLessThanOrEqual(0.5); // the plot shows whole degrees
+    expect(celsius).toBeGreaterThan(BODY_C + 5); // the tip cools until the session pauses
   });
 
   it('share a cursor that shows the values where it points, and holds the timeline there', async () => {
@@ -78,7 +78,8 @@ describe('plots over the session', () => {
     const before = await told();
     expect(before.seconds).toBeLessThan(newest.seconds);
     expect(before.celsius).toBeLessThan(newest.celsius);
-    await expect.poll(async () => spread(await cursors()), { timeout: 30_000 }).toBeLessThanOrEqual(1); // each rounds its own place to whole pixels
+    // each plot rounds its own position to whole pixels
+    await expect.poll(async () => spread(await cursors()), { timeout: 30_000 }).toBeLessThanOrEqual(1);
     expect(await cursors()).toHaveLength(3);
     await page.mouse.down();
     await page.mouse.up();
@@ -100,7 +101,7 @@ describe('plots over the session', () => {
 
   it('follow the timeline', async () => {
     const { page } = viewer;
-    await page.mouse.move(5, 300); // off the plots
+    await page.mouse.move(5, 300); // moves the pointer off the plots
     await page.locator('#tick').focus();
     const newest = Number(await page.locator('#tick').getAttribute('max'));
     await page.keyboard.press('End');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What takes its time says what it is, with a moving bar, over whatever is in the picture; and where it
-// ends there is tissue. A door holds the daemon's answers up for as long as the test looks.
+// Tests that a long operation says what it is, with a moving bar, over any picture, and that tissue is shown when it
+// ends. A door holds the daemon's answers back while the test looks.
 import { HoldingDoor } from './door';
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
@@ -22,7 +22,7 @@ describe('while something is under way', () => {
     await viewer.page.locator('#veil p').getByText(words).waitFor();
     expect(await viewer.page.locator('#veil progress').isVisible()).toBe(true);
   };
-  /** The veil goes, and under it is tissue of a size. */
+  /** Waits until the veil has gone and tissue of a visible size is in the picture. */
   const seen = async (): Promise<void> => {
     await viewer.until(() => document.querySelector<HTMLElement>('#veil')!.hidden === true, null, 'the picture is live again');
     const { least, most } = await viewer.page.evaluate(() => window.cautery.extent());
@@ -47,10 +47,10 @@ describe('while something is under way', () => {
 
   it('a session that somebody else is making says so', async () => {
     const { page } = viewer;
-    // Made on the daemon in a moment: its answers are changed on their way, as if it were still at it.
+    // The daemon makes the session in a moment. Its answers are changed on their way, as if it were still busy.
     door.change = (text) => text.replace(/("session": ?"d1-second"[^{}]*?"state": ?)"(running|paused)"/g, '$1"starting"');
     await viewer.until(() => window.location.search.includes('session=d1-second'), null, 'the address');
-    await page.reload(); // it comes back to d1-second
+    await page.reload(); // the page returns to d1-second
     await told(/^d1-second is being built…$/);
     door.change = null;
     await page.reload();
@@ -65,7 +65,7 @@ describe('while something is under way', () => {
     await page.getByLabel('Name of the new session').fill('twin');
     await page.getByRole('button', { name: 'Fork this session' }).click();
     await told(/^Copying the session…$/);
-    expect((await viewer.state()).session).toBe('d1-second'); // under the veil nothing has changed
+    expect((await viewer.state()).session).toBe('d1-second'); // the session under the veil is the same as before
     expect(await viewer.faces()).toBe(faces);
     door.letGo();
     await viewer.live('d1-twin');

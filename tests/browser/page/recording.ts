@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frames of a real session as the daemon makes them. The session takes its steps one by one, so that the same
-// comes of the same commands whatever the machine's load.
+// The frames of a real session as the daemon makes them. The session takes its steps one by one. So the same commands
+// give the same frames, whatever the machine's load.
 import { setTimeout as delay } from 'node:timers/promises';
 
 import { PROTOCOL } from './door';
@@ -17,7 +17,7 @@ const CHANNELS = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statist
 
 export interface Recording {
   session: string;
-  /** the topology, then a key frame, then deltas; a tick has more than one where tools are moved between two */
+  /** the topology, then a key frame, then deltas; a tick has several deltas if tools are moved between two steps */
   frames: Buffer[];
 }
 
@@ -28,8 +28,8 @@ export const tickOf = (frame: Buffer): number => Number(frame.readBigUInt64LE(TI
 class Recorder {
   readonly frames: Buffer[] = [];
   private readonly answers = new Map<number, { resolve(result: unknown): void; reject(error: Error): void }>();
-  private last = 0; // id of a request
-  private look = (): void => undefined; // at each frame
+  private last = 0; // id of the last request
+  private look = (): void => undefined; // called at each frame
 
   constructor(
     private readonly socket: MessageSocket,
@@ -39,11 +39,11 @@ class Recorder {
     socket.onBinary = (frame): void => this.keep(frame);
   }
 
-  /** Pauses the session, joins it, and has it take so many steps; `steer` speaks before each. */
+  /** Pauses the session, joins it, and makes it take `steps` steps; `steer` sends its commands before each step. */
   async take(steps: number, steer: Command): Promise<void> {
     const { session } = this;
     await this.call('hello', { version: 1, client: 'recorder' });
-    while (!(await this.isThere())) await delay(LOOK_MS); // the demo is still being made
+    while (!(await this.isThere())) await delay(LOOK_MS); // waits while the daemon still makes the demo
     await this.call('session.pause', { session });
     await this.call('session.join', { session, channels: CHANNELS });
     await this.until(() => this.frames.length === 2);
@@ -97,7 +97,7 @@ class Recorder {
   }
 }
 
-/** What `steer` makes of a session in so many steps. */
+/** Returns the frames of a session that takes `steps` steps under the commands of `steer`. */
 export async function record(daemonUrl: string, session: string, steps: number, steer: Command): Promise<Recording> {
   const socket = await MessageSocket.connect(new URL('v1', daemonUrl), PROTOCOL);
   const recorder = new Recorder(socket, session);

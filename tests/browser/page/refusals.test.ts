@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What does not happen is said at once, where the eye is: at the tool.
+// Tests that a refused action is reported at once, at the tool, where the user looks.
 
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
@@ -22,7 +22,7 @@ describe('energy that a busy machine cuts', () => {
     await viewer.until(() => window.cautery.energized, null, 'energy is on');
     await page.evaluate((ms) => {
       const end = performance.now() + ms;
-      while (performance.now() < end); // the page hangs, with the key held
+      while (performance.now() < end); // the page hangs while the key is held
     }, BUSY_MS);
     await viewer.until(() => document.querySelector('#said')?.textContent?.includes('Energy is off') === true, null, 'it is said');
     const said = await page.locator('#said').textContent();
@@ -31,7 +31,7 @@ describe('energy that a busy machine cuts', () => {
     expect((await viewer.state()).energized).toBe(false);
     const { tick } = await viewer.state();
     await viewer.until((later) => window.cautery.tick > later, tick + 60, 'a second later');
-    expect(await page.locator('#said').textContent()).toContain('Energy is off'); // as long as the key is held
+    expect(await page.locator('#said').textContent()).toContain('Energy is off'); // the message stays as long as the key is held
     await page.keyboard.up('Space');
     expect(await page.locator('#said').textContent()).not.toContain('Energy is off');
     await page.keyboard.down('Space');

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stream at exactly its rate, whatever the machine's load. A proxy in front of the daemon plays the recorded frames of a
-// real session to the page, from the moment that the test chooses. It passes all other messages on.
+// Plays a stream at exactly its rate, whatever the machine's load. A proxy in front of the daemon sends the recorded
+// frames of a real session to the page, beginning when the test chooses. It passes all other messages on.
 import { Door, type Said } from './door';
 import { tickOf, type Recording } from './recording';
 import { MessageSocket } from './socket';
 
 const PUBLISHED_AT = 56; // offset of published_us in a frame's header
 const LOOK_MS = 2;
-const WHOLE = 2; // the first frames: topology and key
+const WHOLE = 2; // number of the frames before the deltas: topology and key frame
 
 export class Replay extends Door {
-  /** deltas sent so far, and the tick of the last */
+  /** number of deltas sent so far; lastTick: tick of the last delta */
   sent = 0;
   readonly lastTick: number;
   private page: MessageSocket | undefined;
   private timer: NodeJS.Timeout | undefined;
-  private clockUs = 0; // the daemon's clock when this one stood at 0
+  private clockUs = 0; // the daemon's clock at the time 0 of this process's clock
 
   constructor(
     daemonUrl: string,
@@ -40,10 +40,10 @@ export class Replay extends Door {
     for (const frame of this.recording.frames.slice(0, WHOLE)) this.send(frame);
   }
 
-  /** The daemon's own frames stay out: the session is paused, and the page sees the recording. */
+  /** Drops the daemon's own frames: the session is paused, and the page gets the recording. */
   protected override binary(): void {}
 
-  /** The deltas, to the page that has joined. */
+  /** Sends the deltas to the page that has joined. */
   play(): void {
     const deltas = this.recording.frames.slice(WHOLE);
     const started = performance.now();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page by https and its stream by wss, with TLS in the daemon itself.
+// Tests the page over https and its stream over wss, with TLS in the daemon itself.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -19,11 +19,12 @@ describe('a daemon with TLS', () => {
 
   it('serves a page that is live, and talks to it by wss alone', async () => {
     const url = stage.daemon.url.replace('http:', 'https:');
-    const viewer = await ViewerPage.open(stage.browser, url, { ignoreHTTPSErrors: true, ...COARSE }); // of no authority that it knows
+    // the browser does not know the certificate's authority
+    const viewer = await ViewerPage.open(stage.browser, url, { ignoreHTTPSErrors: true, ...COARSE });
     await viewer.live('d1-fascia');
     expect([...viewer.schemes].sort()).toEqual(['https:', 'wss:']);
     expect(await viewer.page.evaluate(() => isSecureContext)).toBe(true);
-    await viewer.page.keyboard.down('Space'); // takes the free tool, and heats
+    await viewer.page.keyboard.down('Space'); // takes the free tool and turns energy on
     await viewer.until(() => window.cautery.energized, null, 'energy is on');
     await viewer.page.keyboard.up('Space');
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');

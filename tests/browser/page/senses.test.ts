@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke and sound are there while tissue burns and end afterwards. Each has a box that turns it off. With reduced motion
-// there is no smoke. The alarm comes where a page loses its daemon with energy on.
+// Tests that smoke and sound exist while tissue burns, and end afterwards. Each has a box that turns it off. With
+// reduced motion there is no smoke. The alarm sounds if a page loses its daemon with energy on.
 import { Stage } from './stage';
 import { COARSE, MOVING, ViewerPage } from './viewer_page';
 
 const CUT_HZ = 660;
 const PLACE: [number, number, number] = [0.01, 0.01, 0];
-const ELSEWHERE: [number, number, number] = [0.01, -0.005, 0]; // where tissue is still whole
-const ON_M = 0.0005; // a part of the way
+const ELSEWHERE: [number, number, number] = [0.01, -0.005, 0]; // a place where tissue is still whole
+const ON_M = 0.0005; // length of a part of the way
 const PARTS = 60;
-const TICKS = 6; // at least, for each part
+const TICKS = 6; // least number of ticks for each part
 
 declare global {
   interface Window {
@@ -29,7 +29,7 @@ const stop = async (viewer: ViewerPage): Promise<void> => {
   await viewer.until(() => !window.cautery.energized, null, 'energy is off');
 };
 
-/** Notes in the page from now on whether tone and sizzle were ever there together, and the most smoke. */
+/** From now on, notes in the page whether tone and sizzle ever exist together, and the largest amount of smoke. */
 const watch = (viewer: ViewerPage): Promise<void> => viewer.page.evaluate((hz) => {
   window.senses = { together: false, puffs: 0 };
   setInterval(() => {
@@ -38,7 +38,8 @@ const watch = (viewer: ViewerPage): Promise<void> => viewer.page.evaluate((hz) =
     window.senses.puffs = Math.max(window.senses.puffs, puffs);
   }, 5);
 }, CUT_HZ);
-/** Leads the hot tool on through tissue until the page has noted both: what it touches is soon gone. */
+/** Leads the hot tool through tissue until the page has noted both. The tool must move, because the tissue that it
+ * touches is soon gone. */
 const leadOn = async (viewer: ViewerPage, [x, y, z]: [number, number, number]): Promise<void> => {
   const noted = (): Promise<boolean> => viewer.page.evaluate(() => window.senses.together && window.senses.puffs > 2);
   for (let part = 1; part <= PARTS && !(await noted()); part++) {
@@ -76,7 +77,7 @@ describe('smoke and sound', () => {
     const viewer = await stage.openFirst();
     await burn(viewer, ELSEWHERE);
     await viewer.until(() => window.cautery.heard.toneHz > 0, null, 'a tone');
-    await viewer.page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 500))); // smoke would be there
+    await viewer.page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 500))); // smoke would appear within this time
     expect((await viewer.state()).puffs).toBe(0);
     await stage.daemon.kill();
     await viewer.until(() => window.cautery.alarms === 1 && window.cautery.heard.toneHz === 0, null, 'the alarm');

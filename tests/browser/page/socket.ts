@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// As much of RFC 6455 as tests need to stand between a page and a daemon: whole messages, either end.
+// The part of RFC 6455 that tests need to stand between a page and a daemon: whole messages, at either end.
 import { createHash, randomBytes } from 'node:crypto';
 import { request, type IncomingMessage } from 'node:http';
 import type { Duplex } from 'node:stream';
@@ -20,7 +20,7 @@ export class MessageSocket {
   private parts: Buffer[] = [];
   private opcode = 0;
 
-  /** `masks`: this is the client's end. */
+  /** `masks` is true at the client's end. */
   constructor(
     private readonly stream: Duplex,
     private readonly masks: boolean,
@@ -30,7 +30,7 @@ export class MessageSocket {
     stream.on('error', () => stream.destroy());
   }
 
-  /** The client's end of a new connection. */
+  /** Returns the client's end of a new connection. */
   static connect(url: URL, protocol: string): Promise<MessageSocket> {
     return new Promise((resolve, reject) => {
       const headers = {
@@ -49,7 +49,7 @@ export class MessageSocket {
     });
   }
 
-  /** The server's end of a connection that asks for an upgrade. */
+  /** Returns the server's end of a connection that requests an upgrade. */
   static accept(asked: IncomingMessage, stream: Duplex): MessageSocket {
     const key = asked.headers['sec-websocket-key'] ?? '';
     const accepted = createHash('sha1').update(key + GUID).digest('base64');
@@ -80,7 +80,7 @@ export class MessageSocket {
     head[1] = (this.masks ? 0x80 : 0) | (long ? 127 : extra > 0 ? 126 : payload.length);
     if (long) head.writeBigUInt64BE(BigInt(payload.length), 2);
     else if (extra > 0) head.writeUInt16BE(payload.length, 2);
-    // A mask of zeros is a mask; what it protects from does not stand between tests.
+    // A mask of zeros is allowed. Masks protect from attacks that tests do not have.
     this.stream.write(Buffer.concat([head, Buffer.alloc(this.masks ? 4 : 0), payload]));
   }
 
@@ -93,7 +93,7 @@ export class MessageSocket {
     }
   }
 
-  /** Takes one frame off the front; the bytes it had, or 0 while it is not whole. */
+  /** Takes one frame from the front. Returns the frame's bytes, or 0 while the frame is incomplete. */
   private frame(bytes: Buffer): number {
     if (bytes.length < 2) return 0;
     const short = bytes[1] & 0x7f;

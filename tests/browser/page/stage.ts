@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tests of a `describe` play on: a daemon and a browser, there before the first of them and gone
-// after the last, passed or failed.
+// The daemon and the browser for the tests of a `describe`. They start before the first test and end after the last,
+// whether it passes or fails.
 import type { Browser } from 'playwright-core';
 
 import { Daemon } from './daemon';
 import { launch, ViewerPage, type Composing, type PageOptions } from './viewer_page';
 
-/** A browser for the tests of the `describe` in which it is made. */
+/** A browser for the tests of the `describe` that creates it. */
 export class BrowserStage {
   browser!: Browser;
 
@@ -18,7 +18,8 @@ export class BrowserStage {
   }
 }
 
-/** A daemon besides, and pages of it, all with the options `common`. Whatever the `describe` does before all of its tests comes after both have started. */
+/** A daemon in addition, and pages of it, all with the options `common`. The beforeAll functions of the `describe`
+ * run after both have started. */
 export class Stage extends BrowserStage {
   readonly daemon: Daemon;
 
@@ -29,18 +30,18 @@ export class Stage extends BrowserStage {
     afterAll(() => this.daemon.end());
   }
 
-  /** A page for researchers. */
+  /** Opens a page for researchers. */
   open(options: PageOptions = {}): Promise<ViewerPage> {
     return ViewerPage.open(this.browser, this.daemon.url, { ...this.common, ...options });
   }
 
-  /** A page as it comes up the first time. */
+  /** Opens a page in the state of a first visit. */
   openFirst(options: PageOptions = {}): Promise<ViewerPage> {
     return ViewerPage.openFirst(this.browser, this.daemon.url, { ...this.common, ...options });
   }
 }
 
-/** A daemon for one test, started; gone when the test has passed or failed. */
+/** Starts a daemon for one test. The daemon ends when the test has passed or failed. */
 export async function daemonForTest(settings: readonly string[]): Promise<Daemon> {
   const daemon = new Daemon(settings);
   onTestFinished(() => daemon.end());

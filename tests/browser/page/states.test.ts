@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture that is not what it seems says so: no WebGL, a lost context, a lost daemon. The address comes
-// back to what was looked at. The token dialog says what is wrong and locks nobody out.
+// Tests that a picture that is not live says so: no WebGL, a lost context, a lost daemon. The address restores the
+// view. The token dialog says what is wrong and lets the user try again.
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -9,14 +9,14 @@ import { HoldingDoor } from './door';
 import { Stage } from './stage';
 import { COARSE, ViewerPage, type Colour } from './viewer_page';
 
-const SAME_COLOUR = 30; // of 441
+const SAME_COLOUR = 30; // largest distance of two colours that count as the same, of 441
 
 const veil = (viewer: ViewerPage, words: string): Promise<void> =>
   viewer.until((wanted) => document.querySelector('#veil')?.textContent?.includes(wanted) === true && document.querySelector('#veil')!.checkVisibility(), words, words);
 const unveiled = (viewer: ViewerPage): Promise<void> =>
   viewer.until(() => document.querySelector('#veil')?.checkVisibility() === false, null, 'the picture is live again');
 
-/** In the page, before its scripts: a browser without WebGL. */
+/** In the page, before its scripts: makes a browser without WebGL. */
 function withoutWebGl(): void {
   // eslint-disable-next-line @typescript-eslint/unbound-method -- called with its canvas below
   const real = HTMLCanvasElement.prototype.getContext as (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) => unknown;
@@ -25,7 +25,7 @@ function withoutWebGl(): void {
   } as typeof HTMLCanvasElement.prototype.getContext;
 }
 
-// One page goes through all of it, from its first moment to the loss of its daemon; another one has no WebGL.
+// One page goes through all states, from its first moment to the loss of its daemon. Another page has no WebGL.
 describe('a picture that is not live, and its address', () => {
   const stage = new Stage(['--demo', 'fascia'], {}, 'processor');
   let viewer: ViewerPage;
@@ -68,12 +68,12 @@ describe('a picture that is not live, and its address', () => {
     await viewer.drawn();
     const again = await viewer.project([0.05, 0.03, 0]);
     expect.soft(Math.hypot(again.x - corner.x, again.y - corner.y)).toBeLessThan(2);
-    expect.soft(await viewer.page.locator('#rewind').isVisible()).toBe(false); // loading again is no wish to go back
+    expect.soft(await viewer.page.locator('#rewind').isVisible()).toBe(false); // a reload is no request to rewind
 
     const tick = Number(new URL(shared).searchParams.get('tick'));
     await viewer.until((then) => window.cautery.tick > then + 30, tick, 'time goes on');
     const { epoch } = await viewer.state();
-    // The timeline may be there before the first frame, which follows the topology.
+    // The timeline may appear before the first frame, which follows the topology.
     const door = new HoldingDoor(stage.daemon.url);
     onTestFinished(() => door.end());
     door.hold('frames');

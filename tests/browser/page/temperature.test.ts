@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature as colour: hot around the energized hook, the body's elsewhere, in the model and in the
-// picture, with a legend that tells the range; and no longer asked for once it is not shown.
+// Tests temperature as colour: hot around the energized hook and the body's temperature elsewhere, in the model and in
+// the picture. A legend shows the range. The page stops requesting temperatures when they are not shown.
 import AxeBuilder from '@axe-core/playwright';
 
 import { Stage } from './stage';
@@ -9,15 +9,17 @@ import { ViewerPage, type Colour } from './viewer_page';
 type Point = [number, number, number];
 
 const BODY_C = 37; // ambient_c of deploy/scenes/fascia.json, by default
-const SHADE_C = 0.6; // what the picture tells apart: a 255th of the range from body to hook
+const SHADE_C = 0.6; // least difference that the picture can show: a 255th of the range from body to hook
 const HOT_C = 70;
-/** Places in front of the hook that are to be hot: more than this. */
+/** Number of places in front of the hook of which more must be hot. */
 const ENOUGH = 5;
-/** Places in front of the hook's foot, which hides none of them: towards the camera, and along it. */
+/** Distances of places in front of the hook's foot, which hides none of them: towards the camera, and along the
+ * foot. */
 const FRONT_M = [0.0035, 0.0045, 0.0055];
 const ALONG_M = [-0.003, -0.002, -0.001, 0, 0.001, 0.002, 0.003];
 const FAR: Point[] = [[-0.045, 0.035, 0], [0.045, 0.035, 0], [0.045, -0.035, 0], [-0.045, -0.035, 0], [0.045, 0, 0]];
-/** Green that red has before it, over red: none in the body's pale yellow, 0.4 in the orange of half the range. */
+/** Least redness: the excess of red over green, divided by red. It is 0 in the body's pale yellow and 0.4 in the
+ * orange of half the range. */
 const RED = 0.25;
 const PALE = 0.1;
 
@@ -36,7 +38,7 @@ describe('temperature as colour', () => {
   const temperatures = (points: readonly Point[]): Promise<(number | null)[]> =>
     viewer.page.evaluate((all) => all.map((point) => window.cautery.temperatureAt(point)), [...points]);
 
-  /** So that the tissue does not part however long the test takes. */
+  /** Makes the tissue take up no heat, so that it does not part, however long the test takes. */
   const takeNoHeatUp = async (): Promise<void> => {
     const { page } = viewer;
     await page.getByRole('tab', { name: 'Materials' }).click();
@@ -66,9 +68,10 @@ describe('temperature as colour', () => {
     const { page } = viewer;
     await takeNoHeatUp();
     await viewer.grab([0, 0, 0]);
-    await page.mouse.up(); // or the hook would follow to the button below
+    await page.mouse.up(); // otherwise the hook would follow to the button below
     await page.keyboard.down('Space');
-    // all that is looked at below, where the hook has come to: it may still be on its way when the first of it is hot
+    // Waits for everything that is checked below, at the place where the hook has come to. The hook may still move when
+    // the first place is hot.
     await viewer.until(
       ({ hot, enough, reaches, alongs }) => {
         const [x, y] = window.cautery.tip;
@@ -78,7 +81,8 @@ describe('temperature as colour', () => {
       { hot: HOT_C, enough: ENOUGH, reaches: FRONT_M, alongs: ALONG_M },
       'tissue in front of the hook is hot',
     );
-    // The heat stays where it is. A click would take the focus first, and energy with it: tissue cools in a few ticks.
+    // The heat stays where it is. The button is pressed by script, because a click would first take the focus and end
+    // energy, and tissue cools in a few ticks.
     await page.getByRole('button', { name: 'Pause' }).evaluate((button: HTMLButtonElement) => { button.click(); });
     await viewer.until(() => window.cautery.paused, null, 'paused');
     await page.locator('#picture').focus();
@@ -104,7 +108,7 @@ describe('temperature as colour', () => {
     expect(least).toBe('37 °C');
     expect(most).toMatch(/^\d+ °C$/);
     expect(parseFloat(most)).toBeGreaterThanOrEqual(HOT_C);
-    expect(parseFloat(most)).toBeLessThanOrEqual(170); // of the hook
+    expect(parseFloat(most)).toBeLessThanOrEqual(170); // at most the hook's temperature
     const { violations } = await new AxeBuilder({ page }).analyze();
     expect(violations.filter(({ impact }) => impact === 'serious' || impact === 'critical').map(({ id }) => id)).toEqual([]);
   });

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two pages on one session agree; only the driver's controls are live; others can ask; the page that
-// goes out of sight loses its energy; a killed daemon comes back and so do the pages.
+// Tests two pages on one session. They agree. Only the driver's controls are live, and other users can ask for the
+// tool. A page that is hidden loses its energy. After a kill, the daemon and the pages come back.
 
 import { Stage } from './stage';
 import { COARSE, ViewerPage } from './viewer_page';
 
 const HOT_C = 900;
 const HOTTER_C = 950;
-const NEAR_PX = 120; // of words that are read without looking elsewhere
+const NEAR_PX = 120; // largest distance of a message that is read without looking elsewhere
 
 describe('two pages on one session', () => {
   const stage = new Stage(['--demo', 'fascia'], COARSE);
@@ -77,12 +77,12 @@ describe('two pages on one session', () => {
 
   it('cuts energy when the page loses the focus', async () => {
     await watcher.page.bringToFront();
-    await watcher.grab([-0.04, 0.03, 0]); // beside the cut, which gapes further than it is long
+    await watcher.grab([-0.04, 0.03, 0]); // the place is beside the cut, which gapes beyond its ends
     await watcher.page.keyboard.down('Space');
     await watcher.until(() => window.cautery.energized, null, 'energy is on');
     const said = await watcher.page.evaluate(() => {
       window.dispatchEvent(new Event('blur'));
-      return document.querySelector('#said')?.textContent; // for some seconds
+      return document.querySelector('#said')?.textContent; // the message is shown for some seconds
     });
     expect(said).toContain('Energy is off');
     await watcher.until(() => !window.cautery.energized, null, 'energy is off');
@@ -95,12 +95,12 @@ describe('two pages on one session', () => {
     for (const page of [driver, watcher]) await page.until(() => window.cautery.paused, null, 'paused');
     const { tick } = await watcher.state();
     await driver.until((wanted) => window.cautery.tick === wanted, tick, 'the same tick');
-    // Frames may run ahead of the store; the answer to the button's request comes when the pause is in it.
+    // Frames may be ahead of the store. The answer to the button's request comes when the store has the pause.
     await watcher.until(() => document.querySelector('[aria-busy=true]') === null, null, 'the pause is stored');
     const before = await driver.state();
     await stage.daemon.kill();
     await driver.until(() => window.cautery.link === 'lost', null, 'lost');
-    // Between two attempts to connect, which say so meanwhile.
+    // The test waits for the time between two attempts to connect, in which the page reports this.
     await driver.until(() => document.querySelector('#link')?.textContent?.includes('No connection') === true, null, 'the page says so');
     await stage.daemon.start();
     for (const page of [driver, watcher]) {

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field through a trocar: a round picture, tissue up to its edge, dark outside, where nothing is picked. The open
-// field is a choice that the browser keeps, made by keyboard.
+// Tests the field through a trocar: a round picture, tissue up to its edge, and a dark surround in which nothing is
+// picked. The open field is a choice that the browser stores, made by keyboard.
 import { Stage } from './stage';
 import type { Colour, ViewerPage } from './viewer_page';
 
-const DARK = 12; // of 255
-const RED_LEAST = 40; // of flesh in the least light
-const INSIDE = 0.93; // of the circle's radius
-const WIDTH_SHARE = 0.93; // of the picture's shorter side, as in scene/scope.ts
+const DARK = 12; // largest channel of a dark colour, of 255
+const RED_LEAST = 40; // least red of flesh in the weakest light, of 255
+const INSIDE = 0.93; // distance of places within the circle, as a share of its radius
+const WIDTH_SHARE = 0.93; // the circle's width as a share of the picture's shorter side, as in scene/scope.ts
 const PLACES = 24;
 
 interface Round {
-  /** just within the circle, all around, as far as the picture and its buttons leave them */
+  /** colours just within the circle, all around, as far as the picture and its buttons do not hide them */
   edge: Colour[];
   corners: Colour[];
 }
 
-/** Colours of the picture, without what lies over it. */
+/** Returns colours of the picture, without the elements over it. */
 async function look(viewer: ViewerPage): Promise<Round> {
   await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
   await viewer.page.evaluate(() => document.querySelectorAll<HTMLElement>('#cue, #handles').forEach((one) => (one.style.visibility = 'hidden')));
@@ -52,7 +52,7 @@ describe('the field', () => {
       expect(edge.length, side).toBeGreaterThan(8);
       expect(corners.filter((colour) => !dark(colour)), side).toEqual([]);
       const other = edge.filter((colour) => !flesh(colour));
-      expect(other.length, `${side}: ${JSON.stringify(other)}`).toBeLessThanOrEqual(3); // the tool is somewhere
+      expect(other.length, `${side}: ${JSON.stringify(other)}`).toBeLessThanOrEqual(3); // the tool hides some of the places
     }
     await viewer.page.getByRole('button', { name: 'First view' }).click();
   });

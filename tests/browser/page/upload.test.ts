@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Upload a mesh, get a session of it, cut it. And what the daemon refuses is said in words.
+// Tests the upload of a mesh, a session with it, and a cut. A refusal of the daemon is shown in words.
 
 import { Door } from './door';
 import { Stage } from './stage';
@@ -8,7 +8,7 @@ import { COARSE, ViewerPage } from './viewer_page';
 const CELLS = 24;
 const HOT_C = 900;
 
-/** A sheet in the plane z = 0, `width` units wide. */
+/** Returns a sheet in the plane z = 0, `width` units wide. */
 function sheetObj(width: number): string {
   const at = (i: number): number => width * (i / CELLS - 0.5);
   const lines: string[] = [];
@@ -20,9 +20,9 @@ function sheetObj(width: number): string {
   return lines.join('\n');
 }
 
-const BALL = 16; // rows of triangles
+const BALL = 16; // rows of triangles of a ball
 
-/** A closed ball around `middle`, units. */
+/** Returns a closed ball around `middle`, in units. */
 function ballObj(radius: number, middle: number): string {
   const around = 2 * BALL;
   const lines = [`v 0 0 ${middle + radius}`, `v 0 0 ${middle - radius}`];
@@ -44,7 +44,7 @@ describe('a mesh of one’s own', () => {
   const stage = new Stage([], COARSE);
   let viewer: ViewerPage;
 
-  /** `unit`: millimetres in one unit, '' to let the daemon guess. */
+  /** Gives the page a file. `unit`: millimetres in one unit; '': the daemon guesses the unit. */
   const give = async (name: string, text: string, unit = ''): Promise<void> => {
     const { page } = viewer;
     await page.locator('#upload input[type=file]').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(text) });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle divides the strip of `pedicle`. The page says how much the artery bleeds, and the picture has blood where the
-// daemon has it. Forceps seal the artery in another session, and the page says its burst pressure. Steps are taken one
-// by one, so that the load of the machine has no effect.
+// Tests vessels. A needle divides the strip of `pedicle`. The page shows how much the artery bleeds, and the picture
+// shows blood where the daemon has it. Forceps seal the artery in another session, and the page shows its burst
+// pressure. Steps are taken one by one, so that the load of the machine has no effect.
 import AxeBuilder from '@axe-core/playwright';
 
 import { PROTOCOL } from './door';
@@ -17,33 +17,34 @@ interface Wet {
 const BLEEDING = 'd1-bleeding';
 const SEALING = 'd1-sealing';
 const CUT_X_M = 0.004;
-const DEEP_M = -0.007; // of the tip: below the strip
+const DEEP_M = -0.007; // height of the tip: below the strip
 const ABOVE_M = 0.04;
 const SEAL_X_M = -0.005;
 const SEAL_S = 3;
-const ON_ITS_WAY = 40; // ticks
+const ON_ITS_WAY = 40; // ticks for the tool's way to the strip
 const CUT_S = 2;
-const PARTS = 20; // of the way through the strip, and of a second of energy
-const POOLS = 30; // ticks in which blood flows on
+const PARTS = 20; // number of parts of the way through the strip, and of a second of energy
+const POOLS = 30; // ticks in which blood continues to flow
 const TICKS_A_SECOND = 60;
-const OPAQUE_M = 0.0005; // of blood
-const ENOUGH = 20; // vertices under so much blood
-/** Of vertices under opaque blood, and of dry ones: 0.32 and 0.01. Most vertices under blood are on the far sides and the
- * underside of the stumps, where the cloth or dry tissue is in front of them. */
+const OPAQUE_M = 0.0005; // depth from which blood is opaque
+const ENOUGH = 20; // least number of vertices under opaque blood
+/** Least share of dark vertices among those under opaque blood, of which it is 0.32; among dry vertices it is 0.01.
+ * Most vertices under blood are on the far sides and the underside of the stumps, behind the cloth or dry tissue. */
 const DARK_SHARE = 0.2;
 const DRY_SHARE = 0.05;
-/** Of 255: red of blood in the light, green and blue in comparison. Tissue has 120 and more, and two thirds of it in green. */
+/** DARK: largest red of blood in the light, of 255. SHARE: largest share of green and blue in it. Tissue has red of
+ * 120 and more, and green of two thirds of that. */
 const DARK = 130;
 const SHARE = 0.45;
 
 const dark = ([r, g, b]: Colour): boolean => r > 15 && r < DARK && g < SHARE * r && b < SHARE * r;
-/** Requests to the daemon, one after the other. */
+/** Sends requests to the daemon, one after the other. */
 class Commander {
   private last = 0;
 
   private constructor(private readonly socket: MessageSocket, readonly session: string) {}
 
-  /** With a session of its own. */
+  /** Connects, and creates a session of its own. */
   static async connect(url: string, session: string): Promise<Commander> {
     const made = new Commander(await MessageSocket.connect(new URL('v1', url), PROTOCOL), session);
     await made.call('hello', { version: 1, client: 'surgeon' });
@@ -77,7 +78,7 @@ class Commander {
 const move = (y: number, z: number): object => ({ method: 'tool.move', tool: 'needle', position_m: [CUT_X_M, y, z], rotation: [1, 0, 0, 0] });
 const energize = (energized: boolean): object => ({ method: 'tool.energize', tool: 'needle', energized });
 
-/** Draws the needle through the strip with energy on, and away. */
+/** Moves the needle through the strip with energy on, and away. */
 async function divide(commander: Commander): Promise<void> {
   await commander.call('tool.take_over', { session: commander.session, tool: 'needle' });
   await commander.advance(ON_ITS_WAY, move(-0.008, ABOVE_M));
@@ -88,7 +89,7 @@ async function divide(commander: Commander): Promise<void> {
   await commander.advance(POOLS);
 }
 
-/** Closes the forceps on the vessel, and gives energy. */
+/** Closes the forceps on the vessel, and turns energy on. */
 async function seal(commander: Commander): Promise<void> {
   const tool = 'forceps';
   await commander.call('tool.take_over', { session: commander.session, tool });
@@ -113,7 +114,7 @@ describe('a session with a blood vessel', () => {
 
   const list = (): Promise<string | null> => viewer.page.locator('#panel-tools .vessels').textContent();
   const blood = async (): Promise<Wet[]> => (await viewer.page.evaluate(() => window.cautery.blood())) as Wet[];
-  /** Which share of vertices the picture has dark red. */
+  /** Returns the share of vertices that are dark red in the picture. */
   const darkShare = async (vertices: readonly Wet[]): Promise<number> => {
     const colours = await viewer.coloursAt(vertices.map(({ at }) => at), 1);
     return colours.filter(dark).length / colours.length;
@@ -134,7 +135,8 @@ describe('a session with a blood vessel', () => {
     await divide(commander);
     await viewer.until(() => /artery bleeds: [1-9][\d.]* ml\/s, [\d.]+ ml lost/.test(document.querySelector('#said')?.textContent ?? ''), null, 'a warning');
     await viewer.until(() => /^artery: parted, bleeding; [1-9][\d.]* ml\/s, [\d.]+ ml lost/.test(document.querySelector('#panel-tools .vessels')?.textContent ?? ''), null, 'the list');
-    await viewer.page.evaluate(() => (document.querySelector<HTMLElement>('#said')!.style.visibility = 'hidden')); // it may lie over the cut
+    // the message may lie over the cut
+    await viewer.page.evaluate(() => (document.querySelector<HTMLElement>('#said')!.style.visibility = 'hidden'));
     await viewer.full(true);
     await viewer.until(() => window.cautery.idle, null, 'the picture of it');
     await viewer.screenshot('vessels-bleeding');
@@ -168,7 +170,7 @@ describe('a session with a blood vessel', () => {
     await viewer.page.goto(`${stage.daemon.url}?session=${SEALING}`);
     await viewer.live(SEALING);
     await viewer.page.getByRole('tab', { name: 'Tools' }).click();
-    const sealing = seal(sealer); // the news goes by itself after some seconds
+    const sealing = seal(sealer); // the notice disappears after some seconds
     await viewer.until(() => /artery is sealed: bursts at [1-9]\d* mmHg/.test(document.querySelector('#said')?.textContent ?? ''), null, 'news of the seal');
     await sealing;
     sealer.close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is seen, saved as a video by the browser's own recorder: a program of others reads it.
+// Tests a video of the picture, saved by the browser's own recorder. A program of other authors reads it.
 import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 
@@ -7,7 +7,7 @@ import { Stage } from './stage';
 
 const FFPROBE = '/usr/bin/ffprobe';
 const DRAWN = 15;
-const SHARE_KEPT = 1 / 3; // the encoder leaves some out where the machine is busy
+const SHARE_KEPT = 1 / 3; // least share of pictures in the video: the encoder leaves some out if the machine is busy
 
 interface Probed {
   streams: { codec_type: string; codec_name: string; width: number; height: number; nb_read_frames: string }[];
@@ -34,7 +34,7 @@ describe('a video of what is seen', () => {
     await page.mouse.move(400, 300);
     await page.mouse.down({ button: 'right' });
     for (let i = 0; drawn < DRAWN; i++) {
-      await page.mouse.move(400 + 4 * i, 300 + i); // the camera turns
+      await page.mouse.move(400 + 4 * i, 300 + i); // turns the camera
       await viewer.drawn();
       drawn = (await viewer.state()).picturesDrawn - before;
     }

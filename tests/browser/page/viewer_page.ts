@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page of the viewer in Chromium, under the daemon's own headers, and what hands do to it.
+// A page of the viewer in Chromium, under the daemon's own headers, and the actions of a user on it.
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 
@@ -13,7 +13,7 @@ declare global {
   }
 }
 
-// Drawn by Mesa's llvmpipe, which takes 0.2 core-seconds for a picture that SwiftShader takes 0.5 for.
+// Mesa's llvmpipe draws, which takes 0.2 core-seconds for a picture; SwiftShader takes 0.5.
 const FLAGS = [
   '--no-sandbox', '--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
@@ -23,14 +23,14 @@ const FLAGS = [
  * little changes. WebGL is Mesa's in both.
  */
 export type Composing = 'mesa' | 'processor';
-const PATIENCE_MS = 120_000; // two cores may be busy with other tests
-const PRESS_MS = 20_000; // a press that leads nowhere is repeated
-// Software draws the whole page anew for each picture of an animation, as long as the cue is there. Pages of which
-// that is no matter want none.
+const PATIENCE_MS = 120_000; // two processor cores may be busy with other tests
+const PRESS_MS = 20_000; // time after which a press without effect is repeated
+// Options of pages without animations. Software draws the whole page for each picture of an animation, as long as the
+// cue is shown. Tests that do not need animations use these options.
 const STILL = { viewport: { width: 1100, height: 720 }, colorScheme: 'dark', reducedMotion: 'reduce' } as const;
-/** Of pages that move as most people's do. */
+/** Options of pages with animations, as most users see them. */
 export const MOVING = { reducedMotion: 'no-preference' } as const;
-/** Of pages whose picture no test looks at: software draws it in a sixteenth of the pixels. */
+/** Options of pages whose picture no test looks at: software draws it with a sixteenth of the pixels. */
 export const COARSE = { coarse: true } as const;
 
 export interface PageOptions extends BrowserContextOptions {
@@ -52,7 +52,7 @@ export class ViewerPage {
 
   private constructor(readonly page: Page) {}
 
-  /** As it comes up the first time, for trainees; tests of the panels open it for researchers. */
+  /** Opens a page in the state of a first visit, for trainees. Tests of the panels open it for researchers. */
   static openFirst(browser: Browser, url: string, options: PageOptions = {}): Promise<ViewerPage> {
     return ViewerPage.open(browser, url, options, 'operate');
   }
@@ -74,7 +74,8 @@ export class ViewerPage {
     page.on('request', (request) => note(request.url()));
     page.on('websocket', (socket) => note(socket.url()));
     await page.addInitScript((kept) => localStorage.setItem('mode', kept), mode);
-    if (coarse) await page.addInitScript(() => Object.defineProperty(window, 'devicePixelRatio', { value: 0.25 })); // the layout stays
+    // the layout stays the same
+    if (coarse) await page.addInitScript(() => Object.defineProperty(window, 'devicePixelRatio', { value: 0.25 }));
     if (before) await page.addInitScript(before);
     await page.goto(url);
     return viewer;
@@ -84,7 +85,8 @@ export class ViewerPage {
     await this.page.context().close();
   }
 
-  /** Asks once per animation frame: the page's headers forbid what Playwright's own waiting would evaluate. */
+  /** Checks the condition once per animation frame. Playwright's own waiting needs evaluations that the page's
+   * headers forbid. */
   async until<A>(condition: (argument: A) => boolean, argument: A, what: string): Promise<void> {
     const end = Date.now() + PATIENCE_MS;
     while (!(await this.page.evaluate(condition as never, argument))) {
@@ -93,7 +95,7 @@ export class ViewerPage {
     }
   }
 
-  /** What the page says went wrong. */
+  /** Returns the problems that the page reports. */
   async problems(): Promise<string> {
     const said = await this.page.locator('.problem:visible, #notices:visible, #said:visible').allTextContents();
     return said.filter((words) => words !== '').map((words) => `${words}; `).join('');
@@ -107,20 +109,21 @@ export class ViewerPage {
     return Object.values((await this.state()).drawnFaces).reduce((sum, count) => sum + count, 0);
   }
 
-  /** Frames of a session are drawn. */
+  /** Waits until frames of a session are drawn. */
   async live(session: string): Promise<void> {
     await this.until((wanted) => window.cautery.session === wanted && window.cautery.tick > 0, session, `${session} is live`);
     await this.drawn();
     await this.until(() => document.querySelector('#veil')?.checkVisibility() === false, null, 'the picture is uncovered');
   }
 
-  /** The newest frame is in the picture. */
+  /** Waits until the newest frame is in the picture. */
   async drawn(): Promise<void> {
     const { picturesDrawn } = await this.state();
     await this.until((count) => window.cautery.idle || window.cautery.picturesDrawn > count + 1, picturesDrawn, 'a new picture');
   }
 
-  /** Pictures in full detail, although they move and however slow they are, or again as the machine needs them. */
+  /** Makes pictures in full detail, even if they move and are slow; with `held` false, in the detail that the
+   * machine allows. */
   async full(held: boolean): Promise<void> {
     await this.page.evaluate((on) => window.cautery.holdFull(on), held);
     await this.drawn();
@@ -163,7 +166,7 @@ export class ViewerPage {
     }
   }
 
-  /** Leads the tool along x with energy on, onwards as soon as a part of the way is cut and gone. */
+  /** Moves the tool along x with energy on, each time as soon as a part of the way is cut and gone. */
   async cut(y: number, z: number, from: number, to: number, stepsTo: number): Promise<void> {
     await this.page.keyboard.down('Space');
     await this.until(() => window.cautery.energized, null, 'energy is on');
@@ -184,7 +187,7 @@ export class ViewerPage {
     await this.until(() => !window.cautery.energized, null, 'energy is off');
   }
 
-  /** Turns the wheel with Ctrl: nearer by some notches. */
+  /** Turns the wheel with Ctrl: zooms in by `notches`. */
   async zoom(notches: number): Promise<void> {
     const { picturesDrawn } = await this.state();
     await this.page.keyboard.down('Control');
@@ -197,7 +200,7 @@ export class ViewerPage {
     return this.page.locator(`#panel-tools input[name=${name}]`);
   }
 
-  /** Gives the tool, which this page drives, another number. */
+  /** Sets a number of the tool, which this page drives. */
   async setTool(name: 'temperature_c' | 'friction', value: number): Promise<void> {
     const { page } = this;
     await page.getByRole('tab', { name: 'Tools' }).click();
@@ -207,7 +210,7 @@ export class ViewerPage {
     await page.getByRole('tab', { name: 'Sessions' }).click();
   }
 
-  /** Takes the tool and makes it hotter: a test that waits for tissue to take heat up would only wait. */
+  /** Takes the tool and makes it hotter, so that tests need not wait for tissue to heat up. */
   async heatTool(celsius: number): Promise<void> {
     await this.page.getByRole('tab', { name: 'Tools' }).click();
     await this.page.locator('#panel-tools .take').click();
@@ -254,12 +257,12 @@ export class ViewerPage {
     }, png);
   }
 
-  /** Mean colours, 0 to 255, of small squares of the page at points of the tissue, all of one picture. */
+  /** Returns mean colours, 0 to 255, of small squares of the page at points of the tissue, all from one picture. */
   async coloursAt(points: readonly [number, number, number][], half = 2): Promise<Colour[]> {
     return this.coloursOf(await Promise.all(points.map((point) => this.project(point))), half);
   }
 
-  /** The same of places of the page, CSS pixels. */
+  /** Returns mean colours of small squares of the page at places in CSS pixels, all from one picture. */
   async coloursOf(places: readonly { x: number; y: number }[], half = 2): Promise<Colour[]> {
     const png = (await this.page.screenshot()).toString('base64');
     return this.page.evaluate(async ({ data, places, half }) => {
@@ -281,7 +284,7 @@ export class ViewerPage {
 
 export type Colour = [number, number, number];
 
-/** Share of the colours that another picture has differently. */
+/** Returns the share of the colours that differ in another picture. */
 export function shareChanged(before: readonly Colour[], after: readonly Colour[], distance: number): number {
   const changed = before.filter((colour, i) => Math.hypot(...colour.map((value, c) => value - after[i][c])) > distance);
   return changed.length / before.length;

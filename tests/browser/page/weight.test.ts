@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the body around the tissue costs, open and through a trocar: draw calls, triangles and bytes of textures, against
-// those of the plain scene, tissue and instruments over a cloth.
+// Tests the cost of the body around the tissue, open and through a trocar: draw calls, triangles and bytes of textures.
+// They are compared with those of the plain scene, which is tissue and instruments over a cloth.
 import { readdirSync, readFileSync } from 'node:fs';
 
 import { Stage } from './stage';
 import { ViewerPage } from './viewer_page';
 
-/** One 48-cubed volume of noise and a row of colours, which was all before there was a body around the tissue. */
+/** Bytes of the textures of the plain scene: a volume of noise of 48 cubed and a row of colours. */
 const PLAIN_TEXTURE_BYTES = 48 ** 3 + 4 * 256;
 const TIMES_MORE = 2;
-/** In software, in processor time of the process that draws, the page's other layers included. */
+/** Largest ratio of the pictures' times, in software: processor time of the process that draws, with the page's
+ * other layers. */
 const TIMES_LONGER = 1.5;
-// Others on the machine make a picture dearer, never cheaper: the cheapest of each kind tells, of at least twelve, and
-// of more where the machine was so busy that the dearer kind has not had its chance.
+// Numbers of compared pairs of pictures. Other programs make a picture more expensive, never cheaper, so the cheapest
+// picture of each kind is used. More pairs are drawn on a busy machine, until the more expensive kind has had its
+// chance.
 const PAIRS_MIN = 12;
 const PAIRS_MAX = 60;
 
@@ -23,7 +25,7 @@ interface Weight {
   plain: boolean;
   calls: number;
   triangles: number;
-  /** of all textures since the page came up; those of the pictures' size are no textures */
+  /** bytes of all textures since the page came up, without those of the pictures' size */
   textureBytes: number;
   pictures: number;
 }
@@ -33,12 +35,13 @@ declare global {
   }
 }
 
-/** In the page, before anything else: stands between it and its graphics. */
+/** In the page, before its scripts: counts the page's calls of WebGL. */
 function weigh(): void {
   const weight: Weight = { plain: false, calls: 0, triangles: 0, textureBytes: 0, pictures: 0 };
   window.weight = weight;
-  performance.now = () => 0; // or pictures get coarser where they take long
-  const BODY = ['float zone = 3.0', 'skinned(n(vMaterial', 'uniform vec4 below', 'mix(1.15, 0.55, vTip)', 'thread < 0.47']; // of the shaders of flesh, skin, sheath, edge and fringe
+  performance.now = () => 0; // otherwise slow pictures would get coarser
+  // Texts that only the shaders of flesh, skin, sheath, edge and fringe have.
+  const BODY = ['float zone = 3.0', 'skinned(n(vMaterial', 'uniform vec4 below', 'mix(1.15, 0.55, vTip)', 'thread < 0.47'];
   const gl = WebGL2RenderingContext.prototype;
   const sources = new WeakMap<WebGLShader, string>();
   const ofBody = new WeakSet<WebGLProgram>();
@@ -90,19 +93,19 @@ describe('the weight of a picture', () => {
     await viewer.until(() => window.cautery.idle, null, 'the field is chosen');
   };
 
-  /** The next picture's cost, of a session that stands still. */
+  /** Returns the cost of the next picture, of a paused session. */
   const next = async (kind: Kind): Promise<Weight> => {
     const { page } = viewer;
     const before = await page.evaluate((left) => {
       window.weight.plain = left;
       return window.weight.pictures;
     }, kind === 'plain');
-    await page.mouse.wheel(0, 1); // looks from elsewhere, by next to nothing
+    await page.mouse.wheel(0, 1); // a minimal change of the view, so that the picture is drawn
     await viewer.until((count) => window.weight.pictures > count && window.cautery.idle, before, 'another picture is there');
     return page.evaluate(() => ({ ...window.weight }));
   };
 
-  /** Processor seconds of the next picture, in all threads of the process that draws. */
+  /** Returns the processor seconds of the next picture, in all threads of the process that draws. */
   const cost = async (kind: Kind): Promise<number> => {
     const spent = (): number => readdirSync(`/proc/${drawer}/task`).reduce((sum, thread) => sum + 1e-9 * Number(readFileSync(`/proc/${drawer}/task/${thread}/schedstat`, 'utf8').split(' ')[0]), 0);
     await choose(kind);
@@ -118,10 +121,10 @@ describe('the weight of a picture', () => {
     viewer = await ViewerPage.openFirst(stage.browser, 'about:blank', { viewport: { width: 800, height: 560 } });
     await viewer.page.addInitScript(weigh);
     await viewer.page.goto(stage.daemon.url);
-    viewer.complaints.length = 0; // of the blank page, which has no storage
+    viewer.complaints.length = 0; // these complaints are of the blank page, which has no storage
     await viewer.live('d1-layers');
     await viewer.pause();
-    await viewer.page.mouse.move(60, 200); // beside the tissue, where the wheel is the camera's
+    await viewer.page.mouse.move(60, 200); // beside the tissue the wheel moves the camera
     await viewer.page.keyboard.down('Control');
   });
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of a scripted cut: before, during and after, from far to close, along the cut and across it. Only
-// `run_viewer_tests.sh wound` makes them, for clients/web/pictures/wound: they are there to be looked at.
+// Makes pictures of a scripted cut: before, during and after, from far to close, along the cut and across it. Only
+// `run_viewer_tests.sh wound` makes them, for clients/web/pictures/wound, where people look at them.
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
@@ -13,12 +13,12 @@ const SESSION = 'd1-layers';
 const TOOL = { session: SESSION, tool: 'hook' };
 const WINDOW = { width: 900, height: 540 };
 const JPEG_QUALITY = 82;
-/** A hook of 1.5 mm wire; its grid has to be as fine. */
+/** A hook of 1.5 mm wire, which needs a grid of the same fineness. */
 const HOOK = { ...TOOL, shape: 'hook', temperature_c: 190, hot_radius_m: 0.00075, tip_length_m: 0.007, grid_step_m: 0.00075, grid_cells: 20 };
 const TILTED = [0.9763, 0.21644, 0, 0];
 const TICKS_PER_S = 60;
 const STAY_S = 4;
-const SPEED_M_S = 0.0016; // twice as long over each place as its most stubborn bundles take
+const SPEED_M_S = 0.0016; // speed at which the hook is over each place twice as long as the toughest bundles there need
 type Point = readonly [number, number, number];
 const START: Point = [-0.022, 0, 0.0015];
 const END: Point = [0.014, 0, 0.0015];
@@ -38,7 +38,7 @@ const CAMERAS: Record<string, string> = {
 
 let sequence = 0;
 
-/** Takes the tool from one place to another in so many ticks, after it has stayed at the first. */
+/** Moves the tool from one place to another in `ticks` ticks, after it has stayed at the first for `stayTicks`. */
 function lead(from: Point, to: Point, stayTicks: number, ticks: number, energized: boolean): Command {
   return (step, call) => {
     if (step === 0) {
@@ -86,7 +86,7 @@ describe.runIf(FOLDER)('a scripted cut', () => {
     await look('during');
     await play(middle, END, 0, SPEED_M_S, true);
     await play(END, AWAY, 0, 0.1, false);
-    await play(AWAY, AWAY, 2, 1, false); // what it cut comes to rest
+    await play(AWAY, AWAY, 2, 1, false); // the cut tissue comes to rest
     await look('after');
   }, 1_800_000);
 });

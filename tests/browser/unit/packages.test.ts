@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lock file is whole: it names what every system and processor needs, or newer `npm ci` refuse it, and
-// the pinned Node is the one that runs.
+// Tests that the lock file is complete: it lists what every system and processor needs, because newer versions of `npm
+// ci` refuse it otherwise. The pinned Node must be the one that runs.
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
@@ -19,13 +19,13 @@ interface Package {
 const lock = JSON.parse(readFileSync(fileURLToPath(new URL('../../../clients/web/package-lock.json', import.meta.url)), 'utf8')) as { packages: Record<string, Package> };
 const { '': root, ...installed } = lock.packages;
 
-/** What a package needs, wherever it may be installed. */
+/** Returns the packages that a package needs, wherever they may be installed. */
 function wanted(of: Package): string[] {
   const peers = Object.keys(of.peerDependencies ?? {}).filter((name) => of.peerDependenciesMeta?.[name]?.optional !== true);
   return [...Object.keys(of.dependencies ?? {}), ...Object.keys(of.optionalDependencies ?? {}), ...peers];
 }
 
-/** Whether Node finds a package from a folder: in its node_modules or those of folders around it. */
+/** True if Node finds a package from a folder: in the folder's node_modules or in those of folders around it. */
 function found(name: string, folder: string): boolean {
   for (let at = folder; ; at = at.slice(0, at.lastIndexOf('/node_modules/'))) {
     if (`${at === '' ? '' : `${at}/`}node_modules/${name}` in installed) return true;
@@ -45,7 +45,8 @@ describe('the lock file', () => {
   });
 
   it('lets the Node of npm, which may be older, install what the pinned one runs', () => {
-    // npm leaves optional packages out whose engines are newer than itself, without a word: they have none here
+    // npm silently leaves out optional packages whose `engines` need a newer version. So optional packages must have no
+    // `engines` here.
     const optional = Object.entries(installed).filter(([, of]) => of.optional === true);
     expect(optional.length).toBeGreaterThan(20);
     expect(optional.filter(([, of]) => of.engines !== undefined).map(([folder]) => folder)).toEqual([]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of tests/browser/README.md is true: each test that it names is in the file that it names.
+// Tests that the table of tests/browser/README.md is correct: each file contains the tests that the table lists for it.
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
@@ -7,7 +7,7 @@ const POINTS = 19;
 const folder = fileURLToPath(new URL('..', import.meta.url));
 const rows = [...readFileSync(`${folder}README.md`, 'utf8').matchAll(/^\| (\d+) \| [^|]+ \| ([^|]+) \|$/gm)].map(([, point, shown]) => ({ point: Number(point), shown }));
 
-/** Files and names of a row's tests. */
+/** Returns the files and names of a row's tests. */
 function named(shown: string): [string, string][] {
   return shown.split('; ').flatMap((part) => {
     const file = /^`([^`]+\.test\.ts)`: /.exec(part)?.[1] ?? 'no file';
@@ -23,7 +23,7 @@ describe('the table of points', () => {
   it('names tests that are there', () => {
     const all = rows.map(({ shown }) => named(shown));
     expect(all.filter((tests) => tests.length === 0)).toEqual([]);
-    // a name as it is passed to `it`, or heads a row of a table of cases
+    // Finds a name as an argument of `it`, or as the first value of a row in a table of cases.
     const missing = all.flat().filter(([file, name]) => !readFileSync(folder + file, 'utf8').includes(`'${name}',`));
     expect(missing).toEqual([]);
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Type, spacing and corners come from one scale: the variables at the head of the style sheet.
+// Tests that type, spacing and corners use one scale: the variables at the head of the style sheet.
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
@@ -7,7 +7,7 @@ const css = readFileSync(fileURLToPath(new URL('../../../clients/web/src/style.c
 const declarations = [...css.matchAll(/(?<=[{;\s])([a-z-]+): ([^;{}]+)(?=[;}])/g)].map(([, property, value]) => ({ property, value: value.trim() }));
 
 const values = (of: RegExp): string[] => declarations.filter(({ property }) => of.test(property)).map(({ value }) => value);
-/** What is left of a value without the scale, nothing, and what is taken from the surroundings. */
+/** Returns the part of a value that is neither of the scale, nor zero or one pixel, nor inherited. */
 const offScale = (value: string, scale: string): string =>
   value.replace(new RegExp(`var\\(--${scale}[a-z0-9-]*\\)`, 'g'), '').replace(/\b(auto|inherit)\b|!important|(?<![\d.])-?[01](px)?(?![\d.a-z])/g, '').trim();
 
@@ -18,13 +18,13 @@ describe('the style sheet', () => {
     ['corners', /^border-radius$/, 'round', 10],
   ] as const)('takes %s from the scale', (_what, properties, scale, least) => {
     const used = values(properties);
-    expect(used.length).toBeGreaterThan(least); // or the expressions above find nothing
+    expect(used.length).toBeGreaterThan(least); // otherwise the expressions above find nothing
     expect(used.filter((value) => offScale(value, scale) !== '')).toEqual([]);
   });
 
   it('uses no variable that it does not have', () => {
     const had = new Set([...css.matchAll(/(--[a-z0-9-]+):/g)].map(([, name]) => name));
-    const placed = ['--fx', '--fy', '--tx', '--ty']; // by panels/cue.ts
+    const placed = ['--fx', '--fy', '--tx', '--ty']; // variables that panels/cue.ts sets
     const used = new Set([...css.matchAll(/var\((--[a-z0-9-]+)\)/g)].map(([, name]) => name));
     expect([...used].filter((name) => !had.has(name) && !placed.includes(name))).toEqual([]);
   });

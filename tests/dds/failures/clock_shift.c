@@ -12,7 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-// LONG_AGO_S is in 2001: later times are of the wall clock, because no machine is up that long
+// LONG_AGO_S is a time in 2001, s. A later time is of the wall clock, an earlier one of the
+// monotonic clock, because no machine is up that long.
 enum { A_SECOND_NS = 1000000000, LONG_AGO_S = 1000000000 };
 
 static const volatile int64_t *shift;

@@ -21,17 +21,17 @@ typedef struct frames_description {
 
 typedef struct frames_decoder frames_decoder;
 
-// Returns NULL if there is no such stream, or no memory.
+// Returns a decoder for the stream. Returns NULL if the description is invalid or memory ran out.
 frames_decoder *frames_create(const frames_description *description);
 void frames_destroy(frames_decoder *decoder);
 
 // Takes a key frame or a delta. Returns NULL on success, else the reason, which is valid until the
 // next call.
 const char *frames_take(frames_decoder *decoder, const void *bytes, size_t byte_count);
-// Takes a topology frame. Returns as frames_take does.
+// Takes a topology frame. Returns NULL on success, else the reason, like frames_take.
 const char *frames_take_topology(frames_decoder *decoder, const void *bytes, size_t byte_count);
 
-// The decoder's state; 0 and NULL before the first key frame.
+// The functions below read the decoder's state. They return 0 or NULL before the first key frame.
 uint64_t frames_epoch(const frames_decoder *decoder);
 uint64_t frames_sequence(const frames_decoder *decoder);
 uint64_t frames_tick(const frames_decoder *decoder);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A robot on another vendor's DDS drives a tool of the real daemon, over native topics and over those
-// of ROS 2.
+// Tests that a robot on another vendor's DDS drives a tool of the real daemon, over native topics and over topics of
+// ROS 2.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
@@ -10,9 +10,9 @@ import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
 import { far, watchSession } from './watch.mjs';
 
-const DEADLINE_MS = 500;                // generous: this test is not about being late
-const BUSY_MS = 300;                    // longer than the daemon takes to let the session go
-const AT_AIM_M = 1e-4;                  // the quantum of float32 in frames, and the last of the way
+const DEADLINE_MS = 500; // generous, because this test is not about being late
+const BUSY_MS = 300; // longer than the daemon needs to end the session
+const AT_AIM_M = 1e-4; // quantum of float32 in frames, and the rest of the robot's way, m
 
 let daemon;
 before(async () => {
@@ -45,7 +45,7 @@ for (const via of ['native', 'ros', 'sensor'])
 			far(native.position_m, aim) < AT_AIM_M && far(cp.position_m, aim) < AT_AIM_M && cf.count > 0);
 		assert.equal(cp.frame_id, 'world');
 
-		// Into the tissue: both topics tell a force.
+		// The robot presses into the tissue. Both topics must show a force.
 		made.tell('aim 0 0 -0.002');
 		await made.until(({ native, cf }) => far(cf.force_n, [0, 0, 0]) > 0.001 && far(native.force_n, [0, 0, 0]) > 0.001);
 
@@ -60,7 +60,7 @@ for (const via of ['native', 'ros', 'sensor'])
 		await client.until(() => stream.tools[0].driver === 0, 'nobody drives it');
 	});
 
-// Vertices of drawn faces: what else a stream says of the others is out of date.
+// Returns the vertices of drawn faces. The stream's values of all other vertices are out of date.
 function drawnVertices(stream) {
 	const drawn = new Set();
 	for (let face = 0; 3 * face < stream.faces.length; face++)
@@ -76,10 +76,11 @@ test('Fast DDS decodes topology, key frames and deltas to what a browser sees', 
 	await cutMiddle(client, session);
 	await client.call('session.resume', { session });
 	await client.until(() => stream.removed() > 0, 'faces gone');
-	// It comes late: key frame and topology wait for it, and deltas follow.
+	// The robot joins late. It gets the kept key frame and topology, and then deltas.
 	const made = await robot(t, session, 'native');
 	await made.until(({ stream: s }) => s.gone > 0 && s.applied > 30);
-	const { status } = await made.until(({ status: s }) => s.session === session && s.tick > 0 && s.state === 1); // running
+	// state 1: the session runs
+	const { status } = await made.until(({ status: s }) => s.session === session && s.tick > 0 && s.state === 1);
 	assert.equal(status.vertices, stream.rest.length / 3);
 
 	const { tick } = await client.call('session.pause', { session });
@@ -99,10 +100,10 @@ test('Fast DDS decodes topology, key frames and deltas to what a browser sees', 
 	await client.call('session.step', { session });
 	await made.until(({ native }) => native.removed);
 
-	// It hears that the session is gone though it is busy just then.
+	// The robot learns that the session has ended, although the robot is stopped at that moment.
 	made.process.kill('SIGSTOP');
 	await client.call('session.destroy', { session });
 	await setTimeout(BUSY_MS);
 	made.process.kill('SIGCONT');
-	await made.until(({ status: s }) => s.gone); // disposed
+	await made.until(({ status: s }) => s.gone); // the status instance was disposed
 });

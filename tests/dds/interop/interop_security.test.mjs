@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DDS Security across vendors: Fast DDS with an identity of the domain's authority drives a tool of the
-// real daemon, one without finds nobody.
+// Tests DDS Security across vendors. A Fast DDS robot with an identity of the domain's authority drives a tool of the
+// real daemon. A robot without an identity finds no daemon.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
@@ -12,7 +12,7 @@ import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
 import { far, watchSession } from './watch.mjs';
 
-const DEADLINE_MS = 500; // generous: this test is not about being late
+const DEADLINE_MS = 500; // generous, because this test is not about being late
 const AT_AIM_M = 1e-4;
 const MAKE = join(dirname(process.env.PROFILE), 'security', 'make.sh');
 
@@ -33,7 +33,7 @@ after(async () => {
 
 const watched = (t, name) => watchSession(t, daemon, name);
 
-// A robot with this identity, or with none.
+// Starts a robot with this identity; null: without an identity.
 function robot(t, session, via, identity) {
 	const profile = identity ? join(enclave(identity), 'loopback-fastdds.xml') : process.env.PROFILE;
 	const made = new Program(process.env.INTEROP_ROBOT, [DOMAIN, session, 'hook', via, DEADLINE_MS],
@@ -45,7 +45,7 @@ function robot(t, session, via, identity) {
 for (const via of ['native', 'ros'])
 	test(`Fast DDS with an identity drives over ${via} topics, and decodes frames; without one it finds nobody`, async (t) => {
 		const { client, session, stream } = await watched(t, `secured-${via}`);
-		const outsider = robot(t, session, via, null); // it comes first
+		const outsider = robot(t, session, via, null); // the outsider starts before the robot with an identity
 		outsider.event((e) => e.event === 'matched', 'matched').then(() => (outsider.joined = true), () => {});
 		outsider.tell('write on');
 		const made = robot(t, session, via, 'controller');

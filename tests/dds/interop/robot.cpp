@@ -4,8 +4,8 @@
 //
 //     interop_robot DOMAIN SESSION TOOL native|ros|sensor DEADLINE_MS
 //
-// sensor is ros with poses in best effort, like ROS 2's sensor data. The program writes 100 times a
-// second. Lines on standard input control it:
+// The mode sensor is like ros, but writes poses with best effort, like ROS 2's sensor data. The
+// program writes 100 times a second. Lines on standard input control it:
 //     aim X Y Z      goes to this position (m) at 0.2 m/s
 //     energy 0|1     level of energy that it writes
 //     write on|off   off: silent, but alive

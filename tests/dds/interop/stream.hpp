@@ -68,7 +68,8 @@ class Stream
 	}
 
   private:
-	static constexpr size_t HELD = 256; // more than the deltas between two key frames
+	// largest number of held deltas: more than the deltas between two key frames
+	static constexpr size_t HELD = 256;
 
 	static fast::Topic *topic(Wire &wire, const std::string &name)
 	{
@@ -84,8 +85,8 @@ class Stream
 									});
 	}
 
-	// Returns the decoder of this frame's stream. If the stream has changed, it is a new, empty
-	// one.
+	// Returns the decoder of this frame's stream. If the stream has changed, returns a new, empty
+	// decoder.
 	bool prepare(const cautery::Frame &frame)
 	{
 		const cautery::StreamDescription &s = frame.stream();
@@ -148,7 +149,7 @@ class Stream
 			} else if (frame.base_sequence() == at) {
 				const char *why = frames_take(decoder, frame.bytes().data(), frame.bytes().size());
 				why ? refuse(why) : static_cast<void>(applied++);
-			} // else it is older than the present state
+			} // a delta that is older than the present state needs no decoding
 		}
 		held.swap(rest);
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All kinds of peers at the agent's port.
+// Tests the agent with all kinds of peers at its port.
 #include "agent/agent.h"
 
 #include <arpa/inet.h>
@@ -102,7 +102,7 @@ static void silent_and_resetting_peers_disturb_nobody(void **state)
 	}
 	expect_line(connect_peer(w), "ready 63%\n");
 	for (int i = 0; i < PEERS; i++)
-		expect_line(silent[i], "ready 63%\n"); // each peer had its own line
+		expect_line(silent[i], "ready 63%\n"); // each peer had a line of its own
 }
 
 static void the_load_is_not_measured_for_each(void **state)

@@ -32,7 +32,8 @@ static void sessions_that_are_behind_make_it_less(void **state)
 	load.busy_share = 0.5;
 	load.pace_share_min = 0.5;
 	assert_int_equal(cau_load_free_percent(&load), 25);
-	load.pace_share_min = 1.02; // above 1 while the session catches up
+	// The share is above 1 while the session catches up.
+	load.pace_share_min = 1.02;
 	assert_int_equal(cau_load_free_percent(&load), 50);
 	(void)state;
 }

@@ -126,7 +126,7 @@ static void a_hash_stands_for_its_token(void **state)
 	         hash);
 	assert_int_equal(read_tokens(text, 0600, &auth), CAU_OK);
 	assert_true(role_is(auth, "0123456789abcdef", CAU_ROLE_OPERATE));
-	// a hash is no token, so reading the file gives no access
+	// The hash from the file is no token, so somebody who reads the file gets no access.
 	assert_false(cau_auth_role(auth, hash, 64, &(cau_role){0}));
 	cau_auth_grant_name(auth, cau_auth_grant(auth, "0123456789abcdef", 16), name);
 	assert_string_equal(name, "anna");
@@ -216,7 +216,7 @@ static void a_grant_follows_its_token(void **state)
 	assert_true(cau_auth_grant(auth, "0123456789abcdef", 16) > second);
 }
 
-// Whatever is wrong in the file, the tokens stay, and the error says where the mistake is.
+// Whatever is wrong in the file, the old tokens stay, and the error says where the mistake is.
 static void a_broken_file_changes_nothing(void **state)
 {
 	cau_auth *auth = *state;

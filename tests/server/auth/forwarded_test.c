@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Anyone may write X-Forwarded-For. The setting says which proxies are trusted.
+// Tests that X-Forwarded-For, which anyone may write, is believed only from proxies that the
+// setting trusts.
 #include "auth/auth.h"
 
 #include <setjmp.h>

@@ -41,7 +41,8 @@ static cau_shelf *stocked(size_t bytes, int count)
 	return shelf;
 }
 
-// Allowed page faults, such as a page of the stack that a call reaches first.
+// Largest number of page faults that a test allows. For example, a call may reach a page of the
+// stack first.
 static const long FEW_FAULTS = 16;
 
 static void test_no_page_is_looked_for_in_a_slice(void **state)

@@ -90,12 +90,14 @@ static void waiting_jobs_go_by_length(void **state)
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
 	cau_builder_submit(builder, &first.job);
-	await(&b, 2); // now no thread is free
+	// Now a job runs on both threads.
+	await(&b, 2);
 	cau_builder_submit(builder, &slow.job);
 	cau_builder_submit(builder, &quick.job);
 	assert_int_equal(cau_builder_busy(builder), 4);
 	open_gate(&b);
-	await(&b, 4); // the short jobs ran one after the other while the long job continued
+	// The short jobs ran one after the other while the long job continued.
+	await(&b, 4);
 	assert_string_equal(b.order, "gfqs");
 	open_gate(&b);
 	assert_int_equal(b.nice, NICE);
@@ -114,7 +116,8 @@ static void a_short_job_does_not_stand_behind_a_long_one(void **state)
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
 	cau_builder_submit(builder, &small.job);
-	await(&b, 2); // while the long job is running
+	// The short job runs although the long job is still running.
+	await(&b, 2);
 	assert_string_equal(b.order, "gs");
 	open_gate(&b);
 	cau_builder_stop(builder);
@@ -136,9 +139,10 @@ static void long_jobs_run_beside_each_other(void **state)
 	await(&b, 3);
 	named small = make(&b, 's', 0.05, 0);
 	cau_builder_submit(builder, &small.job);
-	await(&b, 4); // the thread of short jobs is free, although a long job waits
+	// The short job runs on the thread of short jobs, although a long job waits.
+	await(&b, 4);
 	assert_int_equal(b.order[3], 's');
-	assert_in_range(cau_builder_busy(builder), 4, 5); // that short job may still be ending
+	assert_in_range(cau_builder_busy(builder), 4, 5); // the short job may still be ending
 	open_gate(&b);
 	await(&b, 5);
 	cau_builder_stop(builder);
@@ -157,7 +161,8 @@ static void idle_threads_of_long_jobs_take_short_ones(void **state)
 		job[i] = make(&b, (char)('a' + i), 0.1, 1);
 		cau_builder_submit(builder, &job[i].job);
 	}
-	await(&b, 3); // all run at the same time
+	// All three jobs run at the same time.
+	await(&b, 3);
 	open_gate(&b);
 	cau_builder_stop(builder);
 	cau_builder_destroy(builder);

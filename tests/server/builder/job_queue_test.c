@@ -41,7 +41,8 @@ static void equals_keep_their_order(void **state)
 		assert_ptr_equal(cau_job_queue_take(&queue), &jobs[i]);
 }
 
-// Short jobs keep coming. The long job gets its turn after those that come within its patience.
+// Tests that a long job gets its turn while short jobs keep coming: after those that come within
+// its patience.
 static void nothing_starves(void **state)
 {
 	(void)state;
@@ -50,7 +51,8 @@ static void nothing_starves(void **state)
 	cau_job long_one = job_of(2), jobs[SHORT_JOBS];
 	int before = 0;
 	cau_job_queue_put(&queue, &long_one, 0);
-	for (int i = 0; i < SHORT_JOBS; i++) { // one job every 0.3 s
+	// A short job comes every 0.3 s.
+	for (int i = 0; i < SHORT_JOBS; i++) {
 		jobs[i] = job_of(0.1);
 		cau_job_queue_put(&queue, &jobs[i], 0.3 * i);
 		if (cau_job_queue_take(&queue) == &long_one)

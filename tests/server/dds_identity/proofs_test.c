@@ -25,7 +25,8 @@ static participant numbered(int number)
 	return made;
 }
 
-// Makes a certificate of this organisation, with the unit `parts` times, and this common name.
+// Makes a certificate of this organisation, with this common name, and with the unit repeated
+// `parts` times.
 static const char *certificate(char pem[PEM_BYTES], const char *name, const char *unit, int parts)
 {
 	X509 *made = X509_new();
@@ -87,7 +88,8 @@ static void who_comes_under_a_guid_that_was_anothers_has_proved_nothing(void **s
 	is(&robot, "CN=chief,O=Cautery");
 	cau_dds_proofs_meet(robot.guid, 13);
 	is(&robot, NULL);
-	cau_dds_proofs_prove(102, pem); // the handle of the earlier handshake
+	// 102 is the handle of the earlier handshake.
+	cau_dds_proofs_prove(102, pem);
 	is(&robot, NULL);
 	cau_dds_proofs_forget(13);
 }

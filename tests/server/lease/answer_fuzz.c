@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fuzzes the answers of etcd: whatever is read from them is within its bounds.
+// Fuzzes the answers of etcd: all values that are read from them must be within their bounds.
 #include <stdlib.h>
 #include <string.h>
 

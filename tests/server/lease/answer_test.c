@@ -78,7 +78,7 @@ static void values_are_read(void **state)
 {
 	(void)state;
 	cau_etcd_value values[2];
-	assert_int_equal(read_values("{" HEADER "}", values), CAU_OK); // neither key is there
+	assert_int_equal(read_values("{" HEADER "}", values), CAU_OK); // etcd has neither key
 	assert_false(values[0].is_there || values[1].is_there);
 	assert_int_equal(
 		read_values(
@@ -127,7 +127,8 @@ static void a_value_has_a_bound(void **state)
 	char text[1024];
 	cau_etcd_value values[2];
 	for (int more = 0; more < 2; more++) {
-		int length = 340 + 4 * more; // base64 lengths of 255 bytes, and of three bytes more
+		// These are the base64 lengths of 255 bytes, and of three bytes more.
+		int length = 340 + 4 * more;
 		snprintf(text, sizeof text,
 		         "{" HEADER ",\"kvs\":[{" KEY ",\"mod_revision\":\"1\",\"value\":\"%0*d\"}]}",
 		         length, 0);

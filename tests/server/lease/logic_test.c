@@ -41,15 +41,16 @@ static void a_generation_has_one_text(void **state)
 }
 
 // ---- renewals
-// etcd's side of a lease, in true time. An answer may have a longer time to live than was asked
-// for, as after a change of etcd's leader.
+// etcd's side of a lease, in true time. An answer may have a longer time to live than the daemon
+// requested, as after a change of etcd's leader.
 typedef struct server {
 	double ends_s, ttl_s;
 } server;
 
 typedef struct outcome {
-	double there,
-		back; // parts of the limit that request and answer take; a sum above 1 is too late
+	// Parts of the time limit that the request (there) and the answer (back) take. If the sum is
+	// above 1, the answer is too late.
+	double there, back;
 	bool arrives;
 	bool unreadable;
 } outcome;
@@ -155,26 +156,28 @@ static void what_is_lost_stays_lost(void **state)
 	cau_lease_logic logic;
 	cau_lease_begin(&logic, &rules, 0, 10);
 	assert_int_equal(cau_lease_next(&logic, 8.9).kind, CAU_LEASE_RENEW);
-	cau_lease_answer(&logic, CAU_RENEWED, 8.9, 10, 9.0); // the margin is 1 s, so this is too late
+	// the margin is 1 s, so this answer is too late
+	cau_lease_answer(&logic, CAU_RENEWED, 8.9, 10, 9.0);
 	assert_int_equal(cau_lease_next(&logic, 9.0).kind, CAU_LEASE_END);
 	cau_lease_begin(&logic, &rules, 0, 10);
 	cau_lease_answer(&logic, CAU_RENEWAL_GONE, 2.5, 0, 2.6);
 	assert_int_equal(cau_lease_next(&logic, 2.6).kind, CAU_LEASE_END);
 	cau_lease_answer(&logic, CAU_RENEWED, 2.6, 10, 2.7);
 	assert_int_equal(cau_lease_next(&logic, 2.7).kind, CAU_LEASE_END);
-	cau_lease_begin(&logic, &rules, 0, 4); // granted for a shorter time than asked for
+	// The lease was granted for a shorter time than requested.
+	cau_lease_begin(&logic, &rules, 0, 4);
 	assert_int_equal(cau_lease_next(&logic, 3.1).kind, CAU_LEASE_END);
 }
 
 // ---- claims
-// The stores of one label, on one machine or two. Each is served by a process that takes steps and
-// may be killed after any of them. Stores are copied at any time.
+// The stores of one label, on one machine or two. Each store is served by a process that takes
+// steps and may be killed after any step. Stores are copied at any time.
 enum { STORES = 3, STEPS_DEEP = 9, WALKS = 20000, WALK_STEPS = 40 };
 
 typedef struct file {
 	bool is_there, is_copy; // is_copy: not opened since it was copied
 	cau_generation held, next;
-	int writes; // how many of all acknowledged writes it has
+	int writes; // how many of all acknowledged writes the file has
 } file;
 
 typedef enum phase { DOWN, NOTED, CLAIMED, SERVES } phase;
@@ -189,7 +192,7 @@ typedef struct world {
 	file file[STORES];
 	process process[STORES];
 	cau_generation known;
-	int holder; // process whose lease has not ended; -1: none
+	int holder; // process whose lease has not ended; -1: no such process
 	uint64_t revision, mark;
 	int writes; // writes acknowledged so far, by all processes
 	bool taken; // --take-label was given: missing writes are then the operator's responsibility
@@ -215,7 +218,8 @@ static void judge_and_note(world *w, int i, bool take_label)
 	cau_lease_choose(&claim, &w->process[i].has_next, ++w->mark);
 	w->file[i].held = claim.held;
 	w->file[i].next = claim.next;
-	w->file[i].is_copy = false; // the store notes its own file, so it is no copy any more
+	// The store notes its own file, so the file is no copy any more.
+	w->file[i].is_copy = false;
 	w->process[i].read_revision = w->revision;
 	w->process[i].phase = NOTED;
 	w->taken = w->taken || take_label;
@@ -359,7 +363,7 @@ static void nor_in_long_histories(void **state)
 	assert_true(served > WALKS / 10);
 }
 
-// A daemon that is killed after any step starts again by itself.
+// Tests that a daemon that is killed after any step can start again by itself.
 static void who_was_killed_comes_back(void **state)
 {
 	(void)state;
@@ -383,7 +387,8 @@ static void a_lease_is_taken_from_nobody(void **state)
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_WAIT);
 	claim.take_label = true;
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_WAIT);
-	claim.is_held_here = true; // held by an earlier process with this store, which has ended
+	// An earlier process with this store, which has ended, holds the label.
+	claim.is_held_here = true;
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_CLAIM);
 	claim = (cau_claim){.held = held, .known = other};
 	assert_int_equal(cau_lease_judge(&claim, &error), CAU_VERDICT_REFUSE);

@@ -215,7 +215,7 @@ static void in_json_a_line_without_room_is_cut_and_still_an_object(void **state)
 	(void)state;
 	char value[400], key[] = "name0";
 	memset(value, 'x', sizeof value);
-	// so that the line is cut at every possible byte
+	// The lengths are such that the line is cut at every possible byte.
 	for (size_t bytes = 300; bytes < sizeof value; bytes++) {
 		cau_log_line line = {.json = true};
 		line.bytes = (size_t)snprintf(line.text, sizeof line.text, "{\"head\":0");

@@ -78,7 +78,7 @@ static void what_clients_send_cannot_forge_lines(void **state)
 	line_fields fields;
 	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
 	assert_null(strchr(line, '\x1b'));
-	const char *tail = strstr(line, "Z ") + 2; // behind the level and the time
+	const char *tail = strstr(line, "Z ") + 2; // the part behind the level and the time
 	assert_true(line_parse(tail, strlen(tail) - 1, &fields));
 	assert_int_equal(fields.count, 4);
 	assert_string_equal(fields.fields[0].value, "d1-x event=y");

@@ -18,13 +18,15 @@ static const char *const get_text[] = {
 	"application/json",
 	"application/openmetrics-text;q=0",
 	"application/openmetrics-text;q=0.0, */*",
-	"application/openmetrics-text;q=0, application/*",       // the most specific range counts
+	// the range application/openmetrics-text is more specific, so its q is used
+	"application/openmetrics-text;q=0, application/*",
 	"application/openmetrics-text; q=0.3, text/plain;q=0.9", // OpenMetrics has a lower weight
 	"application/openmetrics-text;q=0.4, text/*;q=0.5",
 	"application/openmetrics-text;q=0.4, */*;q=0.5",
 	"application/openmetrics-text;version=0.0.1", // a version that we do not write
 	"application/openmetrics-text;version=2.0.0, text/plain",
-	"text/plain, application/*", // equal weights: the format that is named more specifically
+	// equal weights, so the format that is named more specifically is chosen
+	"text/plain, application/*",
 	"application/openmetrics-text-and-more",
 	"application/openmetrics-text;q=nonsense",
 	"application/openmetrics-text;q=1.5",
@@ -41,13 +43,13 @@ static const char *const get_open[] = {
 	"APPLICATION/OpenMetrics-Text;VERSION=1.0.0;Q=0.9, text/plain;q=0.1",
 	"application/openmetrics-text,text/plain",
 	"text/plain ,\tapplication/openmetrics-text",
-	"application/openmetrics-text;q=0.5, */*;q=0.5", // equal weights: the format that is named more
-                                                     // specifically
+	// Both weights are equal, so the format that is named more specifically is chosen.
+	"application/openmetrics-text;q=0.5, */*;q=0.5",
 	"application/*",
 	"application/*, text/plain;q=0.999",
 	"text/plain;q=0.5, application/openmetrics-text;q=0.501",
-	"text/plain;version=1.0.0, application/openmetrics-text;q=0.1", // a version of text that we do
-                                                                    // not write
+	// We do not write this version of text.
+	"text/plain;version=1.0.0, application/openmetrics-text;q=0.1",
 	// the headers of Prometheus 2 and 3
 	("application/openmetrics-text;version=1.0.0;q=0.5,application/openmetrics-text;version=0.0.1;"
      "q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2"),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This program is in the build tree in the same place as an installed program under its prefix.
+// Tests where a program finds its files. In the build tree, this program is in the same folder,
+// relative to the files, as an installed program.
 #include "places/places.h"
 
 #include <limits.h>

@@ -31,7 +31,7 @@ static void a_connection_has_its_minute(void **state)
 {
 	(void)state;
 	cau_config config = wide();
-	config.quota_connection = 6; // one request every ten seconds
+	config.quota_connection = 6; // six requests a minute are one every ten seconds
 	cau_quota *quota = cau_quota_create(&config);
 	cau_allowance one = {0}, other = {0};
 	cau_error error = {0};
@@ -109,7 +109,7 @@ static void more_addresses_than_are_remembered(void **state)
 		snprintf(text, sizeof text, "10.0.%d.%d", i / 256, i % 256);
 		take(quota, &connection, text, CAU_ROLE_VIEW, 1, 1, NULL);
 	}
-	// The address that has taken most is not forgotten.
+	// The address that has taken most is remembered: its allowance is still used up.
 	assert_int_equal(take(quota, &busy, "busy", CAU_ROLE_VIEW, 1, 1, NULL), 0);
 	cau_quota_destroy(quota);
 	cau_quota_destroy(NULL);

@@ -20,7 +20,8 @@ static const char *const names[] = {"fascia",         "fat",          "fat-neoho
                                     "strain-none-on", "strain-x-off", "strain-x-on",
                                     "strain-xy-off",  "strain-xy-on"};
 
-static const double decimal_m = 1e-5; // coordinates in scripts have five decimals
+// unit of the last decimal: coordinates in scripts have five decimals
+static const double decimal_m = 1e-5;
 
 static char *read_file(const char *folder, const char *name, const char *ending, size_t *bytes)
 {

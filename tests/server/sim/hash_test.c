@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hash is the same however cautery-sim is run, on the real core. The first argument is the
-// program.
+// Tests that the hash is the same however cautery-sim is run, on the real core. The first argument
+// is the program.
 #include "program_run.h"
 
-// Compares the hashes of several runs. Under sanitizers, where a run takes minutes, it makes only
-// one other run, with two threads and a snapshot while edges part. Other builds compare the rest,
-// and this run would show a race.
+// Compares the hashes of several runs. Under sanitizers, where a run takes minutes, only one other
+// run is made, with two threads and a snapshot while edges part. In this run a sanitizer would
+// detect a race. Other builds compare all runs.
 static void expect_one_hash(const char *scene, const char *seconds, const char *snapshots[3])
 {
 	char arguments[256], first[17], other[17];

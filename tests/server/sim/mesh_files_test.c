@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs the program on real mesh files. It cuts each for ten seconds without a fault, and edges
-// part. The folder comes from CAUTERY_MESHES; without it the test is skipped.
+// Runs the program on real mesh files. It must cut each for ten seconds without a fault, and edges
+// must part. The folder comes from CAUTERY_MESHES; without it the test is skipped.
 #include "sim_fixture.h"
 
 #include <sys/wait.h>
@@ -44,7 +44,7 @@ int main(int argument_count, char **arguments)
 		puts("skipped: CAUTERY_MESHES names no folder with real meshes");
 		return 77;
 	}
-	// the first two are a solid and a surface
+	// Under sanitizers, only the first two files are tested: a solid and a surface.
 	size_t count = CAU_TEST_SANITIZED ? 2 : sizeof files / sizeof *files;
 	for (size_t i = 0; i < count; i++) {
 		int removed = removed_elements(arguments[1], folder, &files[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes a scene around a block of hexahedra, 120 x 120 x 30 units.
+// Tests the scene that is made around a block of hexahedra, 120 x 120 x 30 units.
 #include "sim/mesh_scene.h"
 
 #include <math.h>
@@ -106,7 +106,7 @@ static void refusals_name_the_options(void **state)
 	(void)state;
 	cau_error error = {0};
 	cau_scene_def *scene = malloc(sizeof *scene);
-	cau_mesh_wish wish = wish_of(write_block("large.mesh"), 1); // 120 m long
+	cau_mesh_wish wish = wish_of(write_block("large.mesh"), 1); // the block is 120 m long
 	assert_int_equal(sim_mesh_scene(&wish, scene, &error), CAU_BAD_MESH);
 	assert_non_null(strstr(error.reason, "did you mean millimetres (--unit-m 0.001)?"));
 	assert_string_equal(error.path, "");

@@ -6,7 +6,7 @@
 
 #include <sys/wait.h>
 
-static const char *program; // the test's first argument
+static const char *program; // path of the program: the test's first argument
 
 // Runs the program with these arguments. Its standard output goes to `output`. Returns its exit
 // code.
@@ -24,7 +24,7 @@ static inline int run_program(const char *arguments, char *output, size_t bytes)
 	return WEXITSTATUS(status);
 }
 
-// Reads the hash in the JSON object in the last line of output.
+// Reads the hash from the JSON object that is the last line of the output.
 static inline void read_hash(const char *arguments, char hash[17])
 {
 	char output[8192];

@@ -10,7 +10,7 @@ static void exit_codes_are_as_documented(void **state)
 	(void)state;
 	char output[4096];
 	fixture_write(fixture_path("bad.jsonl"), "{\"command\":\"nope\"}\n");
-	// at the tick of the second command its tool is already removed
+	// At the tick of the second command, the first command has already removed the tool.
 	fixture_write(fixture_path("late.jsonl"),
 	              "{\"command\":\"tool.remove\",\"tool\":\"needle\",\"tick\":3}\n"
 	              "{\"command\":\"tool.energize\",\"tool\":\"needle\",\"tick\":3,"
@@ -90,8 +90,8 @@ static void expect_files_change_nothing(const char *scene)
 	assert_string_equal(with_files, plain);
 }
 
-// Sheets and fat: each step starts with the rotations of the step before, which files must not
-// change.
+// In these scenes with sheets and fat, each step starts with the rotations of the step before.
+// Files must not change these rotations.
 static void files_change_nothing(void **state)
 {
 	(void)state;
@@ -136,7 +136,8 @@ static void ticks_tell_the_ledger(void **state)
 		out += cell_of(last, column_of(text, *column));
 	assert_true(in > 1);
 	assert_true(fabs(in - out) < 1e-6 * in);
-	double watts = 0, ohm = 0; // in some ticks no tissue is within reach
+	// largest values of all ticks; in some ticks no tissue is within reach
+	double watts = 0, ohm = 0;
 	double vapour_kg = 0;
 	for (const char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
 		watts = fmax(watts, cell_of(line, column_of(text, "needle_delivered_w")));

@@ -145,7 +145,8 @@ static void files_tell_scalars_and_tools(void **state)
 	const cau_tool_state *hook = &frame.tools[0];
 	data position = find_array(text, bytes, "position_m");
 	assert_int_equal(position.bytes, 2 * 24);
-	for (size_t c = 0; c < 3; c++) // the shaft is upright: its end is above the tip
+	// The shaft is upright, so its end is above the tip.
+	for (size_t c = 0; c < 3; c++)
 		assert_float_equal((float)(number_at(position, 3 + c) - number_at(position, c)),
 		                   c == 2 ? (float)hook->definition.shaft_length_m : 0, 1e-7F);
 	assert_true(number_at(position, 2) == hook->pose.position_m[2]);

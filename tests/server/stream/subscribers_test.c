@@ -195,8 +195,8 @@ static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **u
 	scene_finish(&s);
 }
 
-// A client with a new decoder acknowledges frame 0. The frames that it has taken are not in flight
-// again.
+// A client with a new decoder acknowledges frame 0. The bytes of frames that were already
+// acknowledged must not be in flight again.
 static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 {
 	(void)unused;
@@ -217,7 +217,7 @@ static void test_an_acknowledgement_of_less_takes_nothing_back(void **unused)
 	scene_finish(&s);
 }
 
-// More than SENT_FRAMES frames are in flight. The bytes of all of them stay counted.
+// More than SENT_FRAMES frames are in flight. The bytes of all these frames stay counted.
 static void test_an_old_acknowledgement_frees_nothing(void **unused)
 {
 	(void)unused;
@@ -326,7 +326,8 @@ static void test_one_that_keeps_up_comes_back_on_trial(void **unused)
 	while (take(&s, &sub).sequence)
 		;
 	assert_newest(&s);
-	fall(&s, &sub); // now one fall is enough
+	// After the earlier falls, one more fall is enough for half the rate.
+	fall(&s, &sub);
 	assert_true(sub.half);
 	scene_finish(&s);
 }
@@ -358,7 +359,8 @@ static void test_a_key_frame_that_fails_wakes_nobody(void **state)
 	scene_init(&s);
 	publish(&s);
 	s.stream->key_wanted = true;
-	s.stream->next_s = s.now_s + 1; // so that no delta is due
+	// The time is set so that no delta is due.
+	s.stream->next_s = s.now_s + 1;
 	s.stream->scratch_bytes = 0;
 	cau_stream_moment moment = {.now_s = s.now_s};
 	assert_int_not_equal(cau_streams_publish(&s.streams, &moment, &made, &error), CAU_OK);

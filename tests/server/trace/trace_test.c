@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A trace reads back as it was written. Its replay gives the same answers, or names the line where
-// they differ.
+// Tests that a trace reads back as it was written. Its replay must give the same answers, or name
+// the line where they differ.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -206,7 +206,8 @@ static void work(traced *t)
 	}
 }
 
-// Two clients: one takes over, turns energy on and falls silent; the other is refused and pauses.
+// Makes a trace of two clients. One takes over, turns energy on and falls silent. The other is
+// refused and pauses.
 static void make_trace(traced *t)
 {
 	*t = (traced){.now_s = 1};
@@ -234,7 +235,7 @@ static void make_trace(traced *t)
 	order(t, 4, CAU_ASK_PAUSE, 2);
 	work(t);
 	assert_int_equal(fflush(t->to), 0);
-	assert_in_range(t->lit_steps, 10, 30); // energy went on, and off again at the deadline
+	assert_in_range(t->lit_steps, 10, 30); // energy was turned on, and off again at the deadline
 }
 
 static void discard_trace(traced *t)

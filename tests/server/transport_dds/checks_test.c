@@ -58,7 +58,7 @@ static void times_are_near_and_go_on(void **state)
 	                 CAU_BAD_VALUE);
 }
 
-// Both clocks are set back an hour, and so is a count that is made from the time. Samples are
+// Both clocks and a sequence number that is made from the time are set back an hour. Samples are
 // refused until the deadline has passed, not for the whole hour.
 static void a_step_back_locks_out_for_a_deadline_only(void **state)
 {
@@ -76,7 +76,8 @@ static void a_step_back_locks_out_for_a_deadline_only(void **state)
 		{1, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_OK},
 		{0, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
 		{UINT64_MAX, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
-		{8, NOW_NS - HOUR_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE}, // one clock: stale
+		// only one clock is set back: the sample is too old
+		{8, NOW_NS - HOUR_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
 		assert_int_equal(cau_motion_check_order(&past, cases[i].sequence, cases[i].source_time_ns,

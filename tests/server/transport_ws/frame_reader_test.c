@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames by RFC 6455. Complete messages are read, however the bytes are cut. A broken rule ends the
-// connection with the code that the rule's section names.
+// Tests the frame reader by RFC 6455. Complete messages are read, however the bytes are cut. A
+// broken rule ends the connection with the code that the rule's section names.
 #include "transport_ws/frame_reader.h"
 
 #include <setjmp.h>
@@ -136,7 +136,7 @@ static void fragments_make_one_message_and_control_frames_may_stand_between(void
 	put_frame(1, "he", 2);
 	put_frame(FINAL | 9, "pi", 2);
 	put_frame(0, "", 0);
-	put_frame(0, "l\xc3", 2); // a character that is cut by the end of a fragment
+	put_frame(0, "l\xc3", 2); // the end of the fragment cuts a character
 	put_frame(FINAL | 10, "", 0);
 	put_frame(FINAL | 0, "\xa9", 1);
 	put_frame(FINAL | 1, "next", 4);
@@ -275,7 +275,7 @@ static void text_that_is_no_utf_8_is_refused(void **state)
 	put_frame(1, "\xe2\x82", 2); // the rest of the character never comes
 	put_frame(FINAL | 0, "", 0);
 	assert_heard("F T:\xe2\x82\xac F X:1007 ");
-	put_frame(1, "\xe2(", 2); // reported before the message is complete
+	put_frame(1, "\xe2(", 2); // the error is reported before the message is complete
 	assert_heard("X:1007 ");
 }
 

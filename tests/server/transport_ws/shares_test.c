@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shares of the network thread's time: how much each client may use, and which goes first.
+// Tests the shares of the network thread's time: how much each client may use, and which client
+// goes first.
 #include "transport_ws/shares.h"
 
 #include <setjmp.h>
@@ -114,7 +115,8 @@ static void a_new_connection_does_not_renew_the_share(void **state)
 	cau_share_close(&w.viewers[1]);
 	assert_true(
 		cau_share_open(&w.shares, &w.viewers[0], "192.0.2.1", CAU_STANDING_UNKNOWN, w.now_s));
-	assert_true(cau_share_wait_s(&w.viewers[0], w.now_s) <= 0); // it still has time to say hello
+	// the client still has time to say hello
+	assert_true(cau_share_wait_s(&w.viewers[0], w.now_s) <= 0);
 	cau_share_promote(&w.viewers[0], CAU_STANDING_VIEWER, w.now_s);
 	assert_true(cau_share_wait_s(&w.viewers[0], w.now_s) > 0.5);
 	w.now_s += 2; // used time is given back and forgotten

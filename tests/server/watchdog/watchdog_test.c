@@ -15,8 +15,8 @@
 
 #include "clock/clock.h"
 
-// The watchdog may be late by this, and by what a busy machine is late to wake any thread
-// (lateness).
+// Largest delay of the watchdog, s, beyond the delay with which a busy machine wakes any thread
+// (`lateness`).
 #define LATE_S 0.05
 
 // A thread that sleeps again and again, and notes the longest delay of its waking.
@@ -154,7 +154,8 @@ static void it_moves_unless_it_hangs(void **state)
 			sched_yield();
 	}
 	pthread_mutex_lock(&l.hang);
-	while (cau_watchdog_moves(watchdog)) // the last look may still be ending
+	// The watchdog's last check may not have ended yet.
+	while (cau_watchdog_moves(watchdog))
 		sched_yield();
 	for (int asked = 0; asked < 1000; asked++)
 		assert_false(cau_watchdog_moves(watchdog));

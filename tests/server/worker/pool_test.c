@@ -174,7 +174,7 @@ typedef struct marked {
 	cau_task task; // must be the first member
 	char name;
 	bool is_long;
-	int yields; // how often a slice yields to the other workers
+	int yields; // how often a slice yields the processor to the other workers
 } marked;
 
 static cau_due note(cau_task *task)
@@ -244,12 +244,13 @@ static void without_others_all_workers_are_theirs(void **state)
 	assert_int_equal(cau_worker_pool_create(&pool, 2, 2, 0, NULL), CAU_OK);
 	add_marked(pool, &tasks[0], 'L', true);
 	add_marked(pool, &tasks[1], 'M', true);
-	while (long_most < 2) // if it is never reached, the test runs into its time limit
+	while (long_most < 2) // if two long slices never run at once, the test reaches its time limit
 		sched_yield();
 	run_marked(pool, tasks, 2, 10);
 }
 
-// With one worker, a slice of another task that is due follows each slice of a long task.
+// Tests that with one worker, a slice of another task that is due follows each slice of a long
+// task.
 static void on_one_worker_they_take_turns(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy that is held and cut by somebody else is said at once, with what brings it back; it comes back by
-// a fresh press alone, and letting go never switches off what somebody else has on.
+// Tests energy that is held here and turned off elsewhere. The page says so at once, and what turns it on again. Only a
+// new press turns it on, and a release never turns off energy that another input has turned on.
 import { Energy, LATCH_S } from '../../../../clients/web/src/hands/energy';
 import { Holds, type Held } from '../../../../clients/web/src/hands/holds';
 import type { Control } from '../../../../clients/web/src/model/control';
@@ -10,28 +10,29 @@ import type { Frame } from '../../../../clients/web/src/wire/worker_messages';
 
 const ME = 7;
 
-/** The daemon's answer to an enable, both resolved when the page has taken it. */
+/** A command about energy that the page has sent. answer() and refuse() resolve when the page has taken the daemon's
+ * answer. */
 interface Told {
   energized: boolean;
-  /** the limit that goes with it */
+  /** limit in ticks that the command has */
   ticks: number | undefined;
-  /** the tick for which it was ordered */
+  /** tick for which the command was ordered */
   tick: number | undefined;
   answer(tick: number): Promise<void>;
   refuse(words: string): Promise<void>;
 }
 
-/** Timers run after all that answers have set off. */
+/** Resolves after everything that an answer causes: timers run after that. */
 const taken = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
-/** A model and a control of which only what energy uses is there. */
+/** A model and a control that have only what energy uses. */
 class Bench {
   readonly model = new Model();
   readonly told: Told[] = [];
   readonly said = new Map<string, string>();
   readonly holds = new Holds();
   readonly energy: Energy;
-  /** how often a latch has ended without a hand */
+  /** number of times that a latch has ended without an input */
   ends = 0;
 
   constructor() {
@@ -82,7 +83,7 @@ class Bench {
     this.model.emit('frame', frame);
   }
 
-  /** Pressed at tick 10, answered, on. */
+  /** Presses at tick 10 and gets the answer, so that energy is on. */
   async lit(by: Held = 'space'): Promise<void> {
     this.frame(10, false);
     this.press(by);
@@ -105,7 +106,7 @@ describe('energy that is held', () => {
     expect(bench.said.get('energy')).toContain('Energy is off: the server did not hear from this page in time');
     expect(bench.said.get('energy')).toContain(again);
     expect(bench.energy.alive).toBe(false);
-    bench.energy.enable('hook', false); // a key that goes on being held brings nothing back
+    bench.energy.enable('hook', false); // a key that is still held turns nothing on again
     expect(bench.told.length).toBe(1);
     bench.release(by);
     expect(bench.said.size).toBe(0);
@@ -118,7 +119,7 @@ describe('energy that is held', () => {
     bench.frame(10, false, 'never_enabled');
     bench.press();
     await bench.told[0].answer(11);
-    bench.frame(11, false, 'never_enabled'); // the border where it takes effect: the step comes after it
+    bench.frame(11, false, 'never_enabled'); // frame before the step for which energy was ordered
     expect(bench.said.size).toBe(0);
     bench.frame(12, false, 'never_enabled');
     expect(bench.said.get('energy')).toContain('before it came on');

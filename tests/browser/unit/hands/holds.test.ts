@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether energy is held, and why not any more: every hold with every event that can end it, and the rule that
-// only a press begins one.
+// Tests whether energy is held, and why it is not held any more: every hold with every event that can end it, and the
+// rule that only a press begins a hold.
 import { Holds, keyId, LATCH, pointerId, type Held, type HoldEvent, type Lost, type Place, type Press } from '../../../../clients/web/src/hands/holds';
 
 const press = (by: Held, id: string, place: Place | null): Press => ({ type: 'press', by, id, place, ripe: true });
@@ -19,7 +19,7 @@ const HOLDS: readonly Press[] = [
 const isPointer = ({ id }: Press): boolean => id.startsWith('pointer');
 const isKey = ({ by, id }: Press): boolean => (by === 'space' || by === 'button') && id.startsWith('key');
 
-/** An event, and for which holds it is the end. */
+/** Events, and for which holds each event is the end. */
 const ENDS: readonly (readonly [string, (hold: Press) => HoldEvent, (hold: Press) => boolean, Lost])[] = [
   ['its own release', ({ id }) => ({ type: 'release', id }), () => true, 'released'],
   ['a browser that takes it', ({ id }) => ({ type: 'release', id, why: 'cancelled' }), () => true, 'cancelled'],
@@ -95,7 +95,7 @@ describe('what is held', () => {
     down(pointerId(2), false);
     holds.take(press('button', pointerId(2), 'energy'));
     expect(holds.held).toBe(false);
-    down(pointerId(3), true); // the lift of neither was seen
+    down(pointerId(3), true); // the end of neither press was seen
     holds.take(press('button', pointerId(3), 'energy'));
     expect(holds.held).toBe(true);
   });

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chapter about the model has every equation of the paper, each once.
+// Tests that the chapter about the model has every equation of the paper exactly once.
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 import { render } from '../../../../clients/web/manual/markdown.ts';
 
-const EQUATIONS = 24; // of the paper, those of its appendices included
+const EQUATIONS = 24; // number of equations of the paper, with those of its appendices
 
 it('every equation is placed, with its number', () => {
   const source = readFileSync(fileURLToPath(new URL('../../../../deploy/manual/computation.md', import.meta.url)), 'utf8');

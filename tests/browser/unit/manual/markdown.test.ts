@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page of the manual as HTML that a strict Content-Security-Policy lets through.
+// Tests a page of the manual as HTML that a strict Content-Security-Policy allows.
 import { mathematics, render } from '../../../../clients/web/manual/markdown.ts';
 
 const same = (link: string): string => link;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colour maps as colour-blind eyes see them (Vienot, Brettel and Mollon 1999) and in grey.
+// Tests colour maps as colour-blind eyes see them (Vienot, Brettel and Mollon 1999) and in grey.
 import { colourAt, colourRow, type ColourMap } from '../../../../clients/web/src/model/colour_maps';
 
 const STEPS = 64;
-const LEAST_STEP = 1e-3; // of lightness, 0 to 1: none stands still
+const LEAST_STEP = 1e-3; // least change of lightness, 0 to 1, in a step: every step must change it
 const LEAST_RANGE = 0.4;
 const EYES: Record<string, number[][]> = {
   'all colours': [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -11,7 +11,7 @@ const EYES: Record<string, number[][]> = {
   'no green cones': [[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]],
 };
 
-/** L* of CIE 1976 over 100, of what the eyes see of a colour. */
+/** Returns L* of CIE 1976 divided by 100, of the colour that these eyes see. */
 function lightness(colour: readonly number[], eyes: readonly number[][]): number {
   const linear = colour.map((byte) => (byte / 255 <= 0.04045 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
   const seen = eyes.map((row) => row.reduce((sum, weight, c) => sum + weight * linear[c], 0));

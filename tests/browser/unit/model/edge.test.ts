@@ -2,7 +2,7 @@
 import { Edge } from '../../../../clients/web/src/model/edge';
 import { makeNeighbours, SURFACE_FLOATS } from '../../../../clients/web/src/model/surface';
 
-/** A strip of four squares along x, each of two triangles; its width is along y. */
+/** Number of squares of a strip along x. Each square has two triangles; the strip's width is along y. */
 const SQUARES = 4;
 const VERTICES = 2 * (SQUARES + 1);
 const SIDE_M = 0.002;
@@ -28,12 +28,12 @@ const record = (records: Float32Array, i: number): Float32Array => records.subar
 describe('neighbours', () => {
   it('are the faces beyond each side', () => {
     const neighbours = makeNeighbours(faces, Int32Array.from([0, 1, 2, 3]), VERTICES);
-    expect([...neighbours.subarray(0, 6)]).toEqual([-1, 3, 1, 0, -1, -1]); // the strip's own borders have none
+    expect([...neighbours.subarray(0, 6)]).toEqual([-1, 3, 1, 0, -1, -1]); // the strip's own borders have no neighbours
   });
 });
 
 describe('the edge of a sheet', () => {
-  /** How many sides of faces it goes along. */
+  /** Returns the number of sides of faces along which the edge goes. */
   const sides = (edge: Edge): number => (edge.shape().index?.length ?? 0) / 6;
 
   it('goes once round a whole sheet, as deep as the sheet is thick', () => {
@@ -52,10 +52,10 @@ describe('the edge of a sheet', () => {
 
   it('goes along what is left of the border, and leaves a gap to its lips', () => {
     const { edge, hidden } = strip();
-    hidden.fill(1, 2, 6); // the two squares in the middle
+    hidden.fill(1, 2, 6); // hides the two squares in the middle
     edge.rebuild();
     expect(edge.vertexCount).toBe(8);
-    expect(sides(edge)).toBe(2 * 3); // of each of the two squares that are left, the sides where nothing was cut
+    expect(sides(edge)).toBe(2 * 3); // for each of the two squares that are left, the three sides of the uncut border
     hidden.fill(1);
     edge.rebuild();
     expect(edge.vertexCount).toBe(0);

@@ -11,9 +11,9 @@ const scene = (name: string): Scene => JSON.parse(readFileSync(fileURLToPath(new
 
 /** A sheet of 120 x 100 mm at z = 2 mm, and under it fat of 100 x 50 mm down to -8 mm. */
 const REST = Float32Array.from([-0.06, -0.05, 0.002, 0.06, -0.05, 0.002, 0, 0.05, 0.002, -0.05, -0.025, -0.008, 0.05, 0.025, 0, 0, 0, 0, 9, 9, 9]);
-/** Turned by a quarter and moved. */
+/** The material coordinates: the rest coordinates turned by 90 degrees and moved. */
 const MATERIAL = Float32Array.from({ length: REST.length }, (_, i) => [REST[i + 1] + 0.1, -REST[i - 1], 0][i % 3]);
-const FACES = Int32Array.from([0, 1, 2, 3, 4, 5]); // none has the last vertex
+const FACES = Int32Array.from([0, 1, 2, 3, 4, 5]); // no face has the last vertex
 const layers = (kinds: LayerDescription['kind'][]): LayerDescription[] =>
   kinds.map((kind, i) => ({ name: kind, kind, first_face: i, face_count: 1, element_count: 1 }));
 
@@ -23,7 +23,7 @@ function surroundings(kinds: LayerDescription['kind'][], name: string): Surround
   return found;
 }
 
-/** Whether each triangle of a ring is closed with the next: every inner side belongs to two triangles. */
+/** Counts the triangles of each side. In a closed ring every inner side belongs to two triangles. */
 function sides(index: Uint32Array): Map<string, number> {
   const count = new Map<string, number>();
   for (let i = 0; i < index.length; i += 3) {
@@ -82,7 +82,7 @@ describe('the field around tissue', () => {
       const rim = shape.position.length / 3 / (Math.max(...shape.index) + 1);
       expect(rim).toBe(1);
       expect(counts.every((count) => count <= 2)).toBe(true);
-      const perRing = counts.filter((count) => count === 1).length / 2; // the first ring and the last one
+      const perRing = counts.filter((count) => count === 1).length / 2; // the first and the last ring have open sides
       expect((shape.position.length / 3) % perRing).toBe(0);
     }
   });
@@ -119,7 +119,7 @@ describe('what continues tissue in a body', () => {
 describe('the bed under a sheet', () => {
   const CELLS = 40;
   const corner = (i: number, j: number): [number, number] => [-0.06 + (0.12 * i) / CELLS, -0.05 + (0.1 * j) / CELLS];
-  /** A sheet of squares of 3 mm whose height is a function of the place; its border stays. */
+  /** Returns a sheet of squares of 3 mm whose height is a function of x and y; its border stays. */
   const sheet = (height: (x: number, y: number) => number): Float32Array => {
     const position = new Float32Array(3 * (CELLS + 1) ** 2);
     for (let j = 0, v = 0; j <= CELLS; j++)
@@ -130,9 +130,9 @@ describe('the bed under a sheet', () => {
       }
     return position;
   };
-  /** Of the triangle of a shape that holds a place, seen along z. */
+  /** Returns the height of the shape at x and y. */
   const heightAt = ({ position, index }: FieldShape, x: number, y: number): number => {
-    // Without arrays in the loop, which would take most of the time.
+    // The loop makes no arrays, which would take most of the time.
     for (let f = 0; f < index.length; f += 3) {
       const a = 3 * index[f], b = 3 * index[f + 1], c = 3 * index[f + 2];
       const ax = position[a], ay = position[a + 1], bx = position[b] - ax, by = position[b + 1] - ay, cx = position[c] - ax, cy = position[c + 1] - ay;
@@ -144,7 +144,8 @@ describe('the bed under a sheet', () => {
     }
     throw new Error('there is bed everywhere');
   };
-  /** How far it comes above the sheet, at most, at the sheet's corners and in the middles of its squares. */
+  /** Returns how far the bed rises above the sheet, at most, at the sheet's corners and in the middles of its
+   * squares. */
   const pierces = (bed: Bed, at: Float32Array): number => {
     let most = -Infinity;
     for (let j = 0; j < CELLS; j++)
@@ -165,7 +166,7 @@ describe('the bed under a sheet', () => {
     const bed = new Bed(around, flat);
     const wavy = sheet(waves);
     expect(pierces(bed, flat)).toBeLessThan(0);
-    expect(pierces(bed, wavy)).toBeGreaterThan(0.002); // it would, if it did not follow
+    expect(pierces(bed, wavy)).toBeGreaterThan(0.002); // the bed would be above the sheet if it did not follow
     expect(bed.follow(wavy)).toBe(true);
     expect(pierces(bed, wavy)).toBeLessThan(0);
   });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the form of the generator offers and asks for, with the profiles of deploy/instruments.
+// Tests what the form of the generator offers and requests, with the profiles of deploy/instruments.
 import { readFileSync, readdirSync } from 'node:fs';
 
 import { becoming, instrumentOf, modeNamed } from '../../../../clients/web/src/model/instruments';
 import type { Instrument, InstrumentMode, Tool } from '../../../../clients/web/src/wire/messages.gen';
 
 const FOLDER = new URL('../../../../deploy/instruments/', import.meta.url);
-/** What a scene's tool has where nothing is said of it: cautery/scene.h. */
+/** Values of a scene's tool that the scene does not set: cautery/scene.h. */
 const USUAL = { peak_v: 1150, crest_factor: 1.4, current_max_a: 2, load_rise_off: 0 };
 
 interface Profile {
@@ -16,7 +16,7 @@ interface Profile {
   modes: (Omit<InstrumentMode, 'mode'> & { name: string })[];
 }
 
-/** As the daemon lists them. */
+/** The instruments as the daemon lists them. */
 const PROFILES: Instrument[] = readdirSync(FOLDER)
   .filter((file) => file.endsWith('.json'))
   .sort()
@@ -25,7 +25,7 @@ const PROFILES: Instrument[] = readdirSync(FOLDER)
     return { name, description, shape: tool.shape!, modes: modes.map((mode) => ({ ...USUAL, ...mode, mode: mode.name })) };
   });
 
-/** A tool with the settings of a mode. */
+/** Returns a tool with the settings of a mode. */
 function toolIn(instrument: Instrument, { power_w, peak_v, crest_factor, current_max_a, load_rise_off }: InstrumentMode): Tool {
   return { name: 'tool', shape: instrument.shape as NonNullable<Tool['shape']>, power_w, peak_v, crest_factor, current_max_a, load_rise_off };
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lips of generated cuts: a sheet whose faces part where the dose at their middle is above 1, as in
-// core/dissect/doses.c, with a smooth dose whose line of 1 is known.
+// Tests lips of generated cuts. A sheet's faces part if the dose at their middle is above 1, as in
+// core/dissect/doses.c. The dose is smooth, and its line of 1 is known.
 import { EVENINGS, type LipShape } from '../../../../clients/web/src/model/lips';
 import { SURFACE_FLOATS } from '../../../../clients/web/src/model/surface';
 import { Tissue } from '../../../../clients/web/src/model/tissue';
 import type { StreamState } from '../../../../clients/web/src/wire/decoder';
 
-const CELL_M = 0.002; // of deploy/scenes/layers.json
+const CELL_M = 0.002; // edge length of the cells of deploy/scenes/layers.json
 const STEP_M = 1e-6;
 const THICK_M = 0.0005;
 const SIZE_M = [0.056, 0.032] as const;
 /** What is asked of the drawn lip. */
-const NEAR_M = 1e-4; // to the exact curve, at the 95th percentile
+const NEAR_M = 1e-4; // largest distance of the drawn lip to the exact curve, at the 95th percentile
 const CORNER_DEGREES = 15;
 const SEGMENT_M = 5e-4;
 const SINGLE_M = 1e-7;
@@ -19,7 +19,8 @@ const SINGLE_M = 1e-7;
 type Point = readonly [number, number];
 type Dose = (x: number, y: number) => number;
 
-/** A cut along x, its lips wavy by `ragged`; with a strand as wide as this across it. */
+/** Returns the dose of a cut along x. `ragged` makes its lips wavy; a strand of width `strandM` stays across the
+ * cut. */
 const cut = (ragged: number, strandM = 0): Dose => (x, y) => {
   const half = 0.0038 + ragged * (Math.sin(900 * x + 1) + 0.6 * Math.sin(2100 * x + (y > 0 ? 2 : 0)));
   const along = Math.max(Math.abs(x) - 0.017, 0);
@@ -66,7 +67,7 @@ function sheet(cellM: number, dose: Dose, lift: (x: number, y: number) => number
 
 const hiddenIn = ({ state }: Cut, face: number): boolean => ((state.mask[face >>> 5] >>> (face & 31)) & 1) === 1;
 
-/** Closed or open chains of points from directed pairs of them. */
+/** Returns closed or open chains of points from directed pairs of vertices. */
 function chains(pairs: readonly (readonly [number, number])[], at: (vertex: number) => Point): Point[][] {
   const next = new Map(pairs);
   const starts = new Set(next.keys());
@@ -83,16 +84,16 @@ function chains(pairs: readonly (readonly [number, number])[], at: (vertex: numb
   return found;
 }
 
-/** What is drawn, from the upper row of the lip's wall. */
+/** Returns the drawn lips, from the upper row of the lip's wall. */
 function drawnLips({ lip }: Cut): Point[][] {
   const { records, index } = lip.wall;
-  const rows = 4; // of a lip's profile
+  const rows = 4; // rows of a lip's profile
   const pairs: [number, number][] = [];
   for (let i = 0; i < index!.length; i += 6 * (rows - 1)) pairs.push([index![i], index![i + 1]]);
   return chains(pairs, (row) => [records[SURFACE_FLOATS * row], records[SURFACE_FLOATS * row + 1]]);
 }
 
-/** The border that the mask leaves, as closed chains of the mesh's vertices. No vertex is on it twice in these cuts. */
+/** Returns the border of the masked mesh, as closed chains of vertices. In these cuts no vertex is on it twice. */
 function maskBorders(of: Cut): Point[][] {
   const { faces, tissue } = of;
   const count = tissue.position.length / 3;
@@ -113,7 +114,7 @@ function maskBorders(of: Cut): Point[][] {
 
 const mix = (points: readonly Point[], weights: readonly number[]): Point => [0, 1].map((c) => points.reduce((sum, p, i) => sum + weights[i] * p[c], 0)) as unknown as Point;
 
-/** The exact curve: cubic B-spline segments of a closed border whose teeth were evened out, in closed form. */
+/** Returns the exact curve: cubic B-spline segments, in closed form, of a closed border whose teeth were smoothed. */
 function exactCurve(border: readonly Point[], perSpan = 64): Point[] {
   let points = [...border];
   const near = (i: number, by: number): Point => points[(i + by + points.length) % points.length];
@@ -148,7 +149,7 @@ function corners(chain: readonly Point[]): { degrees: number[]; lengths: number[
   return { degrees, lengths: chain.map((_, i) => Math.hypot(...side(i))) };
 }
 
-/** Where a lip crosses lines x = const on one side of the cut: distances from its middle, averaged. */
+/** Returns the mean distance from the cut's middle at which a lip crosses lines x = const on one side of the cut. */
 function meanHalfWidth(lips: readonly Point[][]): number {
   const crossings: number[] = [];
   for (let x = -0.012; x <= 0.012; x += 0.0005) {
@@ -202,7 +203,7 @@ describe('the drawn lip', () => {
 
   it('leaves a strand of single faces in one piece', () => {
     const of = sheet(CELL_M, cut(0, 0.0025));
-    expect(drawnLips(of)).toHaveLength(2); // a hole on either side
+    expect(drawnLips(of)).toHaveLength(2); // a hole on each side of the strand
     expect(drawnLips(sheet(CELL_M, cut(0)))).toHaveLength(1);
   });
 
@@ -228,7 +229,7 @@ describe('the drawn lip', () => {
   });
 
   it('frays along the fibres, further where it crosses them', () => {
-    const { lip } = sheet(CELL_M, cut(0)); // fibres are along x, and so is the cut
+    const { lip } = sheet(CELL_M, cut(0)); // the fibres are along x, like the cut
     const { records } = lip.fringe;
     let [crossed, beside] = [0, 0];
     for (let i = 0; i < records.length; i += 2 * SURFACE_FLOATS) {
@@ -271,7 +272,7 @@ describe('the surface beside a cut', () => {
     for (let i = 0; i < index!.length; i += 3)
       for (let c = 0; c < 3; c++) most = Math.max(most, Math.abs(records[SURFACE_FLOATS * index![i + c] + 11] - records[SURFACE_FLOATS * index![i + ((c + 1) % 3)] + 11]));
     expect(most).toBeGreaterThan(0);
-    expect(most).toBeLessThan(0.25); // of rim: 0 to 1 over a cell in eight parts
+    expect(most).toBeLessThan(0.25); // largest step of `rim`, which goes from 0 to 1 over a cell in eight parts
   });
 
   it('is gone when what was hidden comes back, and sends its faces only when they change', () => {

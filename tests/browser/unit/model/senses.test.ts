@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke that drifts and clears, and the sounds of instruments.
+// Tests smoke that drifts and clears, and the sounds of instruments.
 import { Puffs } from '../../../../clients/web/src/model/puffs';
 import { heardOf, heartbeatLost, modeOf, TONE_HZ } from '../../../../clients/web/src/model/sounds';
 import type { Tool } from '../../../../clients/web/src/wire/messages.gen';
@@ -30,7 +30,7 @@ describe('smoke', () => {
     const puffs = new Puffs(half);
     puffs.burst(100);
     expect(puffs.advance(STEP_S, [])).toBe(false);
-    expect(puffs.advance(STEP_S, [TIP])).toBe(false); // nor later
+    expect(puffs.advance(STEP_S, [TIP])).toBe(false); // a later step has no smoke either
   });
 
   it('rises and drifts aside, and clears', () => {

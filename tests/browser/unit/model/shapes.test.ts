@@ -6,7 +6,7 @@ import { samplesCsv } from '../../../../clients/web/src/model/samples';
 import { hasHeat, hasJaws, toolParts } from '../../../../clients/web/src/model/tool_parts';
 import { TOOL_SHAPES, type LayerDescription } from '../../../../clients/web/src/wire/messages.gen';
 
-const EXACT = 1e-9; // m: sums of a few doubles
+const EXACT = 1e-9; // tolerance, m: rounding of sums of a few doubles
 
 describe('tool parts', () => {
   it.each(TOOL_SHAPES)('%s: hot parts end at the tip, a cold shaft leads up', (shape) => {
@@ -62,8 +62,8 @@ describe('picking', () => {
     const eye: [number, number, number] = [0, -0.13, 0.17];
     let through = 0;
     for (let v = 0; v < sheetAt.length; v += 3) {
-      if ([0, 1].some((axis) => Math.abs(sheetAt[v + axis]) > (CELLS / 2 - 0.5) * STEP_M)) continue; // the rim
-      for (const share of [0, 0.25, 0.37, 0.5]) { // of the edge to the right
+      if ([0, 1].some((axis) => Math.abs(sheetAt[v + axis]) > (CELLS / 2 - 0.5) * STEP_M)) continue; // leaves out the rim
+      for (const share of [0, 0.25, 0.37, 0.5]) { // share of the edge to the next vertex on the right
         const to = eye.map((from, axis) => sheetAt[v + axis] + share * (sheetAt[v + 3 + axis] - sheetAt[v + axis]) - from);
         const length = Math.hypot(...to);
         if (!pick(eye, [to[0] / length, to[1] / length, to[2] / length], sheetAt, [Uint32Array.from(index)])) through++;
@@ -76,7 +76,7 @@ describe('picking', () => {
 describe('gaps', () => {
   // A sheet in the plane z = 1 mm, tilted or not, with a slit of 8 mm cut out of its middle.
   const CELL_M = 0.002;
-  const HALF = 15; // cells
+  const HALF = 15; // half width of the sheet, in cells
   const sheet = (slope: number): { position: Float32Array; normal: Float32Array; index: Uint32Array } => {
     const position: number[] = [];
     const normal: number[] = [];
@@ -85,7 +85,7 @@ describe('gaps', () => {
     for (let j = -HALF; j <= HALF; j++) {
       for (let i = -HALF; i <= HALF; i++) {
         position.push(CELL_M * i, CELL_M * j, 0.001 + slope * CELL_M * i);
-        normal.push(slope / Math.hypot(slope, 1), 0, -1 / Math.hypot(slope, 1)); // seen from below
+        normal.push(slope / Math.hypot(slope, 1), 0, -1 / Math.hypot(slope, 1)); // the normals point down
         if (i === HALF || j === HALF || (Math.abs(j + 0.5) < 2 && Math.abs(i + 0.5) < 6)) continue;
         const a = (j + HALF) * side + i + HALF;
         index.push(a, a + 1, a + side + 1, a, a + side + 1, a + side);
@@ -111,8 +111,9 @@ describe('gaps', () => {
     const across = (hidden: (x: number, y: number, z: number) => boolean): number | null =>
       acrossGap([0.001, 0, 0.1], down, position, normal, [index], hidden);
     expect(across((x) => x > 0.02)).toBeCloseTo(0.099, 4);
-    expect(across((x, y) => Math.hypot(x - 0.001, y) < 0.001)).toBeNull(); // the place alone is away, no vertex is there
-    expect(across((x) => x > 0.0015)).toBeNull(); // what is left is on one side of it
+    // only the looked-at place is cut away, between the vertices
+    expect(across((x, y) => Math.hypot(x - 0.001, y) < 0.001)).toBeNull();
+    expect(across((x) => x > 0.0015)).toBeNull(); // the tissue that is left is on one side of the gap only
     expect(across((_x, _y, z) => z < 0.0005)).toBeCloseTo(0.099, 4);
   });
 
@@ -149,7 +150,7 @@ describe('fibres', () => {
   });
 
   it('goes along the texture where there is one, in metres', () => {
-    const texture = Float32Array.from([0, 0, 0, 2, -2, 0]); // turned by a right angle, 2 units for 0.1 m
+    const texture = Float32Array.from([0, 0, 0, 2, -2, 0]); // turned by 90 degrees; 2 units are 0.1 m
     const material = materialCoordinates({ ...topology, texture }, rest, layers, { name: 's' });
     expect([...material.subarray(3, 5)].map((v) => Number(v.toFixed(6)))).toEqual([0, 0.1]);
     expect([...material.subarray(6, 8)].map((v) => Number(v.toFixed(6)))).toEqual([-0.1, 0]);

@@ -4,10 +4,10 @@ import type { Changes, StreamState } from '../../../../clients/web/src/wire/deco
 import type { LayerDescription } from '../../../../clients/web/src/wire/messages.gen';
 
 const STEP_M = 5e-5;
-const SINGLE = 1e-6; // single precision of unit vectors
+const SINGLE = 1e-6; // tolerance: single precision of unit vectors
 const WHOLE: Changes = { whole: true, moved: [], maskWords: [], scalars: true };
 
-/** Two tetrahedra on the triangle 0 1 2, apices 3 below and 4 above, in a membrane. */
+/** Two tetrahedra with the common triangle 0 1 2 and the apices 3 below and 4 above. A membrane covers them. */
 const TETRAHEDRA = [[1, 0, 2, 3], [0, 1, 2, 4]];
 const FAT = [
   [0, 1, 2],
@@ -33,7 +33,7 @@ function makeTissue(faces: number[][], layers: LayerDescription[], shown: Tissue
   return { tissue, state };
 }
 
-/** Membrane faces 0 to 5, fat faces 6 to 12 of which 6 lies between the tetrahedra. */
+/** Makes the tissue. Faces 0 to 5 are the membrane's, faces 6 to 12 the fat's; face 6 lies between the tetrahedra. */
 function twoTetrahedra(): ReturnType<typeof makeTissue> {
   const made = makeTissue([...MEMBRANE, ...FAT], [layer('skin', 'membrane', 0, 6), layer('fat', 'fat', 6, 7)]);
   made.state.mask[0] = 0b1111111 << 6;
@@ -60,7 +60,7 @@ describe('tissue', () => {
     const { tissue, state } = twoTetrahedra();
     expect(tissue.update(state, WHOLE)).toEqual([0]);
     expect(tissue.drawnFaceCounts()).toEqual({ 'skin': 6, 'fat': 0, 'fat (inside)': 0 });
-    state.mask[0] = (1 << 0) | (0b1111111 << 6) ^ (1 << 7); // one membrane face goes, the fat under it is seen
+    state.mask[0] = (1 << 0) | (0b1111111 << 6) ^ (1 << 7); // one membrane face goes, so the fat under it becomes visible
     const changed = tissue.update(state, { whole: false, moved: [], maskWords: [0, 1], scalars: false });
     expect(changed.sort()).toEqual([0, 2]);
     expect(tissue.drawnFaceCounts()).toEqual({ 'skin': 5, 'fat': 0, 'fat (inside)': 1 });
@@ -119,9 +119,9 @@ describe('tissue', () => {
 
   it('scales temperature from the least seen to the largest, or to boiling water', () => {
     const { tissue, state } = makeTissue(FAT, [layer('fat', 'fat', 0, 7)], 'temperature');
-    const steps = (celsius: number): number => (celsius + 20) / 0.25; // protocol/README.md
+    const steps = (celsius: number): number => (celsius + 20) / 0.25; // the encoding of protocol/README.md
     const scalars = (): number[] => POINTS.map((_, v) => tissue.burn[4 * v + 3]);
-    state.stress.fill(1000); // not shown
+    state.stress.fill(1000); // stress, which is not shown
     state.temperature.fill(steps(37));
     tissue.update(state, WHOLE);
     expect(tissue.temperatureRangeC).toEqual([37, 100]);
@@ -133,7 +133,7 @@ describe('tissue', () => {
     tissue.update(state, WHOLE);
     expect(tissue.temperatureRangeC).toEqual([12, 170]);
     expect(scalars()).toEqual([37, 100, 68.5, 170, 12].map((celsius) => Math.round((255 * (celsius - 12)) / 158)));
-    state.temperature.fill(steps(37)); // cooled: the colours keep their meaning
+    state.temperature.fill(steps(37)); // the tissue has cooled: the colours must keep their meaning
     tissue.update(state, WHOLE);
     expect(tissue.temperatureRangeC).toEqual([12, 170]);
   });

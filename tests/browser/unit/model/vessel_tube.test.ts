@@ -2,9 +2,9 @@
 import { makeTube, type Tube } from '../../../../clients/web/src/model/vessel_tube';
 
 const RADIUS_M = 0.001;
-const SINGLE = 1e-9; // m, of single precision in a vessel of some centimetres
+const SINGLE = 1e-9; // tolerance, m: single precision in a vessel of some centimetres
 
-/** A line along x, a millimetre from point to point, with these open shares. */
+/** Returns a line along x, with a millimetre from point to point, and with these open shares. */
 function line(open: readonly number[], bend = 0): Float32Array {
   return Float32Array.from(open.flatMap((share, i) => [0.001 * i, bend * i * i, -0.002, share]));
 }
@@ -15,7 +15,7 @@ const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] 
 const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-/** Distances of the wall's vertices from the line, by x in millimetres. */
+/** Returns the distances of the wall's vertices from the line, by x in millimetres. */
 function radii({ position, normal }: Tube): Map<number, number> {
   const found = new Map<number, number>();
   for (let v = 0; v < position.length / 3; v++) {
@@ -36,7 +36,8 @@ describe('the tube of a vessel', () => {
   it('has a gap where it is parted, with ends that show the lumen', () => {
     const { position, look, index } = makeTube(line([1, 1, -1, 1, 1]), RADIUS_M);
     const xs = [...index].map((v) => Math.round(1000 * position[3 * v]));
-    for (let i = 0; i < xs.length; i += 3) expect(new Set(xs.slice(i, i + 3).map((x) => x < 2)).size).toBe(1); // no face bridges it
+    // No face may bridge the gap.
+    for (let i = 0; i < xs.length; i += 3) expect(new Set(xs.slice(i, i + 3).map((x) => x < 2)).size).toBe(1);
     const ends = new Set<number>();
     for (let v = 0; v < position.length / 3; v++) if (look[2 * v + 1] === 1) ends.add(Math.round(1000 * position[3 * v]));
     expect([...ends]).toEqual([0, 1, 3, 4]);
@@ -48,7 +49,7 @@ describe('the tube of a vessel', () => {
     for (let i = 0; i < index.length; i += 3) {
       const [a, b, c] = [0, 1, 2].map((k) => vertex(position, index[i + k]));
       const faceNormal = cross(minus(b, a), minus(c, a));
-      if (Math.hypot(...faceNormal) < 1e-12) continue; // at the middle of an end
+      if (Math.hypot(...faceNormal) < 1e-12) continue; // leaves out triangles at the middle of an end
       expect(dot(faceNormal, vertex(normal, index[i]))).toBeGreaterThan(0);
       faces++;
     }

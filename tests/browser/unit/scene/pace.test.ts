@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures lose detail where they take long, one step after the other, and get it back late.
+// Tests that slow pictures lose detail, one step after the other, and get it back late.
 import { FULL, Pace, STEPS, type Detail } from '../../../../clients/web/src/scene/pace';
 
 const SLOW_MS = 60;
 const FAR_TOO_SLOW_MS = 600;
 const QUICK_MS = 5;
 
-/** A pace, and pictures of it that take some time each. */
+/** A pace, and pictures that each take some time. */
 class Drawing {
   detail: Detail = FULL;
   changes: Detail[] = [];
@@ -25,7 +25,7 @@ class Drawing {
     vi.spyOn(performance, 'now').mockImplementation(() => this.now);
   }
 
-  /** `ms`: of a picture with its detail */
+  /** `ms` returns the time of a picture with its detail */
   draw(pictures: number, ms: (detail: Detail) => number): void {
     for (let i = 0; i < pictures; i++) {
       this.doneAt = this.now + ms(this.detail);
@@ -84,7 +84,8 @@ describe('the pace of pictures', () => {
     drawing.draw(1, () => QUICK_MS);
     expect(drawing.detail).toBe(FULL);
     drawing.changes = [];
-    drawing.draw(600, ({ smooth }) => (smooth ? SLOW_MS : SLOW_MS / 3)); // quick enough without, not so quick that there is time to spare
+    // fast enough without `smooth`, but too slow to add it again
+    drawing.draw(600, ({ smooth }) => (smooth ? SLOW_MS : SLOW_MS / 3));
     expect(drawing.changes).toEqual([STEPS[1]]);
   });
 

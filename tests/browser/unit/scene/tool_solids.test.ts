@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is drawn of an instrument is what the core reckons with: every drawn surface lies on or in the
-// core's, and every point of the core's surface is drawn, within a tenth of a millimetre.
+// Tests that the drawn instrument is the one of the core's computation. Every drawn surface must lie on or in the
+// core's. Every point of the core's surface must be drawn, within a tenth of a millimetre.
 import { spawnSync } from 'node:child_process';
 
 import { Box3, Matrix4, Mesh, Triangle, Vector3, type BufferGeometry, type Color, type ShaderMaterial } from 'three';
@@ -11,23 +11,23 @@ import { TOOL_SHAPES } from '../../../../clients/web/src/wire/messages.gen';
 
 const NEAR_M = 1e-4;
 const SAMPLES = 250;
-const STEPS = 12; // of a point towards the core's surface, by its distance along the gradient
+const STEPS = 12; // moves of a point towards the core's surface, by its distance along the gradient
 const ON_SURFACE_M = 1e-5;
 const NO_AREA_M2 = 1e-16;
-const REACH_M = 0.03; // about the tip: beyond it there is but shaft
+const REACH_M = 0.03; // radius around the tip: outside there is only the shaft
 const JAWS = [0, 0.5, 1];
-/** Default instruments, and slim ones. */
+/** Sizes of default instruments and of slim ones. */
 const SIZES: readonly (readonly [number, number, number])[] = [[0.003, 0.008, 0.0025], [0.0008, 0.01, 0.0025], [0.0015, 0.004, 0.001]];
 
 type Sizes = (typeof SIZES)[number];
-/** A point of the tool's frame, which the core moves so many steps towards its surface. */
+/** A point in the tool's frame, which the core moves STEPS times towards its surface. */
 interface Asked {
   jaw: number;
   part: number;
   point: Vector3;
   steps: number;
 }
-/** Where the point ended, and its distance there. */
+/** The point's final position, and its distance there. */
 interface Answer {
   distance: number;
   point: Vector3;
@@ -37,13 +37,14 @@ interface Drawn {
   box: Box3;
 }
 
-/** The same numbers in every run (Park and Miller). */
+/** Returns a generator that gives the same numbers in every run (Park and Miller). */
 function makeRandom(): () => number {
   let state = 1;
   return () => (state = (state * 48271) % 2147483647) / 2147483647;
 }
 
-/** What the core answers to all points, in one run of its program: to start it takes longer than to answer. */
+/** Returns the core's answers for all points, from one run of its program, because starting it takes longer than
+ * answering. */
 function askCore(shape: Shape, [hot, tip, shaft]: Sizes, asked: readonly Asked[]): Answer[] {
   const program = process.env['CAUTERY_TOOL_DISTANCES'];
   if (program === undefined) throw new Error('CAUTERY_TOOL_DISTANCES names no program');
@@ -59,7 +60,7 @@ function askCore(shape: Shape, [hot, tip, shaft]: Sizes, asked: readonly Asked[]
   return answers;
 }
 
-/** Triangles of the hot or the cold part in the tool's frame. */
+/** Returns the triangles of the hot or the cold part in the tool's frame. */
 function drawnTriangles(view: ToolView, jaw: number, hot: boolean): Triangle[] {
   view.set([0, 0, 0], [1, 0, 0, 0], jaw, 0);
   view.group.updateMatrixWorld(true);
@@ -76,7 +77,8 @@ function add(triangles: Triangle[], geometry: BufferGeometry, matrix: Matrix4): 
   const corner = (i: number): Vector3 => new Vector3().fromBufferAttribute(position, index.getX(i)).applyMatrix4(matrix);
   for (let i = 0; i < index.count; i += 3) {
     const triangle = new Triangle(corner(i), corner(i + 1), corner(i + 2));
-    if (triangle.getArea() > NO_AREA_M2) triangles.push(triangle); // a plate that is all rounding has a flat of no width
+    // leaves out triangles of no area: a plate that is fully rounded has a flat of no width
+    if (triangle.getArea() > NO_AREA_M2) triangles.push(triangle);
   }
 }
 
@@ -94,13 +96,13 @@ function sampleDrawn(triangles: readonly Triangle[], random: () => number): Vect
   return points;
 }
 
-/** Points all about the tip. */
+/** Returns points all around the tip. */
 function sampleAround(random: () => number): Vector3[] {
   const away = (): number => REACH_M * (2 * random() - 1);
   return Array.from({ length: SAMPLES }, () => new Vector3(away(), away(), away()));
 }
 
-/** Those that reached the core's surface near the tip. */
+/** Returns the answers that reached the core's surface near the tip. */
 function onSurface(answers: readonly Answer[]): Vector3[] {
   return answers.filter(({ distance, point }) => Math.abs(distance) < ON_SURFACE_M && point.length() < REACH_M).map(({ point }) => point);
 }
@@ -109,10 +111,11 @@ function boxed(triangles: readonly Triangle[]): Drawn[] {
   return triangles.map((triangle) => ({ triangle, box: new Box3().setFromPoints([triangle.a, triangle.b, triangle.c]) }));
 }
 
-/** A triangle is no nearer than its box: most need no look. */
+/** Returns the least distance to the drawn triangles. A triangle is no nearer than its box, so most need no
+ * computation. */
 function distanceTo(drawn: readonly Drawn[], point: Vector3): number {
   const nearest = new Vector3();
-  let least = Infinity; // squared
+  let least = Infinity; // the square of the least distance so far
   for (const { triangle, box } of drawn) {
     if (box.clampPoint(point, nearest).distanceToSquared(point) >= least) continue;
     least = Math.min(least, triangle.closestPointToPoint(point, nearest).distanceToSquared(point));

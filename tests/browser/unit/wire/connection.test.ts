@@ -163,11 +163,11 @@ describe('a connection', () => {
     await expect(asked).rejects.toMatchObject({ status: 'moved', movedTo: 'd2-knee', url: 'ws://other' });
     connection.follow('ws://host/v1?session=d2-knee');
     await vi.advanceTimersByTimeAsync(0);
-    expect(sockets).toHaveLength(2); // at once
+    expect(sockets).toHaveLength(2); // the second socket is opened at once
     sockets[1].open();
     sockets[1].say({ id: sockets[1].last('hello').id, result: { ...HELLO, resume: 'too-early' } });
     await vi.advanceTimersByTimeAsync(0);
-    connection.comeBack(); // it has not arrived there yet
+    connection.comeBack(); // the page has not arrived there yet
     await vi.advanceTimersByTimeAsync(1000);
     sockets[2].open();
     expect(sockets[2].last('hello').params).toMatchObject({ client_id: 'me', resume: 'again' });

@@ -4,7 +4,7 @@ import { WireError } from '../../../../clients/web/src/wire/header';
 
 const NUMBERS = 29;
 
-/** A section as "Contact record" in protocol/README.md has it: numbers 1, 2, 3 and on. */
+/** Returns a section like "Contact record" in protocol/README.md, with the numbers 1, 2, 3 and so on. */
 function section(names: readonly string[], planes: number, spoilt?: number): Uint8Array {
   const parts = names.map((name) => {
     const first = 120 + 4 * Math.ceil(name.length / 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hex of protocol/examples.md, which the C codecs write.
+// Reads the hexadecimal examples of protocol/examples.md, which the C codecs write.
 import { readFileSync } from 'node:fs';
 
 const text = readFileSync(new URL('../../../../protocol/examples.md', import.meta.url), 'utf8');

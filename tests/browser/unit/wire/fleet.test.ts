@@ -2,7 +2,7 @@
 import type { Socket } from '../../../../clients/web/src/wire/connection';
 import { readLabels, sessionsOf } from '../../../../clients/web/src/wire/fleet';
 
-/** A socket to a daemon that answers each method with one thing. */
+/** A socket to a daemon that always gives the same answer to a method. */
 class Daemon implements Socket {
   binaryType: BinaryType = 'blob';
   onopen: Socket['onopen'] = null;

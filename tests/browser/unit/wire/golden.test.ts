@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames of the C encoder (write_frames) against what the C decoder made of them, bit for bit:
+// Compares decoded frames of the C encoder (write_frames) with the results of the C decoder, bit for bit:
 // meshoptimizer's codec, all widths and references, 24 frames in a chain.
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -26,7 +26,7 @@ function read(kind: string, number: number): Uint8Array {
   return new Uint8Array(readFileSync(join(folder ?? '', `${kind}-${String(number).padStart(2, '0')}.bin`)));
 }
 
-/** As tests/protocol/wire/tissue.c moves it: none before tick 8. */
+/** Expects vessels as tests/protocol/wire/tissue.c moves them: no vessels before tick 8. */
 function expectVessels(vessels: readonly VesselState[], tick: number): void {
   if (tick < 8) {
     expect(vessels).toEqual([]);
@@ -41,7 +41,7 @@ function expectVessels(vessels: readonly VesselState[], tick: number): void {
   }]);
 }
 
-/** As tests/protocol/wire/tissue.c makes it: none before tick 8. */
+/** Expects contacts as tests/protocol/wire/tissue.c makes them: no contacts before tick 8. */
 function expectContacts(contacts: readonly ContactState[], tick: number): void {
   if (tick < 8) {
     expect(contacts).toEqual([]);
@@ -81,7 +81,8 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
       expectState(decoder, i);
       expectVessels(decoder.state.vessels, decoder.state.tick);
       expectContacts(decoder.state.contacts, decoder.state.tick);
-      for (const { raw } of decoder.state.tools) expect(raw !== null).toBe(i % 5 !== 4); // as tests/protocol/wire/tissue.c sends it
+      // tests/protocol/wire/tissue.c sends raw forces in these frames
+      for (const { raw } of decoder.state.tools) expect(raw !== null).toBe(i % 5 !== 4);
     }
     const last = FRAMES - 1;
     expect(decoder.state.tools[0]?.raw).toEqual({ forceN: [0, 1, 2].map((c) => 0.125 * (last + c)), torqueNm: [0, 1, 2].map((c) => -0.0625 * (last + c)), filterS: Math.fround(0.02 * (last % 3)) });

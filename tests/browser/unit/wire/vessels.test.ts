@@ -9,7 +9,7 @@ interface Written {
   points: readonly number[];
 }
 
-/** A section as "Vessel record" in protocol/README.md has it. */
+/** Returns a section like "Vessel record" in protocol/README.md. */
 function section(vessels: readonly Written[]): Uint8Array {
   const parts = vessels.map(({ name, flags, numbers, points }) => {
     const padded = 4 * Math.ceil(name.length / 4);
