@@ -133,8 +133,7 @@ static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 		return cau_fail(error, CAU_BAD_MESH, NULL, "all vertices lie on one point");
 	if (diagonal < diagonal_min_m)
 		return cau_fail(error, CAU_BAD_MESH, NULL,
-		                "the mesh is %.3g m from corner to corner, less than %.0e m (is its unit "
-		                "right?)",
+		                "the mesh is %.3g m from corner to corner, less than %.0e m (check unit_m)",
 		                diagonal, diagonal_min_m);
 	if (!(diagonal <= diagonal_max_m) || !(far <= diagonal_max_m))
 		return cau_fail(error, CAU_BAD_MESH, NULL,

@@ -41,8 +41,7 @@ enum { CAU_RPC_ID_BYTES = 65 }; // size of an id that is text, with its zero
 
 // The id of a request.
 typedef struct cau_rpc_id {
-	// whether there is an id, and its type
-	enum { CAU_RPC_ID_NONE, CAU_RPC_ID_NUMBER, CAU_RPC_ID_TEXT } kind;
+	enum { CAU_RPC_ID_NONE, CAU_RPC_ID_NUMBER, CAU_RPC_ID_TEXT } kind; // no id, or its type
 	int64_t number;              // the id, if `kind` is CAU_RPC_ID_NUMBER
 	char text[CAU_RPC_ID_BYTES]; // the id, if `kind` is CAU_RPC_ID_TEXT
 } cau_rpc_id;

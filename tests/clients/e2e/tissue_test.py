@@ -216,7 +216,7 @@ class Solids(programs.Case):
         self.assertAlmostEqual(pins[0]["most_m"][0], -0.016, places=3)
         self.assertAlmostEqual(pins[1]["least_m"][2], 0.016, places=3)
         self.assertEqual(self.json("info", self.create(file, "--pin", "none"))["definition"]["pins"], [])
-        self.assertIn("'up' is no side", self.cautery("create", file, "--pin", "up", code=1)[1])
+        self.assertIn("'up' is not a side", self.cautery("create", file, "--pin", "up", code=1)[1])
 
     def test_refusals_have_remedies(self):
         ball = self.file("ball.stl", solid_files.stl(solid_files.ball()))
