@@ -51,7 +51,7 @@ static bool read_list(const cli *c, const char *option, int count, double *value
 	{"box", "X,Y,Z,X,Y,Z", "vertices in a box, given by its least and its largest corner, m"},     \
 		{"sphere", "X,Y,Z,R", "vertices within R of a point, m"},                                  \
 		{"nearest", "X,Y,Z", "the one vertex nearest to a point, m"},                              \
-		{"rim", NULL, "vertices on the rim of the sheet --layer"},                                 \
+		{"rim", NULL, "vertices on the rim of a sheet, which --layer names"},                      \
 	{                                                                                              \
 		"layer", "L", "only vertices of layer L"                                                   \
 	}

@@ -115,7 +115,8 @@ static bool reserve_corner(obj *o, int32_t count)
 	if (vertex && texture)
 		o->corner_capacity = capacity;
 	else
-		cau_scan_fail(o->scan, CAU_LIMIT, "a face of more than %d corners", count);
+		cau_scan_fail(o->scan, CAU_LIMIT,
+		              "no memory for a face of more than %d corners, or too many corners", count);
 	return vertex && texture;
 }
 

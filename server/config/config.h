@@ -32,7 +32,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	REAL(etcd_ttl_s, 15, 2, 3600,                                                                  \
 	     "etcd frees the label if the daemon does not renew it for this time")                     \
 	SWITCH(take_label, false, "serve this store although etcd has a newer store of this label")    \
-	TEXT(demo, "", "scene of a session that is created at start if the store has none")            \
+	TEXT(demo, "",                                                                                 \
+	     "scene of a session that starts with the daemon if the store has none of this scene")     \
 	TEXT(tokens, "", "file of access tokens, one in each line; empty: every client is admin")      \
 	TEXT(tls_certificate, "", "file of the certificate and its chain (PEM); empty: no TLS")        \
 	TEXT(tls_key, "", "file of the certificate's key (PEM)")                                       \
@@ -96,7 +97,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	REAL(ping_s, 10, 0.5, 3600,                                                                    \
 	     "silence before a ping; after three unanswered pings the connection closes")              \
 	REAL(slow_close_s, 30, 1, 3600,                                                                \
-	     "time without a taken frame after which a subscriber is closed")                          \
+	     "a connection closes if it takes no frame of its stream for this time")                   \
 	REAL(checkpoint_s, 10, 0.1, 3600, "time between checkpoints of a driven session")              \
 	REAL(retention_h, 24, 0.01, 8760, "time for which the branches before a rewind are kept")      \
 	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776,                                   \

@@ -161,7 +161,8 @@ static bool write_output(const char *path, const cau_solid *solid)
 	return false;
 }
 
-// Replaces the core's words in `reason` by those of the options.
+// Returns `reason` without the core's prefix "strict refuses". Its caller writes the option's name
+// instead.
 static const char *own_words(const char *reason)
 {
 	static const char strict[] = "strict refuses";

@@ -110,7 +110,8 @@ static cau_status check_place(cau_moves *moves, const char *id, cau_error *error
 		                "an earlier move of `%s` is still being finished: try again in a second",
 		                id);
 	if (cau_hub_count(moves->def.hub) >= moves->def.config->max_sessions)
-		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
+		return cau_fail(error, CAU_LIMIT, "",
+		                "the daemon has %lld sessions, which is the limit (setting max_sessions)",
 		                (long long)moves->def.config->max_sessions);
 	return check_id(moves, id, error);
 }

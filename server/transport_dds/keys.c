@@ -35,7 +35,8 @@ static bool is_tool(const cau_dds_keys *keys, const char *session, const char *t
 	return false;
 }
 
-// True if this session and tool are among the strangers, or can still be added to them.
+// True if this key, which names no tool of the session, is in `strangers`. Adds a new key if there
+// is capacity.
 static bool is_known_stranger(cau_dds_keys *keys, const char *session, const char *tool)
 {
 	for (int i = 0; i < keys->stranger_count; i++)

@@ -88,7 +88,7 @@ static bool check_length(cau_frame_reader *r)
 	for (size_t i = 0; i < bytes; i++)
 		length = length << 8 | r->head[2 + i];
 	if (length >> 63)
-		return fail(r, CAU_CLOSE_PROTOCOL, "a length of more than 63 bits");
+		return fail(r, CAU_CLOSE_PROTOCOL, "the highest bit of a frame's 64-bit length is set");
 	if ((bytes == 2 && length < LENGTH_16) || (bytes == 8 && length <= UINT16_MAX))
 		return fail(r, CAU_CLOSE_PROTOCOL, "a length is coded in more bytes than needed");
 	if (r->opcode < CONTROL && length > r->message_most - r->message_bytes)

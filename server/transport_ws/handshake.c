@@ -117,7 +117,7 @@ cau_http_refusal cau_handshake_check(cau_network *network, struct lws *wsi)
 	      "Sec-WebSocket-Key must be 16 bytes in base 64", "use a client that speaks RFC 6455"}},
 		{has_subprotocol,
 	     {400, "bad_handshake", "Sec-WebSocket-Protocol",
-	      "Sec-WebSocket-Protocol must offer " CAU_SUBPROTOCOL " among at most 126 bytes",
+	      "Sec-WebSocket-Protocol must contain " CAU_SUBPROTOCOL ", in at most 126 bytes",
 	      "offer the subprotocol " CAU_SUBPROTOCOL}},
 	};
 	cau_http_refusal refusal = cau_request_check(network, wsi);

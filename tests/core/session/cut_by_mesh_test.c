@@ -142,7 +142,7 @@ static void steps_and_iterations_take_as_much(void **state)
 	}
 }
 
-// The scenes of the paper use the paper's rule.
+// Each shipped scene parts by edges or by elements, as listed.
 static void scenes_have_their_rule(void **state)
 {
 	(void)state;

@@ -56,7 +56,7 @@ static double *slowest_mode(void)
 	return shape;
 }
 
-// Returns the amount of the shape in the displacements, weighted by mass.
+// Returns the amplitude of `shape` in the displacements: their projection on it, weighted by mass.
 static double amount_of(const cau_session *session, const double *shape)
 {
 	double sum = 0, of = 0;

@@ -349,7 +349,8 @@ static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state
 	cau_store_close(store);
 }
 
-// A piece with rows that the store has already fails only its own batch, and the store stays sound.
+// If some rows of a piece are in the store already, only the batch of that piece fails. The store
+// stays sound.
 static void rows_that_come_twice_fail_their_batch_alone(void **state)
 {
 	struct fixture *fixture = *state;
