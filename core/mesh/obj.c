@@ -116,7 +116,7 @@ static bool reserve_corner(obj *o, int32_t count)
 		o->corner_capacity = capacity;
 	else
 		cau_scan_fail(o->scan, CAU_LIMIT,
-		              "no memory for a face of more than %d corners, or too many corners", count);
+		              "a face has more than %d corners, the most that memory holds", count);
 	return vertex && texture;
 }
 

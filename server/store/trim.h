@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The steps that remove records from a branch that a rewind has
-// left, or from the present history. retention.c decides
-// which step and when. In all functions *rows is 0 before the call, and the number of removed rows
-// after it.
+// The steps that remove records from a branch that a rewind has left, or from the present history.
+// retention.c decides which step and when. In all functions *rows is 0 before the call, and the
+// number of removed rows after it.
 #pragma once
 
 #include <sqlite3.h>
