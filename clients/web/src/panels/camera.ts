@@ -14,7 +14,7 @@ const KEPT = 'views';
 const VIEWS_MAX = 12;
 const NAME_MAX = 24;
 
-const FIELDS = [['trocar', 'through a trocar'], ['open', 'open field']] as const;
+const FIELDS = [['trocar', 'trocar'], ['open', 'open field']] as const;
 const FIELD_KEPT = 'field';
 
 /** The round picture of an endoscope, or the open field; the browser keeps the choice. One for each place that shows it. */

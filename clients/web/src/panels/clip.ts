@@ -4,7 +4,7 @@ import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { element, field } from './dom';
 
-const AXES = [['', 'nothing (whole tissue)'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
+const AXES = [['', 'nothing'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
 const STEPS = 200;
 const MM = 1000;
 

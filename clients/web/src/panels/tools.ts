@@ -101,8 +101,8 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
   const guide = element(
     'select',
     { name: 'guide' },
-    element('option', { value: 'surface' }, 'along the tissue surface'),
-    element('option', { value: 'plane' }, 'parallel to the screen'),
+    element('option', { value: 'surface' }, 'on the surface'),
+    element('option', { value: 'plane' }, 'in the view plane'),
   );
   guide.addEventListener('change', () => (hand.guide = guide.value === 'plane' ? 'plane' : 'surface'));
   const jaw = element('input', { type: 'range', min: '0', max: '1', step: '0.01', name: 'jaw' });

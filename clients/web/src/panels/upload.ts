@@ -8,7 +8,7 @@ import type { MeshRead, MeshReading } from '../wire/messages.gen';
 import { attempt, button, check, element, field, problemPlace } from './dom';
 
 const TISSUES: readonly (readonly [string, string])[] = [
-  ['', 'decided from the file'],
+  ['', 'automatic'],
   ['fat', 'fat (tetrahedra)'],
   ['fascia', 'fascia (triangles)'],
 ];
@@ -53,7 +53,7 @@ function wishFields(): WishFields {
   let strict = false;
   return {
     fields: [
-      field('Tissue', kind, '', 'decided from the file: fat if the file has tetrahedra or a closed surface, else fascia'),
+      field('Tissue', kind, '', 'automatic: fat if the file has tetrahedra or a closed surface, else fascia'),
       field('One unit is', size, 'mm', 'length of one unit of the file: 1 for millimetres, 1000 for metres. Empty: guessed from the size of the mesh.'),
       field('Edge length', edge, 'mm', 'edge length of the tetrahedra that fill a surface or a segmentation'),
       field('Labels', labels, '', 'labels of the segmentation to use, for example 1,3'),

@@ -11,7 +11,7 @@ import type { Panel } from './tabs';
 import { videoButton } from './video';
 
 const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
-  ['tissue', 'colour of the tissue'],
+  ['tissue', 'tissue'],
   ['exposure', 'heat exposure'],
   ['charring', 'charring'],
   ['stress', 'stress'],
@@ -71,7 +71,7 @@ function themes(viewport: Viewport): HTMLElement {
   const choose = element(
     'select',
     { name: 'theme' },
-    ...['as the system', 'dark', 'light'].map((value) => element('option', { value }, value === 'as the system' ? 'same as the system' : value)),
+    ...['as the system', 'dark', 'light'].map((value) => element('option', { value }, value)),
   );
   const system = window.matchMedia('(prefers-color-scheme: dark)');
   const apply = (): void => {
