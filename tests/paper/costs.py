@@ -49,15 +49,15 @@ def page(found):
     machine = found["fat"]["one"]["machine"]
     return f"""## Section 7.2: what a cut costs the linear system
 
-The elements nearest to the scene's line of cut are removed from A, in three ways, each until the next solve can begin:
+The elements nearest to the scene's line of cut are removed from A in three ways. The time of each way is measured until
+the next solve can begin:
 
-- exact downdates of the factor (rank 8), as a tick does with a few elements;
-- factoring the numbers again with the same pattern, as a background thread does with many;
+- exact downdates of the factor (rank 8), as a tick does when few elements are removed;
+- factoring the numbers again with the same pattern, as a background thread does when many elements are removed;
 - ordering, analysing and factoring again, as needed by a method whose cuts add vertices.
 
-The time of the third method does not include re-meshing, so the last column flatters that method. Times are in ms, one
-thread, the least of
-five.
+The time of the third way does not include re-meshing, so the last column flatters this way. Times are in ms on one
+thread. Each time is the least of five.
 
 | scene | elements | downdates | numbers again | order, pattern and numbers again | times the cheaper of ours |
 |---|---:|---:|---:|---:|---:|
@@ -65,13 +65,14 @@ five.
 
 ## Section 7.3: frames a second
 
-The table has the paper's frames a second, on a machine that the paper does not name, and our steps a second. Our steps
+The table compares the paper's frames a second with our steps a second. The paper does not name its machine. Our steps
 have ten iterations each, with contact and a hot tool, and without drawing.
 
 | scene | triangles / tetrahedra | theirs | one thread | two threads |
 |---|---:|---:|---:|---:|
 {chr(10).join(frame_rows(found))}
 
-Measured with `cautery-bench` on {machine['name']}, family {machine['family']} model {machine['model']}, {machine['instruction_set']}; the machine's load before was
-{machine['load_before']:.1f}. How long steps take in general is in [tests/bench](../bench/README.md).
+Our steps were measured with `cautery-bench` on {machine['name']}, family {machine['family']} model {machine['model']},
+{machine['instruction_set']}; the machine's load before was {machine['load_before']:.1f}. How long steps take in general
+is in [tests/bench](../bench/README.md).
 """

@@ -265,14 +265,16 @@ def page(cuts):
              f"{c['mean_mm']:.1f}, {c['most_mm']:.1f} | {c['gone']} | {c['charred']} |" for c in cuts]
     return f"""## Figure 7: fascia and fat under the instrument
 
-Drawn from the states that `cautery-sim` writes, from above (the viewer's pictures follow). The top layer has a border, openings are black, triangles with
-more than {CHARRED:.0%} of their ignition's dose are brown, and the hot part is a ring. First come the paper's scenes as they
-are, then two with other paths of the tool and an uneven ignition:
+These pictures are drawn from the states that `cautery-sim` writes, as seen from above. (Pictures of the viewer follow
+below.) The top layer has a border, openings are black, triangles with more than {CHARRED:.0%} of their ignition's dose
+are brown, and the hot part is a ring. The paper's scenes come first, without changes. Then follow two scenes with other
+paths of the tool and an uneven ignition:
 
 - *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC with the spread of the
-  paper's table, 17 degC. The hook's radius is 2 mm instead of 3, drawn at 4 mm/s instead of 2.
-- *fat, frayed*: cut across its tension instead of along it, at 4 mm/s instead of 2. The membrane is as taut as the fat
-  (T = 0.3 along x). Both ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9 degC.
+  paper's table, 17 degC. The hook has a radius of 2 mm instead of 3 mm, and is drawn at 4 mm/s instead of 2 mm/s.
+- *fat, frayed*: the fat is cut across its tension instead of along it, at 4 mm/s instead of 2 mm/s. The membrane is as
+  taut as the fat (T = 0.3 along x). Membrane and fat ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9
+  degC.
 
 All other values are the paper's: temperatures, mean ignition, absorption, shrinkage, tension. The paper does not
 state the tool's size, speed and path. These paths, the bundles' width and the seed were chosen from about fifty runs.
@@ -282,17 +284,16 @@ Another seed at the same setting left two strands instead of three.
 
 {chr(10).join(rows)}
 
-A strand is a piece of tissue that joins both sides of a strip {2e3 * HALF_WIDTH_M:.0f} mm wide about the tool's path. Roughness is the
-root mean square of a lip's distance from its own running mean over {1e3 * WINDOW_M:.0f} mm. Open is the width without triangles, at {STATIONS}
-stations along the middle nine tenths of the cut, {REST_S} s after the tool has passed. Removed and charred triangles
-are counted in the visible layer.
+A strand is a piece of tissue that joins both sides of a strip {2e3 * HALF_WIDTH_M:.0f} mm wide about the tool's path.
+Roughness is the root mean square of a lip's distance from its own running mean over {1e3 * WINDOW_M:.0f} mm. Open is
+the width of the gap without triangles, at {STATIONS} stations along the middle nine tenths of the cut, {REST_S} s after
+the tool has passed. Removed and charred triangles are counted in the visible layer.
 
 At 2 mm/s every bundle gets more heat than it withstands. The fascia opens as a smooth ellipse, the fat as a straight
 trench. The spread of the paper's table alone changes little. With the shipped hook no strand stays at 2 to 3.5 mm/s.
-With the thinner hook
-and 4 mm/s some bundles withstand their dose and stay across (the last of them at the end of the cut). Beside these
-strands the gap is narrower. Most of the roughness comes from the curves of the lips between strands. The teeth of the
-lips are a cell or two long, 2 to 4 mm, the finest that a sheet of 6,000 triangles can have. The fat's spread is a
-quarter of the fascia's. The fat parts completely, with uneven lips, at most one strand, and more char; tension across
-the cut opens the cut.
+With the thinner hook and a speed of 4 mm/s some bundles withstand their dose and stay across (the last of them at the
+end of the cut). Beside these strands the gap is narrower. Most of the roughness comes from the curves of the lips
+between strands. The teeth of the lips are one or two cells long, 2 to 4 mm. A sheet of 6,000 triangles cannot have
+finer teeth. The fat's spread is a quarter of the fascia's. The fat parts completely, with uneven lips, at most one
+strand, and more char; tension across the cut opens the cut.
 """

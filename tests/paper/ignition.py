@@ -38,8 +38,8 @@ def page(found):
     rows += [f"| `{name}` | {expected:.2f} s | {measured:.2f} s |" for name, (expected, measured) in found.items()]
     return f"""## Equation 20: ignition
 
-The scene's tool is brought to the tissue, held still there, and energized. An edge that lies wholly inside it has the
-tool's temperature u at both ends, so it parts after delta / (xi u); the tick is 1/60 s.
+The scene's tool is brought to the tissue, held still there, and energized. An edge that lies wholly inside the tool has
+the tool's temperature u at both ends. So the edge parts after delta / (xi u), to a tick of 1/60 s.
 
 {chr(10).join(rows)}
 """

@@ -49,20 +49,20 @@ def table(scene, of):
 def page(found):
     return f"""## Section 7.1: work and buffers of a cut
 
-This section compares the scene's cut by our method with a method that changes the topology, in one run. The other
-method
-([tests/bench/remesh.c](../bench/remesh.c)) follows the tip with an upright plane. It bisects the edges that the plane
-crosses, in all elements around each such edge. It duplicates the vertices in the plane behind the tip, and connects the
-elements of one side to the duplicates. In each tick in which the mesh changed it assembles, orders, analyses and
-factors its system again. It
-also writes its buffers again (12 bytes a vertex, 4 for each corner of an element).
+This section compares two ways to make the cut of a scene, in one run: our method, and a method that changes the
+topology of the mesh. This other method ([tests/bench/remesh.c](../bench/remesh.c)) follows the tip with an upright
+plane. It bisects the edges that the plane crosses, in all elements around each such edge. It duplicates the vertices in
+the plane behind the tip, and connects the elements of one side to the duplicates. In each tick in which the mesh
+changed, the other method assembles, orders, analyses and factors its linear system again. It also writes its buffers
+again (12 bytes a vertex, 4 for each corner of an element).
 
 {chr(10).join(line for scene, of in found.items() for line in table(scene, of))}
 Four simplifications flatter the other method. Its cut has no width. Its system has only the elements of the cut layer,
 without membrane, links or pins. It does not collapse or smooth ill-shaped elements. Ticks without a change are free.
-One simplification flatters our method: the time of the numeric factorisation in another thread is not included. The time
-of our method includes all ticks of the cut, with or without a change. Vertices in the plane need no bisection, so a
-sheet with vertices on the line of cut is only opened. In the paper's terms, inserts and deletes of buffers are O(ins) and
-O(del), those of neighbours O(N_ins) and O(N_del). Bisection is O(re), the test of shapes O(ill). Our method only updates
-the share counts, O(n) at most.
+One simplification flatters our method: the time of the numeric factorisation in another thread is not included. The
+time of our method includes all ticks of the cut, with or without a change. Where vertices lie in the plane, the other
+method need not bisect edges. So it only opens a sheet that has vertices on the line of cut. In the paper's terms, the
+other method's inserts and deletes of buffers cost O(ins) and O(del), and those of neighbours O(N_ins) and O(N_del). In
+the other method bisection costs O(re), and the test for ill-shaped elements O(ill). Our method only updates the share
+counts, which costs O(n) at most.
 """

@@ -56,15 +56,14 @@ PAPER_HEAD = """# The paper, reproduced
 
 This page reproduces what *Energized Soft Tissue Dissection in Surgery Simulation* shows, as far as a simulation can. It
 compares the paper's figures and numbers with ours, and lists every parameter and every difference. One command writes
-this page
-and [validation.md](validation.md) beside it:
+this page, and the page [validation.md](validation.md) beside it:
 
     tests/paper/run.py
 
 The command uses the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)), `cautery-sim` and the viewer.
-`tests/paper/run.py
---quick` is the same code in a small form. The test `paper_quick` compares its figures with `expected.json`, each within the
-tolerance given there. `--only NAME` writes only the part `NAME`. Section and equation numbers are the paper's.
+`tests/paper/run.py --quick` runs the same code in a small form. The test `paper_quick` compares the figures of this
+small form with `expected.json`, each within the tolerance that this file gives. `--only NAME` writes only the part
+`NAME`. Section and equation numbers are the paper's.
 """
 
 VALIDATION_HEAD = """# The method, validated
