@@ -9,7 +9,7 @@
 // both are read, points first. The caller frees *bytes.
 cau_status cli_read_mesh_file(const char *file, char **bytes, size_t *byte_count, cau_error *error);
 
-// True if `argument` means a mesh file: an existing file that is no scene file, or a text that
+// True if `argument` means a mesh file: an existing file that is not a scene file, or a text that
 // cannot be the name of a scene.
 bool cli_is_mesh_file(const char *argument);
 

@@ -10,7 +10,7 @@
 typedef struct question {
 	bool done;
 	unsigned status;     // HTTP status, or 0 without an answer
-	const char *trouble; // why there is no answer, for people
+	const char *trouble; // reason in words why there is no answer
 	size_t bytes;
 	char trouble_text[128];
 	char text[CAU_FLEET_JSON_MAX_BYTES];

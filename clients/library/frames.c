@@ -36,7 +36,7 @@ static cau_status take_topology(cau_client_slot *slot, const void *bytes, size_t
 }
 
 // True if a delta is missing before this frame. A delta older than the present state, or an
-// unneeded key frame, is no gap.
+// unneeded key frame, is not a gap.
 static bool is_gap(const cau_client_slot *slot, const cau_frame_header *header)
 {
 	const cau_stream_state *state = slot->stream.state;

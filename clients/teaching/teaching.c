@@ -273,7 +273,7 @@ int main(int argument_count, char **arguments)
 		status = cut(&l, &error);
 	if (!status)
 		status = remove_session(&l, &error);
-	if (status) // an error says what is wrong, where, and why
+	if (status) // an error has a status, a path and a reason
 		fprintf(stderr, "cautery-teaching: %s %s\n", error.path, error.reason);
 	if (l.client)
 		cau_client_close(l.client);

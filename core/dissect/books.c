@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The books of dissection: the heat material of a primitive, the heated share of an edge, live
 // primitives, and drawn faces. Also removes an edge or an element, and computes all of these again
-// from what has parted.
+// from the parted edges.
 #include <string.h>
 
 #include "cautery/assert.h"

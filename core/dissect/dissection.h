@@ -24,7 +24,7 @@ typedef struct cau_doses {
 	uint8_t *touched_mark;
 } cau_doses;
 
-// An element that is stretched beyond what it can bear (tears.c).
+// An element that is stretched beyond its strength (tears.c).
 typedef struct cau_over {
 	// `place` is the element's index over triangles, then tetrahedra, then links. `counted` is the
 	// sum of its counts: a converged tick adds three, any other tick adds one.
@@ -103,13 +103,13 @@ void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double
 // Returns the largest number of elements that can be overloaded.
 int32_t cau_tears_capacity(const cau_tissue *tissue);
 
-// Tears the elements that have been stretched beyond what they can bear for long enough, at
+// Tears the elements that have been stretched beyond their strength for long enough, at
 // positions x. If edges part, an edge parts with all elements at it. Called once a tick.
 // `converged`: the tick's step has converged.
 void cau_dissection_tear(cau_dissection *dissection, const double *position, bool converged,
                          cau_pool *pool);
 
-// Sets `alive` for all elements by kind, from what has parted. `parted` is (edge_count), a bit for
+// Sets `alive` for all elements by kind, from the parted edges. `parted` is (edge_count), a bit for
 // each layer. `gone` is (dose_count) if elements part one by one, else NULL.
 void cau_dissection_find_alive(const cau_tissue *tissue, const uint16_t *parted,
                                const uint8_t *gone, uint8_t *const alive[CAU_ELEMENT_KINDS]);

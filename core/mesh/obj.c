@@ -103,20 +103,19 @@ static bool reserve_corner(obj *o, int32_t count)
 {
 	if (count < o->corner_capacity)
 		return true;
-	int32_t capacity = o->corner_capacity ? 2 * o->corner_capacity : 16;
-	int32_t *vertex = NULL;
-	double *texture = NULL;
-	if (capacity <= MAX_CORNERS) {
-		vertex = realloc(o->corner_vertex, (size_t)capacity * sizeof *vertex);
-		o->corner_vertex = vertex ? vertex : o->corner_vertex;
-		texture = realloc(o->corner_texture, 2 * (size_t)capacity * sizeof *texture);
-		o->corner_texture = texture ? texture : o->corner_texture;
+	if (count == MAX_CORNERS) {
+		cau_scan_fail(o->scan, CAU_LIMIT, "a face has more than %d corners", MAX_CORNERS);
+		return false;
 	}
+	int32_t capacity = o->corner_capacity ? 2 * o->corner_capacity : 16;
+	int32_t *vertex = realloc(o->corner_vertex, (size_t)capacity * sizeof *vertex);
+	o->corner_vertex = vertex ? vertex : o->corner_vertex;
+	double *texture = realloc(o->corner_texture, 2 * (size_t)capacity * sizeof *texture);
+	o->corner_texture = texture ? texture : o->corner_texture;
 	if (vertex && texture)
 		o->corner_capacity = capacity;
 	else
-		cau_scan_fail(o->scan, CAU_LIMIT,
-		              "a face has more than %d corners, the most that memory holds", count);
+		cau_scan_fail(o->scan, CAU_NO_MEMORY, "no memory for a face of %d corners", count + 1);
 	return vertex && texture;
 }
 

@@ -16,7 +16,7 @@ typedef enum role { OTHER, X, Y, Z, CORNERS, REGION } role;
 typedef struct property {
 	int bytes; // bytes of one number; negative: the number is unsigned
 	bool real;
-	int list_bytes; // bytes of the list's count; 0: the property is no list
+	int list_bytes; // bytes of the list's count; 0: the property is not a list
 	role role;
 } property;
 

@@ -36,7 +36,7 @@ static int digit_of(unsigned char byte)
 	return byte == '+' ? 62 : byte == '/' ? 63 : -1;
 }
 
-// Decodes base64 until a byte that is no base64. Groups may end with padding anywhere, because
+// Decodes base64 until a byte that is not base64. Groups may end with padding anywhere, because
 // header and data are often encoded separately.
 static bytes decode_base64(const cau_vtu_coding *coding, const unsigned char *text, size_t length)
 {

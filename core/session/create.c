@@ -203,8 +203,8 @@ static uint64_t hash_vessels(uint64_t hash, const cau_scene_def *scene)
 	return hash;
 }
 
-// Hashes what a snapshot does not hold: time step, solver settings and the tissue at rest.
-// Materials are in the snapshot, so they are not hashed.
+// Hashes the inputs that a snapshot does not hold: time step, solver settings and the tissue at
+// rest. Materials are in the snapshot, so they are not hashed.
 static uint64_t hash_definition(const cau_session *session)
 {
 	const cau_scene_def *scene = session->scene;

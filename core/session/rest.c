@@ -9,7 +9,7 @@
 // Tissue rests when all of this held for half a second:
 // - No vertex was farther than a micrometre from its position at the start of the half second. Any
 //   motion left is then at most 2 um/s, while the streams' steps are 50 um. The test is on the
-//   position, not the path, because noise around a position is no motion. Half a second is longer
+//   position, not the path, because noise around a position is not motion. Half a second is longer
 //   than the slow turning point of an oscillation.
 // - Every tool was still and had energy off, with its heat grid at ambient (0.01 degC). Heat
 //   continues to part edges, and viewers see it spread.

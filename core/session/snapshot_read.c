@@ -183,8 +183,8 @@ static bool are_vertices_right(const cau_session *session, const snapshot_state 
 	return free_count > 0;
 }
 
-// Finds the living elements by kind, from what has parted: 1 for a living element. Returns their
-// memory, which the caller frees.
+// Finds the living elements by kind, from the parted edges: 1 for an element that is still there.
+// Returns their memory, which the caller frees.
 static uint8_t *find_alive(const cau_session *session, const snapshot_state *state,
                            uint8_t *alive[CAU_ELEMENT_KINDS])
 {

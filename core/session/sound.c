@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks the invariants of tools, energy and waiting commands as a step begins, in every build. A
 // violation is an error in this program, and a further step could heat tissue by mistake. So the
-// step faults its session, only that session, and reports what it found.
+// step faults its session, only that session, and reports the finding.
 #include <math.h>
 #include <string.h>
 

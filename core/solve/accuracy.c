@@ -108,7 +108,7 @@ typedef struct lengths {
 	double allowed; // largest error with which the step may end
 } lengths;
 
-// Half a micrometre is no visible error. But if every tick of slow tissue had that error, the
+// Half a micrometre is not a visible error. But if every tick of slow tissue had that error, the
 // tissue would move far too slowly. Hence the limit least_share.
 static lengths lengths_of(const double sums[SUMS], double wanted)
 {

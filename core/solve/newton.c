@@ -29,8 +29,8 @@ enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
 // Least decrease of E in a step, as a share of the decrease that the slope predicts [Armijo 1966].
 static const double ARMIJO = 1e-4;
 // Share of the decrease that the slope predicts. A step that lowers the energy by more than this
-// share was too short. (On a quadratic, a full step lowers the energy by half of what the slope
-// predicts.) The next step then replaces negative eigenvalues by 0.
+// share was too short. (On a quadratic, a full step lowers the energy by half of the amount that
+// the slope predicts.) The next step then replaces negative eigenvalues by 0.
 static const double TOO_SHORT = 0.8;
 
 // ---- vectors by row

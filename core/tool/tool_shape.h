@@ -40,8 +40,8 @@ bool cau_tool_has_jaws(const cau_tool_def *tool);
 
 // True if `point` (tool frame) is between the jaws, where the jaws can grasp it. False if the shape
 // has no jaws. The space between the jaws includes points less than half a jaw's thickness inside a
-// jaw, so that closed jaws hold what they press. On success *jaw_coordinate (may be NULL) is -1 at
-// one jaw and +1 at the other jaw.
+// jaw, so that closed jaws hold the pressed tissue. On success *jaw_coordinate (may be NULL) is -1
+// at one jaw and +1 at the other jaw.
 bool cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
                            double *jaw_coordinate);
 

@@ -59,7 +59,7 @@ typedef struct cau_vessel_surroundings {
 } cau_vessel_surroundings;
 
 // Makes the vessels of a checked scene. The scene's definitions are borrowed. Errors: CAU_NOT_FOUND
-// (the layer is no layer of fat), CAU_BAD_VALUE (a vessel leaves its layer), CAU_LIMIT,
+// (the layer is not a layer of fat), CAU_BAD_VALUE (a vessel leaves its layer), CAU_LIMIT,
 // CAU_NO_MEMORY.
 cau_status cau_vessels_create(cau_vessels *vessels, const cau_tissue *tissue,
                               const cau_scene_def *scene, cau_arena *arena, cau_error *error);

@@ -18,7 +18,7 @@ static inline bool cau_stream_has(const cau_stream_def *def, int channel)
 int cau_channel_of_section(int type);
 
 typedef struct array_shape {
-	// number of elements; 0 if the stream does not have this channel, or if it is no array
+	// number of elements; 0 if the stream does not have this channel, or if it is not an array
 	size_t count;
 	uint32_t components;
 	uint32_t bias, most; // limits of the values, see elements_target

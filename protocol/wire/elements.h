@@ -58,7 +58,7 @@ typedef struct elements_target {
 	bool all; // every element must be in the payload
 } elements_target;
 
-// Decodes a payload into `target`. Returns NULL, or what is wrong; some values may then have
+// Decodes a payload into `target`. Returns NULL, or the error in words; some values may then have
 // changed.
 const char *cau_elements_decode(const uint8_t *payload, size_t bytes, const elements_target *target,
                                 uint8_t *scratch, size_t *read);

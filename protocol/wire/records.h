@@ -34,8 +34,8 @@ size_t cau_tool_power_write(uint8_t *out, const cau_stream_tool *tools, int32_t 
 size_t cau_tool_force_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics);
 
-// Each function reads a payload and returns NULL, or what is wrong. cau_tool_names_read keeps the
-// other members of the tools.
+// Each function reads a payload and returns NULL, or the error in words. cau_tool_names_read keeps
+// the other members of the tools.
 const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                                 int32_t *count);
 const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,

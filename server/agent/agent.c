@@ -44,7 +44,7 @@ static void measure(cau_agent *agent)
 }
 
 // Sends the line to a peer and closes. The line fits into a new socket's buffer, so this never
-// waits. What the peer has sent is read first: closing a socket with unread bytes resets it, and
+// waits. The peer's bytes are read first: closing a socket with unread bytes resets it, and
 // the line may be lost.
 static void answer(cau_agent *agent, int peer)
 {

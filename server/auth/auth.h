@@ -70,7 +70,7 @@ bool cau_auth_required(const cau_auth *auth);
 // address, each with the listening port or no port, and the names in the settings.
 bool cau_auth_host_allowed(const cau_config *config, const char *host);
 // True if an Origin header names this daemon's own page (same host and port as `host`) or an origin
-// in the settings. A missing header (NULL or "") is accepted, because the client is no browser.
+// in the settings. A missing header (NULL or "") is accepted, because the client is not a browser.
 bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const char *host);
 
 // Finds the client's address. `address` has the peer's address. If the peer is one of the

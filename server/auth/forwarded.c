@@ -25,7 +25,7 @@ static void take_off_mapping(char *address)
 
 // Each proxy appends its client's address to the header. So the addresses are read from the right.
 // If an address belongs to a trusted proxy, that proxy wrote the address on the left, which is read
-// next. The first address that is no trusted proxy is the client. Anything on the left of the
+// next. The first address that is not a trusted proxy is the client. Anything on the left of the
 // client's address may be forged.
 void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
                            size_t capacity)

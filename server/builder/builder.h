@@ -5,7 +5,7 @@
 //
 // One thread takes only short jobs, so that these never wait for large tissue, whose stages
 // (CHOLMOD, METIS) cannot be interrupted. The other threads take long jobs, and short ones if there
-// is no long one. So a daemon that starts builds several large sessions at once, one on each of
+// is not a long one. So a daemon that starts builds several large sessions at once, one on each of
 // these other threads.
 #pragma once
 

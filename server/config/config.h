@@ -132,7 +132,7 @@ typedef struct cau_config {
 #undef CAU_CONFIG_REAL
 #undef CAU_CONFIG_SWITCH
 
-// What the command line requests besides settings.
+// The requests of the command line besides settings.
 typedef struct cau_config_request {
 	bool help, version, json, print_config, settings_schema;
 	const char *backup; // file for a copy of the store; NULL: no copy is requested

@@ -10,7 +10,8 @@
 
 enum {
 	CAU_NAMED_FILE_REASON_BYTES = 96,
-	CAU_NAMED_FILE_BYTES = 1 << 20, // limit for tokens, keys and roles, far beyond what they need
+	CAU_NAMED_FILE_BYTES =
+		1 << 20, // limit for tokens, keys and roles, far more than such files need
 };
 
 // Opens a regular file of at most `most_bytes` for reading. `info` may be NULL. On failure returns

@@ -79,7 +79,7 @@ static double on_look(void *user, double now_s)
 }
 
 // ---- losing the label
-// Ends the process as a kill would. The store withstands a kill: what was acknowledged is on the
+// Ends the process as a kill would. The store withstands a kill: acknowledged records are on the
 // disk. Energy ends with the process, and no client gets another message. If the reader of the log
 // blocks, the kernel's timer signal still ends the process.
 __attribute__((noreturn)) static void on_label_lost(void *user, const char *reason)

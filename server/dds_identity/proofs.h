@@ -8,7 +8,7 @@
 
 #include "dds_identity/identity.h"
 
-// Notes that a participant wants to join. Forgets what was proved about an earlier participant with
+// Notes that a participant wants to join. Forgets the proofs of an earlier participant with
 // its GUID.
 void cau_dds_proofs_meet(const uint8_t guid[16], int64_t identity);
 // Notes that a handshake with the participant `identity` has begun.

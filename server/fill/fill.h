@@ -27,7 +27,7 @@ bool cau_filling_is_cancelled(const cau_filling *filling);
 void cau_filling_end(cau_filling *filling);
 bool cau_filling_has_ended(const cau_filling *filling);
 // Returns the solid's bytes, valid as long as the caller holds the filling. Returns false if there
-// is no solid, or not yet.
+// is not a solid, or not yet.
 bool cau_filling_solid(const cau_filling *filling, const void **bytes, size_t *byte_count);
 
 typedef struct cau_fill_wish {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session.advance order asks for besides ticks. A cau_advance lies directly after its order,
-// in the same memory block.
+// The parts of a session.advance order besides its ticks. A cau_advance lies directly after its
+// order, in the same memory block.
 #pragma once
 
 #include "cautery/command.h"

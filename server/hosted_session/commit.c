@@ -7,7 +7,7 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/resend.h"
 
-// What the store's thread needs when a batch is committed.
+// Data for the store's thread when a batch is committed.
 typedef struct commit {
 	cau_hosted *hosted;
 	cau_pending *pending;

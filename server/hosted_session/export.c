@@ -61,7 +61,8 @@ static void fail(const cau_reply *reply, cau_status status, const char *reason)
 }
 
 // ---- the copy
-// What a file shows of a tick. The arrays follow the struct in the same memory block.
+// The data of one tick that an exported file shows. The arrays follow the struct in the same memory
+// block.
 typedef struct tissue_copy {
 	const double *position; // m, (vertex_count x 3)
 	const float *exposure;  // (vertex_count)

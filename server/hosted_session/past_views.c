@@ -281,7 +281,7 @@ void cau_apply_frame_at(cau_hosted *h, cau_order *order)
 	}
 	order->as.frame_at.branch = h->history.branch;
 	order->as.frame_at.epoch = epoch == UINT64_MAX ? 1 : ~epoch; // an epoch that no stream has
-	cau_record_commit(h); // submits what the builder will read from the store
+	cau_record_commit(h); // submits the records that the builder will read from the store
 	cau_past_views_give_up(&h->past, order->asker.client);
 	line_up(&h->past, order);
 }

@@ -188,6 +188,6 @@ void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, v
 	               .finish = finish};
 	if (cau_reads_make_file(order))
 		atomic_fetch_add(&h->reads.files, 1);
-	cau_record_commit(h); // submits what the builder will read from the store
+	cau_record_commit(h); // submits the records that the builder will read from the store
 	cau_builder_submit(h->identity.around->builder, &r->job);
 }

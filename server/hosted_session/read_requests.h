@@ -32,7 +32,7 @@ void cau_reads_refuse(cau_hosted *h);         // refuses all requests of a sessi
 
 // ---- requests that the builder answers
 
-// What the builder needs for an answer. Its thread must not read anything of the session that steps
+// The builder's input for an answer. Its thread must not read anything of the session that steps
 // change.
 typedef struct cau_read_job {
 	cau_hosted *hosted;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session writes to the store: one batch for each slice, and answers after its commit. Only
+// A session's writes to the store: one batch for each slice, and answers after its commit. Only
 // the session's owning thread (internal.h) uses the record. Any thread may read cau_hosted_commits.
 #pragma once
 
@@ -70,10 +70,10 @@ void cau_record_answer(cau_hosted_record *record, const cau_order *order, const 
                        size_t text_bytes);
 void cau_record_state(cau_hosted_record *record, int session_state);
 void cau_record_checkpoint(cau_hosted_record *record, uint64_t *hash, size_t *bytes);
-// Returns whether a checkpoint is due by the clock or requested. A checkpoint ends what a restart
-// would have to replay: commands, energy, cuts. While there is nothing to replay, the interval
-// doubles each time. So a crash takes an unused session back by at most the time for which no
-// client used it.
+// Returns whether a checkpoint is due by the clock or requested. A checkpoint ends the log that a
+// restart would have to replay: commands, energy, cuts. While there is nothing to replay, the
+// interval doubles each time. So a crash takes an unused session back by at most the time for which
+// no client used it.
 bool cau_record_is_due(cau_hosted_record *record, bool running, bool energy_on, double now_s);
 // Makes the present tick reachable after a restart, by a log entry or by a checkpoint.
 void cau_record_reached(cau_hosted_record *record);

@@ -137,7 +137,7 @@ static cau_status read_past(going *g, cau_error *error)
 	                                g->branch, g->tick, error);
 }
 
-// Takes a snapshot of the present state. For a faulted session a failure is no error.
+// Takes a snapshot of the present state. For a faulted session a failure is not an error.
 static cau_status keep_present(going *g, cau_error *error)
 {
 	cau_hosted *h = g->hosted;

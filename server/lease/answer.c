@@ -51,8 +51,8 @@ static const char *skip_value(const char *at)
 	return at;
 }
 
-// Returns the value of an object's member. NULL: `object` is no object, or has no member of that
-// name.
+// Returns the value of an object's member. NULL: `object` is not an object, or has no member of
+// that name.
 static const char *find(const char *object, const char *name)
 {
 	size_t bytes = strlen(name);

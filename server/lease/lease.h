@@ -30,7 +30,7 @@ typedef struct cau_lease_def {
 // Takes the label and starts the thread. Waits for etcd, and until another daemon's lease ends: at
 // most twice the time to live. Strings are copied. Errors: CAU_BAD_STATE (another store is newer,
 // or another daemon holds the label), CAU_IO (no answer of etcd), CAU_CORRUPT (the text in the
-// store or in etcd is no generation), CAU_BAD_VALUE, CAU_NO_MEMORY.
+// store or in etcd is not a generation), CAU_BAD_VALUE, CAU_NO_MEMORY.
 cau_status cau_lease_take(cau_lease **lease, const cau_lease_def *def, cau_error *error);
 
 // Returns the seconds until the lease ends, on a clock that continues while the machine sleeps.

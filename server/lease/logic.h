@@ -34,7 +34,7 @@ bool cau_generation_same(cau_generation a, cau_generation b);
 // Writes a generation as "17:00c0ffee00c0ffee"; as "" if there is none.
 void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BYTES]);
 // Reads a text of `bytes` bytes that is exactly what cau_generation_write writes. Returns false if
-// it is no generation.
+// it is not a generation.
 bool cau_generation_read(const char *text, size_t bytes, cau_generation *generation);
 
 // ---- whether this store may be served

@@ -23,8 +23,8 @@ static bool is_bare(unsigned char byte)
 	return byte > 0x20 && byte < 0x7f && !strchr("\"=\\", byte);
 }
 
-// True for characters that break lines in some readers, or hide what follows: C0, DEL, C1, and the
-// line and paragraph separators U+2028 and U+2029.
+// True for characters that break lines in some readers, or hide the following text: C0, DEL, C1,
+// and the line and paragraph separators U+2028 and U+2029.
 static bool is_control(const unsigned char *at, size_t length)
 {
 	if (length == 1)

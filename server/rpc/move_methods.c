@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The move.* methods: what a courier asks of the source daemon and of the target daemon.
+// The move.* methods: requests of a courier to the source daemon and to the target daemon.
 #include <stdlib.h>
 #include <string.h>
 

@@ -28,8 +28,8 @@ cau_upload *cau_uploads_find_transfer(cau_uploads *uploads, uint32_t transfer)
 }
 
 // ---- limits
-// Checks that `byte_count` more bytes are within the limits. `freed` is what a replaced upload
-// gives back.
+// Checks that `byte_count` more bytes are within the limits. `freed` is the size that a replaced
+// upload gives back.
 static cau_status check_room(const cau_uploads *uploads, const cau_upload_total *total,
                              const cau_config *config, int64_t byte_count, int64_t freed,
                              cau_error *error)

@@ -50,7 +50,7 @@ cau_upload *cau_uploads_find_transfer(cau_uploads *uploads, uint32_t transfer);
 
 // Stores a chunk's bytes. A chunk that does not follow the received bytes spoils the upload.
 void cau_upload_take(cau_upload *upload, uint64_t offset, const void *data, size_t bytes);
-// Checks that all bytes have come and have this hash. *error says what is wrong.
+// Checks that all bytes have come and have this hash. *error describes a failure.
 cau_status cau_upload_check(const cau_upload *upload, const char *sha256, cau_error *error);
 
 // Sets the upload's filling and takes ownership of `filling` (NULL: no filling). Cancels the

@@ -11,7 +11,7 @@
 
 typedef struct cau_scenes cau_scenes;
 
-// Reads every *.json file of the folder, at most 256. If a file is no scene, fails with an error
+// Reads every *.json file of the folder, at most 256. If a file is not a scene, fails with an error
 // that names the file.
 cau_status cau_scenes_load(cau_scenes **scenes, const char *folder, cau_error *error);
 void cau_scenes_destroy(cau_scenes *scenes); // `scenes` may be NULL

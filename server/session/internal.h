@@ -7,7 +7,7 @@
 
 #include "session/logic.h"
 
-// ---- effects.c: what a session reports to other parts
+// ---- effects.c: reports of a session to other parts
 void cau_effect_tell(cau_effects *effects, const cau_drive *drive);
 void cau_effect_wake(cau_effects *effects);
 void cau_effect_armed(cau_effects *effects);

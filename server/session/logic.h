@@ -112,7 +112,7 @@ typedef struct cau_waiting {
 	double alive_s; // newest sign of life of the asker
 	// the asker (`gone`) or the new driver of a hand-over (`to_gone`) will not return
 	bool gone, to_gone;
-	bool looked;    // the store was searched: the order is no resend
+	bool looked;    // the store was searched: the order is not a resend
 	bool postponed; // the order is a resend that waits until the earlier order is on the disk
 	bool overtaken; // RESUME: a later pause was served first
 } cau_waiting;
@@ -243,7 +243,8 @@ typedef struct cau_action {
 } cau_action;
 
 typedef enum cau_outcome_kind {
-	CAU_DONE, // the core accepted the order, or nothing was to change; LOOK: the order is no resend
+	// the core accepted the order, or nothing was to change; LOOK: the order is not a resend
+	CAU_DONE,
 	CAU_NOT_DONE,  // the order was refused and answered; LOOK: answered from the store
 	CAU_POSTPONED, // LOOK: the earlier order is not on the disk yet
 } cau_outcome_kind;

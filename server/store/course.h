@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stored history of one line, from its root to the end of a branch: the ticks of its
 // checkpoints, and the ranges whose log is missing. Reads use it to find which ticks can be
-// reached. Retention uses it to find what it may remove.
+// reached. Retention uses this to find the records that it may remove.
 #pragma once
 
 #include <sqlite3.h>

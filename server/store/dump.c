@@ -9,9 +9,9 @@
 #include "file.h"
 #include "store_state.h"
 
-// Notes of what has been written: the last log entry of each branch, the hash of each checkpoint,
-// and the last event and answer. They are kept in memory of the connection; the database itself is
-// only read.
+// Notes of the records that were written: the last log entry of each branch, the hash of each
+// checkpoint, and the last event and answer. They are kept in memory of the connection; the
+// database itself is only read.
 static const char notes[] =
 	"PRAGMA temp_store = MEMORY;"
 	"CREATE TEMP TABLE seen_line(branch INTEGER PRIMARY KEY, tick INTEGER, position INTEGER);"

@@ -10,7 +10,7 @@
 //     if (cau_store_submit(store, batch, on_stored, me, &error)) // any thread, waits for no disk
 //         cau_store_batch_destroy(batch);                    // refused: still the caller's
 //     ...
-//     cau_store_close(store);                                // commits what is queued
+//     cau_store_close(store);                                // commits the queued batches
 //
 // Ticks. A checkpoint at tick T is the state at tick T. A command logged at tick T acts between the
 // states at T and T + 1. So the state at T is the newest checkpoint at C <= T, followed by the

@@ -80,8 +80,8 @@ static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish
 	return nearest ? nearest : any;
 }
 
-// Clears what is left in the ring. Nothing was published without subscribers, so these frames are
-// old.
+// Clears the remaining frames of the ring. Nothing was published without subscribers, so these
+// frames are old.
 static void wake_stream(cau_stream *stream)
 {
 	cau_buffer_release(stream->key.buffer);

@@ -115,7 +115,7 @@ static cau_status read_take_over(asked *a, cau_order *order, cau_error *error)
 
 static const struct {
 	cau_order_kind kind;
-	// NULL if the method is no order
+	// NULL if the method is not an order
 	cau_status (*read)(asked *a, cau_order *order, cau_error *error);
 } orders[] = {
 	[cautery_LIST] = {0},

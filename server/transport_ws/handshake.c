@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks upgrade requests. libwebsockets accepts what RFC 6455 and our rules forbid (a missing
 // subprotocol, other versions, any Origin and Host). It closes without an answer if it cannot use
-// the request (no key, no Connection). Here each refusal says what is wrong, where, and what to do.
+// the request (no key, no Connection). Here each refusal names the error, its header and the
+// remedy.
 #include <string.h>
 #include <strings.h>
 

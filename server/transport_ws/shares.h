@@ -10,8 +10,8 @@
 
 #include "config/role.h"
 
-// What a client has proved about itself. Each standing has shares of its own, so that viewers take
-// no time from drivers behind the same address.
+// The proof of identity that a client has given. Each standing has shares of its own, so that
+// viewers take no time from drivers behind the same address.
 typedef enum cau_standing {
 	CAU_STANDING_UNKNOWN, // no hello yet
 	CAU_STANDING_VIEWER,

@@ -65,8 +65,8 @@ void cau_connection_put(cau_connection *c, const void *bytes, size_t count)
 	put(tls_of(c), c->descriptor, bytes, count);
 }
 
-// Sends the last bytes, then reads and drops what has arrived. Closing a socket with unread bytes
-// resets it, and the reset may overtake the sent bytes.
+// Sends the last bytes, then reads and drops the bytes that have arrived. Closing a socket with
+// unread bytes resets it, and the reset may overtake the sent bytes.
 void cau_wsi_last_words(struct lws *wsi, const void *bytes, size_t count)
 {
 	enum { DROPPED_MOST = 256, PIECE_BYTES = 4096 };

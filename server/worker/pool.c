@@ -111,7 +111,7 @@ static void *work(void *argument)
 {
 	cau_worker_pool *pool = argument;
 	pthread_setname_np(pthread_self(), "cautery-work");
-	// Without the permission the thread stays at the process's priority, which is no error.
+	// Without the permission the thread stays at the process's priority, which is not an error.
 	cau_thread_set_nice(pool->nice);
 	pthread_mutex_lock(&pool->mutex);
 	while (!pool->ending) {

@@ -8,7 +8,8 @@
 
 enum { BENCH_CACHES_MOST = 8 };
 
-// What the kernel reports about the first processor. On a virtual machine the host decides this.
+// Properties of the first processor, as the kernel reports them. On a virtual machine the host
+// decides this.
 typedef struct bench_machine {
 	char vendor[32];    // "AuthenticAMD"; on ARM the implementer, "0x41"; "" if unknown
 	char name[96];      // "AMD EPYC"; on ARM the board; "" if unknown

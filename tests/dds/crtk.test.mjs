@@ -93,7 +93,7 @@ test('the operating state is there for who comes late, enabled and homed', async
 });
 
 // Turns energy off by a command of the controller. If the machine stalls for a second, the driver's deadline may come
-// first. That is correct, but it is not what is tested, so the trial is then repeated.
+// first. That is correct, but the test is of something else, so the trial is then repeated.
 async function commandedOff(seen, stop) {
 	const { client, stream, robot } = seen;
 	for (let tries = 3; ; tries--) {

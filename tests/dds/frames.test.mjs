@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests what a session publishes on DDS: its status and its frames.
+// Tests the samples that a session publishes on DDS: its status and its frames.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { DOMAIN } from './domain.mjs';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests what a tool's generator delivers, as DDS reports it.
+// Tests the delivered power of a tool's generator, as DDS reports it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';

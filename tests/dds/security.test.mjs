@@ -123,7 +123,7 @@ test('an identity has the role that the file gives it: one that may view reads, 
 	assert.equal((await asker.request('LIST')).code, 0);
 	assert.equal((await asker.request('PAUSE', { session: seen.session })).status, 'forbidden');
 	assert.equal(seen.stream.tools[0].driver, 0);
-	// While the viewer goes on writing, a participant that may operate drives the tool.
+	// While the viewer continues to write, a participant that may operate drives the tool.
 	await drives(controller(t, seen.session, enclave('worker')), seen);
 	await daemon.log(/ event=dds_client .*role=operate subject="CN=worker,O=Cautery"/);
 });
@@ -183,7 +183,7 @@ test('the daemon says what is wrong with its DDS settings, and does not start', 
 
 test('an identity that was taken back is let in no more', async (t) => {
 	make('lists', 'daemon', 'daemon', 'controller', 'leaver', 'controller', 'stayer');
-	// The leaver has only its old revocation list: what it claims about itself must have no effect.
+	// The leaver has only its old revocation list: its claims must have no effect.
 	const leaver = join(folder, 'leaver-before'), its = join(leaver, 'cyclonedds.xml');
 	cpSync(enclave('leaver', 'lists'), leaver, { recursive: true });
 	writeFileSync(its, readFileSync(its, 'utf8').replaceAll(enclave('leaver', 'lists'), leaver));

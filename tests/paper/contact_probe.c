@@ -32,7 +32,7 @@ static double vertex_depth_m(const indent_stand *stand)
 	return stand->of.radius_m - nearest;
 }
 
-// What is measured while a ball does not move.
+// Quantities that are measured while a ball does not move.
 typedef struct watched {
 	double least_n, most_n, vertex_depth_m, face_depth_m;
 } watched;

@@ -35,7 +35,7 @@ Static equilibria by DOLFINx, on the same mesh of linear tetrahedra with the sam
 ([tests/reference](../reference/README.md)), are compared with sessions that are stepped in double until they are at
 rest. "Displacement off" is the largest difference of a displacement, relative to the largest displacement. "Force off"
 is the same for the force of the supports and the sphere.
-The test allows {ALLOWED:g}, {ALLOWED_CONTACT:g} with contact. The last column is no error of a solver. It is the
+The test allows {ALLOWED:g}, {ALLOWED_CONTACT:g} with contact. The last column is not an error of a solver. It is the
 difference between this coarse mesh and a converged mesh (force of the pull, sinking of the tip, moment of the twist,
 force on the sphere). Linear tetrahedra lock.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the simulation knows of a session from outside: which clients may have energy on, and which
+// The simulation's knowledge of a session from outside: which clients may have energy on, and which
 // commands were acknowledged. Commands that set gravity represent all commands. Each such command
 // has a number, and sets a gravity that no other number has. So the state shows which command was
 // the newest.

@@ -34,7 +34,7 @@ typedef struct core_book {
 	int64_t wrong_ns[TOOLS];  // time since which energy is on without a reason; 0: no such energy
 } core_book;
 
-// What the present fiber is doing.
+// The present activity of the running fiber.
 typedef struct at_work {
 	uint64_t fiber;
 	cau_hosted *deciding; // the session for which the fiber is in cau_decide_next, else NULL
@@ -190,7 +190,7 @@ void core_watch_killed(int machine)
 			watched.cores[i].core = NULL;
 }
 
-// ---- what a worker is doing
+// ---- activity of a worker
 void __real_cau_decide_next(cau_hosted *h, cau_action *action);
 void __wrap_cau_decide_next(cau_hosted *h, cau_action *action);
 WRAPPED void __wrap_cau_decide_next(cau_hosted *h, cau_action *action)

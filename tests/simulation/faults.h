@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Columns: word; promise that detects the fault; seed that found the fault last; what is wrong. The
+// Columns: word; promise that detects the fault; seed that found the fault last; description. The
 // search begins with that seed, so it is short if the seed still finds the fault.
 #define FAULT_TABLE(X)                                                                             \
 	X(watchdog_oversleeps, energy_silent, 14, "the watchdog looks half a second after it should")  \

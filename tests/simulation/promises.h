@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The promises of protocol/README.md, as the simulation checks them. The checks see what clients
-// send and receive, and what the double of the core receives. They do not trust the daemon's own
-// records.
+// send and receive, and the inputs of the test double of the core. They do not trust the daemon's
+// own records.
 #pragma once
 
 #include <stdint.h>
@@ -9,7 +9,7 @@
 #include "simulation/network.h"
 #include "simulation/world.h"
 
-// Columns: word, what is promised.
+// Columns: word, promise.
 #define PROMISE_TABLE(X)                                                                           \
 	X(energy_cut, "no tick that begins after a cut is computed with energy")                       \
 	X(energy_silent, "energy goes off when its driver is silent, within a tick")                   \

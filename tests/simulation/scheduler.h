@@ -75,7 +75,7 @@ void sim_note(uint64_t value); // adds a value to the trace
 uint64_t sim_switches(void);
 
 // ---- failures, which end the run
-// Ends the run as failed. `promise` is a word of promises.h. The rest describes what was observed.
+// Ends the run as failed. `promise` is a word of promises.h. The rest describes the observation.
 __attribute__((format(printf, 2, 3), noreturn)) void sim_fail(const char *promise,
                                                               const char *format, ...);
 // Prints a line if --verbose is given.

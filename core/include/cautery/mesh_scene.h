@@ -29,8 +29,8 @@
 extern "C" {
 #endif
 
-// ---- the report: what was read, skipped and mended, and what the mesh contains. The command line,
-// the wire protocol, the log and the viewer show the same report.
+// ---- the report: the parts that were read, skipped and mended, and the contents of the mesh. The
+// command line, the wire protocol, the log and the viewer show the same report.
 enum {
 	CAU_MESH_KIND_MAX = 24,     // largest number of kinds of elements in a report
 	CAU_MESH_REGION_MAX = 64,   // largest number of regions in a report
@@ -71,7 +71,8 @@ typedef struct cau_mesh_region {
 	X(reduced_elements, 1, "higher-order elements reduced to their corners")                       \
 	X(unused_vertices, 0, "unused vertices left out")
 
-// The report: what the file contained, what was skipped and mended, and what the mesh contains.
+// The report: the contents of the file, the parts that were skipped and mended, and the contents
+// of the mesh.
 typedef struct cau_mesh_report {
 	char format[32];                       // for example "Gmsh 4.1"; "" for a generated mesh
 	int64_t vertices_read;                 // vertices in the file

@@ -158,7 +158,7 @@ const char *cau_session_heats_beyond(const cau_session *session, const char *con
 
 // Moves the pinned vertices `vertex` (count) to `position` (m, count x 3) during the next step, and
 // leaves them there: a prescribed displacement. A later call before that step replaces this one.
-// This is no command: it is neither queued nor part of a snapshot. Errors: CAU_BAD_STATE, with a
+// This is not a command: it is neither queued nor part of a snapshot. Errors: CAU_BAD_STATE, with a
 // vertex that is not pinned.
 cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t *vertex,
                              const double *position, cau_error *error);

@@ -114,7 +114,7 @@
 	CHOICE_TABLE(layer_kind, CAU_LAYER_TABLE)
 
 #define X(code, name) CAU_ROLE_##code,
-// What a client may do. Each role includes the roles before it.
+// The rights of a client. Each role includes the roles before it.
 typedef enum cau_role { CAU_ROLE_TABLE(X) CAU_ROLE_COUNT } cau_role;
 #undef X
 #define X(code, name) CAU_SESSION_##code,

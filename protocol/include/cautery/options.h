@@ -68,7 +68,7 @@ typedef struct cau_command_line {
 	// the words after the options, for --help and messages; NULL if there are none
 	const char *words;
 	int word_count;         // number of these words
-	const char *summary;    // what the program does, in whole lines
+	const char *summary;    // purpose of the program, in whole lines
 	const char *closing;    // lines after the options in --help, such as exit codes, or NULL
 	const cau_option *rows; // `row_count` options
 	int row_count;          // number of options
@@ -77,7 +77,7 @@ typedef struct cau_command_line {
 // Reads the arguments from arguments[1]. Options are `--name value` or `--name=value`, before,
 // between or after the words. After `--` all arguments are words. `into` must hold the defaults;
 // options that are given overwrite them. `words` gets word_count words. On a mistake it prints on
-// `complaints` what is wrong and what is allowed, and returns false; `into` may then be partly
+// `complaints` the error and the allowed values, and returns false; `into` may then be partly
 // written.
 bool cau_options_read(const cau_command_line *line, int argument_count, char **arguments,
                       void *into, const char **words, FILE *complaints);

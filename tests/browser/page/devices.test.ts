@@ -70,7 +70,7 @@ describe('devices beside mouse and keys', () => {
     expect(await page.locator('#space-mouse').textContent()).toContain('The cap of a 3D mouse moves');
     await page.evaluate(() => (window as unknown as { plugIn(): void }).plugIn()); // the user need not choose the device again
     await page.locator('#space-mouse').getByText('Test SpaceMouse moves the tool').waitFor();
-    await report(3, [1]); // the button is still down from before, so this is no new press
+    await report(3, [1]); // the button is still down from before, so this is not a new press
     const { tick } = await viewer.state();
     await viewer.until((from) => window.cautery.tick > from + 30, tick, 'half a second passes');
     expect((await viewer.state()).energized).toBe(false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a browser must do for the tests of holds: real input if the browser can produce it, and functions that run in
+// Abilities of a browser that the tests of holds need: real input if the browser can produce it, and functions that run in
 // the page. One implementation drives Chromium, another drives Firefox.
 
 export interface Point {
@@ -34,7 +34,7 @@ export interface HoldPage {
   /** sends a report of the 3D mouse; unplug() removes it */
   cap(values: number[]): void;
   unplug(): void;
-  /** puts back what a test took out of the page */
+  /** restores the parts that a test took out of the page */
   undo: (() => void) | null;
 }
 
@@ -64,7 +64,7 @@ export function prepareHolds(): void {
     },
     unplug: () => {
       hid.dispatchEvent(Object.assign(new Event('disconnect'), { device }));
-      // the device's button is still down, so this is no new press
+      // the device's button is still down, so this is not a new press
       hid.dispatchEvent(Object.assign(new Event('connect'), { device }));
       holds.cap([1]);
     },

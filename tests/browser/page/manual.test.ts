@@ -8,7 +8,7 @@ import { COARSE } from './viewer_page';
 
 const MANUAL = fileURLToPath(new URL('../../../clients/web/dist-manual', import.meta.url));
 const BEYOND = /^(https?|mailto):/;
-/** Matches what the policy `default-src 'none'; script-src 'self'; style-src 'self'` refuses. */
+/** Matches everything that the policy `default-src 'none'; script-src 'self'; style-src 'self'` refuses. */
 const INLINE = /<script(?![^>]*\bsrc=)[^>]*>|<style\b|\sstyle="|\son[a-z]+="/;
 const TYPES: [RegExp, RegExp][] = [[/\.html$|\/$/, /^text\/html/], [/\.css$/, /^text\/css/], [/\.js$/, /^text\/javascript/],
   [/\.svg$/, /^image\/svg/], [/\.png$/, /^image\/png/], [/\.jpg$/, /^image\/jpeg/],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests that a long operation says what it is, with a moving bar, over any picture, and that tissue is shown when it
+// Tests that a long operation shows its name, with a moving bar, over any picture, and that tissue is shown when it
 // ends. A door holds the daemon's answers back while the test looks.
 import { HoldingDoor } from './door';
 import { Stage } from './stage';

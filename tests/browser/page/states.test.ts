@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests that a picture that is not live says so: no WebGL, a lost context, a lost daemon. The address restores the
-// view. The token dialog says what is wrong and lets the user try again.
+// view. The token dialog shows the error and lets the user try again.
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -68,7 +68,7 @@ describe('a picture that is not live, and its address', () => {
     await viewer.drawn();
     const again = await viewer.project([0.05, 0.03, 0]);
     expect.soft(Math.hypot(again.x - corner.x, again.y - corner.y)).toBeLessThan(2);
-    expect.soft(await viewer.page.locator('#rewind').isVisible()).toBe(false); // a reload is no request to rewind
+    expect.soft(await viewer.page.locator('#rewind').isVisible()).toBe(false); // a reload is not a request to rewind
 
     const tick = Number(new URL(shared).searchParams.get('tick'));
     await viewer.until((then) => window.cautery.tick > then + 30, tick, 'time goes on');

@@ -143,7 +143,7 @@ static void test_flow_takes_the_stress_away(void **state)
 		settle(&r, f);
 	element_answer(&r, 0, f, last);
 	double mean = (last[0][0] * f[0][0] + last[1][1] * f[1][1] + last[2][2] * f[2][2]) / 3;
-	// the deviator of P F^T; what is left is pressure
+	// the deviator of P F^T; the remainder is pressure
 	double deviator = last[0][0] * f[0][0] - mean;
 	assert_true(fabs(deviator) < 1e-6 * norm(first));
 	rig_finish(&r);

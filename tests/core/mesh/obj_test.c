@@ -118,6 +118,21 @@ static void too_many_materials_are_refused(void **state)
 	refuse_text("a.obj", text, CAU_LIMIT, "line 261: more than 256 names");
 }
 
+// One corner more than the limit of 2^20.
+static void a_face_of_too_many_corners_is_refused(void **state)
+{
+	(void)state;
+	const size_t corners = (1 << 20) + 1, before = strlen(SQUARE "f");
+	char *text = malloc(before + 2 * corners + 1);
+	assert_non_null(text);
+	memcpy(text, SQUARE "f", before);
+	for (size_t i = 0; i < corners; i++)
+		memcpy(text + before + 2 * i, " 1", 2);
+	text[before + 2 * corners] = 0;
+	refuse_text("a.obj", text, CAU_LIMIT, "a face has more than 1048576 corners");
+	free(text);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -127,6 +142,7 @@ int main(void)
 		cmocka_unit_test(materials_number_the_regions_before_groups),
 		cmocka_unit_test(failures_name_line_and_reason),
 		cmocka_unit_test(too_many_materials_are_refused),
+		cmocka_unit_test(a_face_of_too_many_corners_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -176,7 +176,7 @@ static void names_and_references(void **state)
 	strcpy(scene->layers[2].of, "nothing");
 	stage_refuse(scene, CAU_NOT_FOUND, &error);
 	assert_string_equal(error.path, "layers[2].of");
-	strcpy(scene->layers[2].of, "fascia"); // the layer is no fat
+	strcpy(scene->layers[2].of, "fascia"); // the layer is not fat
 	stage_refuse(scene, CAU_NOT_FOUND, &error);
 	strcpy(scene->layers[2].of, "fat");
 	strcpy(scene->layers[3].to, "links");

@@ -8,7 +8,7 @@
 
 #include "session/session_internal.h"
 
-// What a session's creation reported at its borders, and the border at which it must stop.
+// Reports of a session's creation at its borders, and the border at which it must stop.
 typedef struct borders {
 	int stop_at; // a CAU_BUILD_* to refuse, or -1
 	cau_status refusal;

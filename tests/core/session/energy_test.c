@@ -187,7 +187,7 @@ static void a_snapshot_changes_nothing(void **state)
 	free(scene);
 }
 
-// A layered body is cut and shrinks. The energy that heat adds by shrinking is no gain.
+// A layered body is cut and shrinks. The energy that heat adds by shrinking is not a gain.
 static void what_shrinks_does_not_count(void **state)
 {
 	(void)state;

@@ -312,7 +312,8 @@ static void a_block_keeps_its_angular_momentum(void **state)
 	stage_add_slab(scene, "cake", (double[3]){0.04, 0.04, 0.02}, (int32_t[3]){6, 6, 3});
 	scene->integrator = CAU_INTEGRATOR_SDIRK2;
 	assert_true(fabs(spin(scene, 10) - 1) <= 0.01);
-	scene->layers[0].viscosity_s = 0.05; // viscosity must not damp a rotation, which is no stretch
+	// Viscosity must not damp a rotation, because a rotation stretches nothing.
+	scene->layers[0].viscosity_s = 0.05;
 	assert_true(fabs(spin(scene, 10) - 1) <= 0.01);
 	free(scene);
 }

@@ -211,7 +211,7 @@ static void a_negative_limit_is_refused(void **state)
 	free(scene);
 }
 
-// ---- the core reports what it may heat
+// ---- the core reports which tools may heat
 
 static void it_says_what_it_may_heat(void **state)
 {

@@ -267,7 +267,7 @@ static void beginnings_are_refused(void **state)
 }
 
 // One layer of nine voxels with three labels. With the first edge that is tried, the lattice has no
-// tetrahedron. This is no error, and a shorter edge is tried.
+// tetrahedron. This is not an error, and a shorter edge is tried.
 static void what_is_thinner_than_any_edge_is_refused(void **state)
 {
 	(void)state;

@@ -40,7 +40,7 @@ static void test_flat_patches_do_not_bend(void **state)
 			for (int c = 0; c < 3; c++)
 				assert_near(e[c], 0, FLAT_TOLERANCE * 10);
 		}
-	// A stretch within the plane is no bending.
+	// A stretch within the plane is not bending.
 	for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 		x[i] *= 1.3;
 	rig_local(&r, x, gradient);

@@ -126,7 +126,7 @@ static void a_hash_stands_for_its_token(void **state)
 	         hash);
 	assert_int_equal(read_tokens(text, 0600, &auth), CAU_OK);
 	assert_true(role_is(auth, "0123456789abcdef", CAU_ROLE_OPERATE));
-	// The hash from the file is no token, so somebody who reads the file gets no access.
+	// The hash from the file is not a token, so a person who reads the file gets no access.
 	assert_false(cau_auth_role(auth, hash, 64, &(cau_role){0}));
 	cau_auth_grant_name(auth, cau_auth_grant(auth, "0123456789abcdef", 16), name);
 	assert_string_equal(name, "anna");

@@ -36,7 +36,7 @@ typedef struct request {
 	int client;
 } request;
 
-// What the notifications to clients say about a tool's energy.
+// A tool's energy, as the notifications to clients report it.
 typedef struct tool_book {
 	bool on;
 	uint64_t lit_from, dark_from; // ticks from which energy is on and off

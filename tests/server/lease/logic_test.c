@@ -218,7 +218,7 @@ static void judge_and_note(world *w, int i, bool take_label)
 	cau_lease_choose(&claim, &w->process[i].has_next, ++w->mark);
 	w->file[i].held = claim.held;
 	w->file[i].next = claim.next;
-	// The store notes its own file, so the file is no copy any more.
+	// The store notes its own file, so the file is not a copy any more.
 	w->file[i].is_copy = false;
 	w->process[i].read_revision = w->revision;
 	w->process[i].phase = NOTED;

@@ -23,7 +23,7 @@ enum {
 #define DEADLINE_S 0.25      // deadline of every driver, s
 enum { DEADLINE_TICKS = 4 }; // deadline in lock-step, ticks
 
-// What the oracle knows about a tool.
+// The oracle's knowledge of a tool.
 typedef struct tool_book {
 	bool there, lit; // `there`: the tool exists; `lit`: the core heats it
 	int driver;      // number of the client; 0: none

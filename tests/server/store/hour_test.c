@@ -14,7 +14,7 @@ enum {
 	CHECKPOINT_S = 10, // time between two checkpoints, as in the daemon's settings
 	CLIENTS = 8,
 	BUDGET_BYTES = 20000000,
-	WAL_BYTES = 1000000, // limit of the log; small, so that the file's size shows what is in use
+	WAL_BYTES = 1000000, // limit of the log; small, so that the file's size shows the used part
 };
 
 static int minutes = CAU_TEST_SANITIZED ? 1 : 2;

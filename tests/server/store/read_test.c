@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests that reads return what was written: sessions, answers to resends, branches with their
+// Tests that reads return the written records: sessions, answers to resends, branches with their
 // shared past, events.
 #include "store_fixture.h"
 

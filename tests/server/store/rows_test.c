@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests pieces of a moving session: what is written is read again, and bytes that are no piece are
+// Tests pieces of a moving session: written rows are read again, and bytes that are not a piece are
 // refused, wherever they end and whatever they contain.
 #include "store_fixture.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys while the picture or no element has the focus, and the gamepad. KEY_HELP describes what they do.
+// Handles the gamepad, and keys while the picture has the focus or no element has it. KEY_HELP lists their effects.
 import type { Viewport } from '../scene/viewport';
 import { LATCH_S } from './energy';
 import { Pad } from './gamepad';

@@ -40,7 +40,7 @@ export class SpaceMouse {
   /** deflections, -1 to 1: right, towards the hand, down, and the turns about these axes */
   private readonly axes = [0, 0, 0, 0, 0, 0];
   private device: HidDevice | null = null;
-  /** last reported state of the button; kept while the mouse is unplugged, so that a held button is no new press */
+  /** last reported state of the button; kept while the mouse is unplugged, so that a held button is not a new press */
   private pressed = false;
   private last = performance.now();
 

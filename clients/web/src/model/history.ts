@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The history of the tools since this page watches the session: temperature, force and energy of each tool. It is thinned
-// out to a limited size. A rewind removes what comes after it.
+// out to a limited size. A rewind removes all later points.
 import type { ToolState } from '../wire/records';
 
 export interface ToolMoment {

@@ -39,7 +39,7 @@ export interface StreamState extends ScalarArrays {
   statistics: Statistics | null;
 }
 
-/** What the last frame changed. `whole`: everything may have changed. */
+/** The changes by the last frame. `whole`: everything may have changed. */
 export interface Changes {
   whole: boolean;
   moved: Runs;

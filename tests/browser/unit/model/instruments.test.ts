@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests what the form of the generator offers and requests, with the profiles of deploy/instruments.
+// Tests the choices and requests of the generator's form, with the profiles of deploy/instruments.
 import { readFileSync, readdirSync } from 'node:fs';
 
 import { becoming, instrumentOf, modeNamed } from '../../../../clients/web/src/model/instruments';
