@@ -26,4 +26,5 @@ export default defineConfig(
       'max-lines': ['error', 320],
     },
   },
+  { files: ['clients/web/src/text/*.ts'], rules: { 'max-lines': 'off' } }, // a catalogue is read by group
 );

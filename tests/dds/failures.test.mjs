@@ -61,7 +61,7 @@ class Robot {
 		this.exited = new Promise((resolve) => this.process.on('exit', resolve));
 		this.name = new Promise((resolve, reject) => {
 			this.exited.then((code) => reject(new Error(`the robot ended (${code})`)));
-			createInterface({ input: this.process.stdout }).on('line', (line) => resolve(/^writes as "(.*)"$/.exec(line)?.[1]));
+			createInterface({ input: this.process.stdout }).on('line', (line) => resolve(/^the name of this client is "(.*)"$/.exec(line)?.[1]));
 		});
 	}
 

@@ -127,8 +127,7 @@ static void print_layers(FILE *out)
 	                                     "Fat's material", "The links' material"};
 	static const char *const texts[] = {
 		"Members of a layer of kind `fascia`.",
-		"Members of a layer of kind `membrane`: those of a fascia, with another ignition "
-		"temperature by default.",
+		"Members of a layer of kind `membrane`. Only the default of `ignition_c` differs.",
 		"Members of a layer of kind `fat`. Axes: the first along `fibre`.",
 		"Members of a layer of kind `links`, which has no `regions`.",
 	};
