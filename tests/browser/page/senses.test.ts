@@ -10,6 +10,7 @@ const ELSEWHERE: [number, number, number] = [0.01, -0.005, 0]; // a place where 
 const ON_M = 0.0005; // length of a part of the way
 const PARTS = 60;
 const TICKS = 6; // least number of ticks for each part
+const PICTURES = 2; // least number of pictures for each part: smoke and sound follow the contact that a picture shows
 
 declare global {
   interface Window {
@@ -45,8 +46,9 @@ const leadOn = async (viewer: ViewerPage, [x, y, z]: [number, number, number]): 
   for (let part = 1; part <= PARTS && !(await noted()); part++) {
     const at = await viewer.project([x - ON_M * part, y, z]);
     await viewer.page.mouse.move(at.x, at.y);
-    const { tick } = await viewer.state();
-    await viewer.until((then) => window.cautery.tick >= then, tick + TICKS, 'time passes');
+    const { tick, picturesDrawn } = await viewer.state();
+    await viewer.until((then) => window.cautery.tick >= then.tick && window.cautery.picturesDrawn >= then.picture,
+      { tick: tick + TICKS, picture: picturesDrawn + PICTURES }, 'time passes in the picture');
   }
 };
 
@@ -65,6 +67,8 @@ describe('smoke and sound', () => {
     await stop(viewer);
     await viewer.until(() => window.cautery.heard.sizzle === 0 && window.cautery.puffs === 0, null, 'it is quiet and clear');
     expect((await viewer.state()).alarms).toBe(0);
+    await viewer.page.getByRole('button', { name: 'Release the tool' }).click();
+    await viewer.until(() => !window.cautery.driving, null, 'the tool is free for the next page');
     await viewer.page.reload();
     await viewer.live('d1-fascia');
     expect(await viewer.page.getByRole('checkbox', { name: 'Activation tone' }).isChecked()).toBe(false);

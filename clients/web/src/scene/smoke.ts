@@ -30,7 +30,7 @@ void main() {
   float fade = smoothstep(0.0, 0.06, vAge) * (1.0 - vAge) * (1.0 - vAge);
   fragment = linearToOutputTexel(vec4(colour, 0.20 * soft * soft * fade));
 }`;
-const MOST_S = 0.1; // of one step: a page that was hidden does not puff all at once
+const MOST_S = 1; // longest step: slow machines need up to 0.7 s for a picture, and a page that was hidden makes 7 puffs at most
 const REDUCED = '(prefers-reduced-motion: reduce)';
 
 export class Smoke {
