@@ -13,7 +13,9 @@ typedef struct commit {
 	cau_pending *pending;
 	uint64_t from_tick; // if the commit fails, the log lacks entries from this tick on
 	bool making;        // the batch has the session's first rows, without which there is no session
-	bool made;          // the batch also has the answer to the session's creator
+	// The session was started when the batch was submitted, so the answer to the creator, or to a
+	// move, is in it or in an earlier batch.
+	bool started;
 } commit;
 
 static cau_pending *reversed(cau_pending *list)
@@ -74,8 +76,9 @@ static void committed(void *user, cau_status status, const char *reason)
 		if (done->making)
 			end_making(done->hosted, status, reason);
 	}
-	// this comes before the answer, because the creator may use the session at once
-	if (done->made && !status)
+	// This comes before the answers: whoever created or moved the session may use it at once, while
+	// the thread that submitted the batch still ends its slice.
+	if (done->started && !status)
 		done->hosted->creation.unanswered = false;
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits.under_way, 1) == 1) {
@@ -112,8 +115,7 @@ void cau_record_commit(cau_hosted *h)
 		uint64_t from = h->record.batch_tick < h->record.batch_lost ? h->record.batch_tick
 		                                                            : h->record.batch_lost;
 		bool making = is_being_made(&h->creation);
-		*travelling =
-			(commit){cau_hosted_share(h), pending, from, making, making && !h->creation.starting};
+		*travelling = (commit){cau_hosted_share(h), pending, from, making, !h->creation.starting};
 		atomic_fetch_add(&h->commits.under_way, 1);
 		status = cau_store_submit(h->identity.around->store, h->record.batch, committed, travelling,
 		                          &error);
