@@ -302,9 +302,8 @@ export class Viewport {
     if (this.graphics !== 'ready') throw new Error(text.viewport.noPicture);
     this.setDetail(FULL);
     this.render();
-    return new Promise<Blob>((resolve, reject) =>
-      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error(text.viewport.notWritten))), 'image/png'),
-    ).finally(() => this.resize());
+    const written = new Promise<Blob>((resolve, reject) => this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error(text.viewport.notWritten))), 'image/png'));
+    return written.finally(() => this.resize());
   }
 
   private frameTissue(): void {
