@@ -6,7 +6,7 @@ const here = (path: string): string => fileURLToPath(new URL(path, import.meta.u
 
 export default defineConfig({
   resolve: {
-    alias: [{ find: /^three$/, replacement: here('./node_modules/three/build/three.module.js') }, { find: /^three\//, replacement: here('./node_modules/three/') }],
+    alias: [{ find: /^three$/, replacement: here('./node_modules/three/build/three.module.js') }, { find: /^three\//, replacement: here('./node_modules/three/') }, { find: /^typescript$/, replacement: here('./node_modules/typescript/lib/typescript.js') }],
   },
   test: {
     globals: true,

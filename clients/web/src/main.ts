@@ -42,9 +42,13 @@ import { watchVessels } from './panels/vessels';
 import { viewPanel } from './panels/view';
 import { Sounds } from './scene/sound';
 import { Viewport } from './scene/viewport';
+import { labelPage } from './text/document';
+import { text } from './text/text';
 import { Link } from './wire/link';
 import { SCALARS, type Layer, type Tool } from './wire/messages.gen';
 import { errorWords } from './model/sentences';
+
+labelPage();
 
 const model = new Model();
 const picture = byId<HTMLCanvasElement>('picture');
@@ -66,7 +70,7 @@ const link: Link = new Link({
   moved: (session, to, url) => {
     if (session === model.session) follow(to, url);
   },
-  notJoined: (session, message) => model.notice('error', `Session ${session} cannot be opened: ${message}`),
+  notJoined: (session, message) => model.notice('error', text.main.notOpened(session, message)),
   frame: (frame) => {
     const buffers = viewport.takeFrame(frame);
     model.setFrame(frame);
@@ -74,7 +78,7 @@ const link: Link = new Link({
   },
   push: (method, params) => control.push(method, params),
   file: (name, mediaType, bytes, sound) => {
-    if (!sound) model.notice('error', `The file ${name} was damaged during the download. Try again.`);
+    if (!sound) model.notice('error', text.main.damaged(name));
     else saveReceived(name, mediaType, bytes);
   },
 });
@@ -150,7 +154,7 @@ function socketAddress(session: string | null): string {
  * that daemon is opened. */
 function follow(session: string, daemon: string): void {
   const there = daemon === '' ? null : new URL(daemon);
-  model.notice('info', `The session has moved to another server. Its name is now ${session}.`);
+  model.notice('info', text.main.moved(session));
   if (there && there.host !== window.location.host) {
     there.protocol = there.protocol === 'wss:' || there.protocol === 'https:' ? 'https:' : 'http:';
     there.pathname = '/';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The depth of each tool: how far its tip is below the surface to which the hand points. Each tool has its own depth,
 // which is 0 when the tool is taken.
+import { text } from '../text/text';
 
 const LEAST_M = -0.1; // above the surface
 const MOST_M = 0.03; // below it: through every tissue of the scenes
@@ -24,6 +25,6 @@ export class Depths {
 /** For people: "at the surface", "1.5 mm deep", "6.0 mm above". */
 export function depthWords(depthM: number): string {
   const millimetres = Math.abs(1000 * depthM).toFixed(1);
-  if (millimetres === '0.0') return 'at the surface';
-  return `${millimetres} mm ${depthM > 0 ? 'deep' : 'above'}`;
+  if (millimetres === '0.0') return text.depth.surface;
+  return depthM > 0 ? text.depth.deep(millimetres) : text.depth.above(millimetres);
 }

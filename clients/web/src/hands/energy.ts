@@ -8,44 +8,12 @@
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
-import type { EnergyOff, ToolState } from '../wire/records';
+import { text } from '../text/text';
+import type { ToolState } from '../wire/records';
 import type { Frame } from '../wire/worker_messages';
 import { errorWords } from '../model/sentences';
-import { LATCH, type Held, type Holds, type Lost } from './holds';
+import { LATCH, type Holds, type Lost } from './holds';
 
-/** How the user turns energy on again, for each kind of hold. */
-const AGAIN: Readonly<Record<Held, string>> = {
-  space: 'Release Space and press it again.',
-  button: 'Release Energy and press it again.',
-  trigger: 'Release the trigger and pull it again.',
-  pointer: 'Lift and press again.',
-  pedal: 'Lift the pedal and press it again.',
-  cap: 'Release the 3D mouse’s button and press it again.',
-  latch: 'Press Keep on again to continue.',
-};
-const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
-  watchdog: 'the server did not hear from this page in time. A busy computer can cause this',
-  taken_over: 'another user took the tool over',
-  restored: 'the session was rewound or restarted',
-  never_enabled: 'the simulation turned energy off before it came on',
-  commanded: 'another user turned energy off',
-};
-/** Why a hold ended without a release by the user. */
-const LET_GO_WORDS: Readonly<Record<Exclude<Lost, 'released'>, string>> = {
-  buttons: 'a second button was pressed. Release both and press again.',
-  cancelled: 'the browser interrupted the press. Press again.',
-  second: 'a second finger touched the picture. Lift both and press again.',
-  focus: 'another control was selected. Press again.',
-  typing: 'a text field was selected. Press again.',
-  menu: 'a menu opened. Press again.',
-  dialog: 'a dialog opened. Press again.',
-  blur: 'another window was selected. Press again.',
-  hidden: 'this page was hidden. Press again.',
-  gone: 'the control that you held can no longer be used.',
-  unplugged: 'the device was disconnected.',
-  past: 'the picture shows a past view.',
-};
-const PAUSED = 'the session is paused';
 const KEY = 'energy';
 /** Limit of the latch in simulated seconds: enough for a long cut, short if the user forgets it. */
 export const LATCH_S = 15;
@@ -72,7 +40,7 @@ export class Energy {
   ) {
     model.on('frame', (frame) => this.check(frame));
     model.on('link', (link) => {
-      if (link.state !== 'online') this.lose('the connection was lost');
+      if (link.state !== 'online') this.lose(text.energy.noConnection);
     });
     model.on('tools', () => this.checkDriver());
   }
@@ -105,7 +73,7 @@ export class Energy {
     this.since = null;
     this.model.unsay(KEY);
     if (this.model.frame?.paused) {
-      this.lose(PAUSED);
+      this.lose(text.energy.paused);
       return;
     }
     this.ask(tool);
@@ -121,7 +89,7 @@ export class Energy {
   off(why: Lost): void {
     const had = this.alive;
     this.end();
-    if (had && why !== 'released') this.model.say('warning', `Energy is off: ${LET_GO_WORDS[why]}`);
+    if (had && why !== 'released') this.model.say('warning', text.energy.off(text.energy.letGo[why]));
   }
 
   private get stepS(): number {
@@ -163,30 +131,30 @@ export class Energy {
   private check(frame: Frame): void {
     if (!this.alive || this.since === null) return;
     const state = frame.tools.find(({ name }) => name === this.tool);
-    if (frame.epoch !== this.since.epoch) this.lose(LOST_WORDS['restored']);
+    if (frame.epoch !== this.since.epoch) this.lose(text.energy.lost.restored);
     else if (state?.energized) this.state = 'on';
-    else if (frame.paused) this.lose(PAUSED);
+    else if (frame.paused) this.lose(text.energy.paused);
     else if (frame.tick > this.since.tick) this.wentDark(frame, state);
   }
 
   private wentDark(frame: Frame, state: ToolState | undefined): void {
     const over = state?.energyOff === 'commanded' && this.limit !== null && frame.tick >= this.since!.tick + this.limit;
-    this.lose(over ? `Keep on lasts ${LATCH_S} s at most` : this.reason(state));
+    this.lose(over ? text.energy.latchOver(LATCH_S) : this.reason(state));
   }
 
   /** Returns the reason why energy went off. If it never came on, the frame has only the reason of an earlier time. */
   private reason(state: ToolState | undefined): string {
-    if (!state) return 'the tool was removed from the session';
-    if (this.state === 'asked' && state.energyOff !== 'watchdog') return LOST_WORDS['never_enabled'];
-    return LOST_WORDS[state.energyOff];
+    if (!state) return text.energy.removed;
+    if (this.state === 'asked' && state.energyOff !== 'watchdog') return text.energy.lost.never_enabled;
+    return text.energy.lost[state.energyOff];
   }
 
   private checkDriver(): void {
     if (!this.alive || this.tool === null || this.model.link.state !== 'online') return;
     const driver = this.model.drivers.get(this.tool);
-    if (!driver) this.lose('the tool was removed from the session');
-    else if (driver.client === 0) this.lose('the tool no longer has a driver');
-    else if (!this.model.drives(this.tool)) this.lose(`${nameOf(driver)} took the tool over`);
+    if (!driver) this.lose(text.energy.removed);
+    else if (driver.client === 0) this.lose(text.energy.noDriver);
+    else if (!this.model.drives(this.tool)) this.lose(text.energy.takenOver(nameOf(driver)));
   }
 
   private lose(why: string): void {
@@ -200,7 +168,7 @@ export class Energy {
       this.ended();
     }
     // The message stays while something is held. A latch has ended with its energy.
-    this.model.say('warning', `Energy is off: ${why}. ${by ? AGAIN[by] : 'Press again.'}`, this.wanted ? { key: KEY } : {});
+    this.model.say('warning', text.energy.offUntil(why, by ? text.energy.again[by] : text.energy.againWithoutHold), this.wanted ? { key: KEY } : {});
     this.model.emit('tools', undefined);
   }
 }

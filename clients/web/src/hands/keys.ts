@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Handles the gamepad, and keys while the picture has the focus or no element has it. KEY_HELP lists their effects.
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { LATCH_S } from './energy';
 import { Pad } from './gamepad';
 import { keyId } from './holds';
 import type { ToolHand } from './tool_hand';
 
-export const KEY_HELP: readonly (readonly [string, string])[] = [
-  ['Mouse', 'moves the tool over the tissue'],
-  ['Press and drag', 'cut: energy is on while you press'],
-  ['Arrows', 'move the tool'],
-  ['Space', 'energy is on while you hold the key'],
-  ['Wheel, W S', 'depth of the tool: W deeper, S nearer'],
-  ['Q E, R F', 'Q and E turn the tool, R and F tilt the tool'],
-  ['L', `keep energy on for at most ${LATCH_S} s; L or Escape turns energy off`],
-  ['G', 'close the jaws to grasp, or open them'],
-  ['Right drag, Shift + drag', 'right drag turns the camera, Shift + drag moves it'],
-  ['Ctrl + wheel, + −', 'zoom'],
-  ['H', 'put the camera back to its first view'],
-  ['Gamepad', 'the sticks move the tool, the right trigger cuts, A grasps'],
-];
+export const KEY_HELP = text.keys.help(LATCH_S);
 
 const SPEED_M_S = 0.03;
 const TURN_RAD_S = 1.2;

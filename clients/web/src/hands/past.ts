@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Refuses input while the picture shows the past, because the user does not see the present tissue.
 import type { Model } from '../model/model';
+import { text } from '../text/text';
 
 export class Past {
   constructor(
@@ -18,7 +19,7 @@ export class Past {
 
   /** Returns whether input is refused, and explains it to the user. */
   refuses(): boolean {
-    if (this.shown) this.model.say('info', 'This is a past view. Press Return to live to use the tools.');
+    if (this.shown) this.model.say('info', text.handsPast.refused);
     return this.shown;
   }
 }

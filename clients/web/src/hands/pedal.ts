@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A foot pedal. Browsers see most pedals as a keyboard with one key. The browser stores which key it is.
+import { text } from '../text/text';
 import { takesTyping } from './hold_watch';
 import { keyId, type HoldEvent } from './holds';
 import { WORKING_KEYS } from './keys';
@@ -54,7 +55,7 @@ export class Pedal {
     event.preventDefault();
     event.stopPropagation();
     if (event.code === '' || EVERY_PAGES.test(event.code) || WORKING_KEYS.has(event.code)) {
-      told(`${keyWords(event.code || event.key)} is already used by this page. Give the pedal another key with the program that came with the pedal.`);
+      told(text.pedal.keyInUse(keyWords(event.code || event.key)));
       return;
     }
     this.asked = null;

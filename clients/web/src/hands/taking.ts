@@ -4,6 +4,7 @@ import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
 import { errorWords } from '../model/sentences';
+import { text } from '../text/text';
 
 const KEY = 'driver';
 const TOLD_MS = 4000; // least time between two messages; keys and sticks try sixty times a second
@@ -34,18 +35,18 @@ export class Taking {
     this.busy = true;
     this.control
       .takeOver(tool)
-      .catch((error: unknown) => this.refuse(`The ${tool} could not be taken. ${errorWords(error)}`))
+      .catch((error: unknown) => this.refuse(text.taking.failed(tool, errorWords(error))))
       .finally(() => (this.busy = false));
     return true;
   }
 
   private obstacle(): string | null {
     const { model } = this;
-    if (model.link.state !== 'online') return 'There is no connection, so the tool cannot be moved.';
-    if (!model.mayOperate) return 'You can only watch, because your access token does not allow you to use tools.';
+    if (model.link.state !== 'online') return text.taking.noConnection;
+    if (!model.mayOperate) return text.taking.watchOnly;
     if (!model.joined) return null; // the veil over the picture explains the wait
-    if (model.tools.length === 0) return 'This session has no tools.';
-    return model.driver ? `${nameOf(model.driver)} is using the ${model.driver.tool}.` : null;
+    if (model.tools.length === 0) return text.taking.noTools;
+    return model.driver ? text.taking.inUse(nameOf(model.driver), model.driver.tool) : null;
   }
 
   private refuse(why: string): void {
@@ -60,10 +61,10 @@ export class Taking {
     }
     const ask = (): void => {
       control.ask(driver.tool).then(
-        () => model.say('info', `${nameOf(driver)} has been asked for the ${driver.tool}.`),
+        () => model.say('info', text.taking.asked(nameOf(driver), driver.tool)),
         (error: unknown) => model.say('error', errorWords(error)),
       );
     };
-    model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for the tool`, press: ask } });
+    model.say('warning', why, { action: { words: text.taking.ask(nameOf(driver)), press: ask } });
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Connects model and daemon: sends requests of the user, and handles notifications of the daemon.
+import { text } from '../text/text';
 import type { Link } from '../wire/link';
 import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool, ToolConfigure } from '../wire/messages.gen';
 import { nameOf } from './person';
@@ -8,9 +9,9 @@ import type { Model } from './model';
 import { errorWords } from './sentences';
 
 /** Returns a warning for events after which the tissue cannot be trusted, although the session continues. */
-function doubtOf({ kind, count, detail }: Pushes['event']['event']): string | null {
-  if (kind === 'inverted') return `${count} tetrahedra of ${detail} have been inverted (inside out) for half a second. Do not trust the tissue there. Rewind or reset the session.`;
-  if (kind === 'energy_gain') return `The simulation gained energy that no tool gave (${detail}). Do not trust the motion of the tissue.`;
+function doubtOf({ kind, count = 0, detail = '' }: Pushes['event']['event']): string | null {
+  if (kind === 'inverted') return text.control.inverted(count, detail);
+  if (kind === 'energy_gain') return text.control.gained(detail);
   return null;
 }
 
@@ -66,7 +67,7 @@ export class Control {
   }
 
   async create(params: { scene?: string; definition?: Scene; name?: string }): Promise<SessionDescription> {
-    const description = await this.during('Creating the session', this.link.call('session.create', params));
+    const description = await this.during(text.control.creating, this.link.call('session.create', params));
     this.model.putSession(description.summary);
     this.watch(description.summary.session);
     return description;
@@ -74,7 +75,7 @@ export class Control {
 
   async fork(name?: string): Promise<SessionDescription> {
     const params = { ...this.here(), ...(name === undefined || name === '' ? {} : { name }) };
-    const description = await this.during('Copying the session', this.link.call('session.fork', params));
+    const description = await this.during(text.control.copying, this.link.call('session.fork', params));
     this.model.putSession(description.summary);
     this.watch(description.summary.session);
     return description;
@@ -87,7 +88,7 @@ export class Control {
 
   async rewind(tick: number): Promise<void> {
     const step = this.model.summary?.step_s ?? 0;
-    await this.during(`Rewinding to ${(tick * step).toFixed(2)} s`, this.link.call('session.rewind', { ...this.here(), tick }));
+    await this.during(text.control.rewinding(`${(tick * step).toFixed(2)} s`), this.link.call('session.rewind', { ...this.here(), tick }));
     await this.loadTimeline();
   }
 
@@ -104,11 +105,11 @@ export class Control {
   }
 
   async reset(): Promise<void> {
-    await this.during('Resetting', this.link.call('session.reset', this.here()));
+    await this.during(text.control.resetting, this.link.call('session.reset', this.here()));
   }
 
   async restore(name: string): Promise<number> {
-    const { tick } = await this.during(`Restoring ${name}`, this.link.call('session.restore', { ...this.here(), name }));
+    const { tick } = await this.during(text.control.restoring(name), this.link.call('session.restore', { ...this.here(), name }));
     return tick;
   }
 
@@ -186,7 +187,7 @@ export class Control {
   }
 
   here(): { session: string } {
-    if (this.model.session === null) throw new Error('no session is open; choose or create one');
+    if (this.model.session === null) throw new Error(text.control.noSession);
     return { session: this.model.session };
   }
 
@@ -194,15 +195,15 @@ export class Control {
     'session.changed': (params) => this.sessionChanged(params),
     'session.faulted': ({ session, reason }) => {
       if (session === this.model.session)
-        this.model.notice('error', `The simulation stopped because of a numerical error: ${reason}. Rewind or reset the session.`);
+        this.model.notice('error', text.control.faulted(reason));
     },
     'tool.driver_changed': ({ session, driver }) => {
       if (session !== this.model.session) return;
       const drove = this.model.drives(driver.tool);
       this.model.setDriver(driver);
-      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', `${nameOf(driver)} now uses the ${driver.tool}.`);
+      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', text.control.takenOver(nameOf(driver), driver.tool));
     },
-    'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow your hand: ${reason}.`),
+    'tool.refused': ({ tool, reason }) => this.model.say('warning', text.control.refused(tool, reason)),
     'takeover.requested': (params) => this.model.setTakeover(params),
     'session.frame_progress': (params) => {
       if (params.session === this.model.session) this.model.emit('looking', params);
@@ -233,7 +234,7 @@ export class Control {
 
   private left(session: string): void {
     if (session !== this.model.session) return;
-    this.model.notice('info', `The session ${session} no longer exists.`);
+    this.model.notice('info', text.control.ended(session));
     this.watch(this.model.sessions.find((other) => other.session !== session)?.session ?? null);
   }
 

@@ -1,23 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The events of a timeline as a list for users. Successive cuts of one tool are one line.
+import { text } from '../text/text';
 import type { TimelineEvent } from '../wire/messages.gen';
 
-export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
-  cut: 'cut',
-  tear: 'tear',
-  inverted: 'tissue inverted (inside out)',
-  energy_gain: 'unexplained gain of energy',
-  bleeding: 'bleeding',
-  bleeding_stopped: 'bleeding stopped',
-  sealed: 'vessel sealed',
-  energy_on: 'energy on',
-  energy_off: 'energy off',
-  watchdog: 'energy off: no signal from the driver',
-  fault: 'simulation error',
-  snapshot: 'snapshot',
-  rewind: 'rewind',
-  reset: 'reset',
-};
+export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = text.moments.events;
 /** Kinds of events whose detail is the name of a layer or vessel. */
 const NAMED: readonly TimelineEvent['kind'][] = ['inverted', 'bleeding', 'bleeding_stopped', 'sealed'];
 const GOES_ON: readonly TimelineEvent['kind'][] = ['cut', 'tear'];
@@ -38,7 +24,7 @@ export function momentsOf(events: readonly TimelineEvent[], seconds: (tick: numb
     else found.push({ first: event, last: event });
   }
   return found.reverse().map(({ first: { kind, tick, tool, detail }, last }) => {
-    const when = last.tick === tick ? seconds(tick) : `${seconds(tick).replace(/ s$/, '')} to ${seconds(last.tick)}`;
+    const when = last.tick === tick ? seconds(tick) : text.moments.span(seconds(tick).replace(/ s$/, ''), seconds(last.tick));
     const about = tool || (NAMED.includes(kind) ? detail : undefined);
     return { tick, words: `${when}: ${EVENT_WORDS[kind] ?? kind}${about ? `, ${about}` : ''}` };
   });

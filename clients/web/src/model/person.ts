@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The name of the user for others in the session: a chosen name, or a name generated for this tab, so that two users always
 // have different names.
+import { text } from '../text/text';
 
 const CHOSEN = 'name'; // key in the storage of the browser
 const MADE_UP = 'guest'; // key in the storage of the tab, which survives reloads
-const TREES = [
-  'Alder', 'Ash', 'Aspen', 'Beech', 'Birch', 'Cedar', 'Cherry', 'Elm', 'Fir', 'Hazel', 'Holly', 'Larch', 'Laurel', 'Lime',
-  'Maple', 'Oak', 'Olive', 'Pine', 'Plane', 'Poplar', 'Rowan', 'Spruce', 'Walnut', 'Willow',
-];
 const NUMBERS = 90; // two digits, after the first ten
 export const NAME_MAX = 40;
 const PROGRAM = /, viewer \S+$/;
 
 function makeUp(): string {
+  const { trees } = text.person;
   const [tree, number] = crypto.getRandomValues(new Uint32Array(2));
-  return `${TREES[tree % TREES.length]} ${10 + (number % NUMBERS)}`;
+  return `${trees[tree % trees.length]} ${10 + (number % NUMBERS)}`;
 }
 
 export function ownName(): string {
@@ -40,5 +38,5 @@ export function clientWords(version: string): string {
 /** Returns the shown name of a client. A program without a name is shown by its number. */
 export function nameOf({ name, client }: { name: string; client: number }): string {
   const bare = name.replace(PROGRAM, '');
-  return bare === '' ? `client ${client}` : bare;
+  return bare === '' ? text.person.unnamed(client) : bare;
 }

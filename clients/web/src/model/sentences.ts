@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Turns errors into sentences for users, without paths of members and expressions of programs.
+import { text } from '../text/text';
 
-export const NAME_RULE = 'A name begins with a small letter and contains only small letters, digits and single - or _ between them, as in knee-2';
+export const NAME_RULE = text.sentences.nameRule;
 const EXPRESSION = '[a-z]'; // part of the daemon's rule for names
 const UNIT = /_(j_m2|j_k|w_k|j|w|v|a|m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/;
 
-/** "hot_radius_m" as people say it: "Hot radius". */
+/** "hot_radius_m" as people say it: "Hot radius". Words of the catalogue come before words made of the name. */
 export function memberWords(name: string): string {
+  if (Object.hasOwn(text.sentences.members, name)) return text.sentences.members[name];
   const bare = name.replace(UNIT, '');
   return bare.charAt(0).toUpperCase() + bare.slice(1).replaceAll('_', ' ');
 }
@@ -38,6 +40,6 @@ export function errorWords(error: unknown): string {
 /** Returns a message about a mesh file in the words of the upload form. */
 export function meshWords(words: string): string {
   return words
-    .replace(/\bunit_m ([0-9.]+(?:e[-+]?[0-9]+)?)/g, (_said, unit: string) => `one unit is ${Number((1000 * Number(unit)).toPrecision(6))} mm`)
-    .replace(/\(as (fat|fascia)\)/g, '(tissue $1)');
+    .replace(/\bunit_m ([0-9.]+(?:e[-+]?[0-9]+)?)/g, (_said, unit: string) => text.sentences.meshUnit(Number((1000 * Number(unit)).toPrecision(6))))
+    .replace(/\(as (fat|fascia)\)/g, (_said, kind: 'fat' | 'fascia') => text.sentences.meshTissue[kind]);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tissue for drawing: positions in metres, smooth normals, cut rims, and the indices of drawn faces in batches. It is
 // updated from the state of a stream, and computes only what changed. It runs in the worker and does not use a renderer.
+import { text } from '../text/text';
 import type { Changes, StreamState } from '../wire/decoder';
 import { SCALARS, type LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
@@ -117,7 +118,7 @@ export class Tissue {
   drawnFaceCounts(): Record<string, number> {
     const counts: Record<string, number> = {};
     this.batches.forEach((batch, b) => {
-      const name = batch.bared ? `${batch.layer} (inside)` : batch.layer;
+      const name = batch.bared ? text.tissue.inside(batch.layer) : batch.layer;
       counts[name] = this.drawnIndex[b].length / 3;
     });
     return counts;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Blood vessels in words and in the units of an operating room: millilitres and millimetres of mercury.
+import { text } from '../text/text';
 import type { VesselState } from '../wire/vessels';
 
 const ML_PER_M3 = 1e6;
@@ -9,15 +10,16 @@ const WHOLE_ML = 10; // from this volume on, tenths of a millilitre are not show
 const rate = (bleedingM3S: number): string => `${(ML_PER_M3 * bleedingM3S).toFixed(1)} ml/s`;
 const lost = (shedM3: number): string => {
   const ml = ML_PER_M3 * shedM3;
-  return `${ml.toFixed(ml < WHOLE_ML ? 1 : 0)} ml lost`;
+  return text.vesselWords.lost(ml.toFixed(ml < WHOLE_ML ? 1 : 0));
 };
-const bursts = (burstPa: number): string => `bursts at ${Math.round(burstPa / PA_PER_MMHG)} mmHg`;
+const bursts = (burstPa: number): string => text.vesselWords.bursts(Math.round(burstPa / PA_PER_MMHG));
 const sum = (numbers: readonly number[]): number => numbers.reduce((total, number) => total + number, 0);
 
 /** "parted, bleeding", "pressed shut", "open". A parted vessel usually also has holes beside the gap. */
 export function stateWords({ parted, pierced, shut, sealed, bleeds }: VesselState): string {
-  const words = [parted ? 'parted' : pierced ? 'wall has a hole' : '', sealed ? 'sealed' : '', shut ? 'pressed shut' : '', bleeds ? 'bleeding' : ''];
-  return words.filter((word) => word !== '').join(', ') || 'open';
+  const say = text.vesselWords;
+  const words = [parted ? say.parted : pierced ? say.pierced : '', sealed ? say.sealed : '', shut ? say.shut : '', bleeds ? say.bleeding : ''];
+  return words.filter((word) => word !== '').join(', ') || say.open;
 }
 
 /** "4.9 ml/s, 12 ml lost, bursts at 750 mmHg"; zero values are left out. */
@@ -39,7 +41,7 @@ function bleeding(vessels: readonly VesselState[]): Finding[] {
   if (vessels.length === 0) return [];
   const names = vessels.map(({ name }) => name).join(', ');
   const figures = `${rate(sum(vessels.map(({ bleedingM3S }) => bleedingM3S)))}, ${lost(sum(vessels.map(({ shedM3 }) => shedM3)))}`;
-  return [{ key: 'bleeding', warns: true, words: `${names} ${vessels.length === 1 ? 'bleeds' : 'bleed'}:`, figures }];
+  return [{ key: 'bleeding', warns: true, words: text.vesselWords.bleeds(names, vessels.length), figures }];
 }
 
 /** Watches the vessels of a session and finds messages about them. */
@@ -69,9 +71,9 @@ export class VesselWatch {
     if (sealed && before && !before.sealed) this.sealedS.set(name, nowS);
     if (!sealed) this.sealedS.delete(name);
     const found: Finding[] = [];
-    if (before?.bleeds && !bleeds) found.push({ key: null, warns: false, words: `${name} no longer bleeds:`, figures: lost(shedM3) });
+    if (before?.bleeds && !bleeds) found.push({ key: null, warns: false, words: text.vesselWords.bleedsNoLonger(name), figures: lost(shedM3) });
     const since = nowS - (this.sealedS.get(name) ?? -Infinity);
-    if (since < this.newsS) found.push({ key: `${name} sealed`, warns: false, words: `${name} is sealed:`, figures: bursts(burstPa) });
+    if (since < this.newsS) found.push({ key: `${name} sealed`, warns: false, words: text.vesselWords.isSealed(name), figures: bursts(burstPa) });
     return found;
   }
 }

@@ -160,8 +160,8 @@ export const FIELD_FRAGMENTS = {
   bed: COMMON + BED_LOOK + BED,
   flesh: COMMON + SKIN_LOOK + BED_LOOK + FLESH,
   skin: COMMON + SKIN_LOOK + SKIN,
-  fasciaSheath: COMMON + FASCIA_LOOK + SHEATH_LOOK + sheath('afar(normal, vMaterial)'),
-  membraneSheath: COMMON + FAT_LOOK + MEMBRANE_LOOK + sheath('membrane(normal, vMaterial, grain)'),
-  fatSheath: COMMON + FAT_LOOK + sheath('fat(normal, vMaterial, 0.0015, grain)'),
+  fasciaSheath: COMMON + FASCIA_LOOK + SHEATH_LOOK + sheath(/* glsl */ 'afar(normal, vMaterial)'),
+  membraneSheath: COMMON + FAT_LOOK + MEMBRANE_LOOK + sheath(/* glsl */ 'membrane(normal, vMaterial, grain)'),
+  fatSheath: COMMON + FAT_LOOK + sheath(/* glsl */ 'fat(normal, vMaterial, 0.0015, grain)'),
   cloth: COMMON + CLOTH,
 } as const;

@@ -4,6 +4,7 @@ import { Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
 
 import { MAP_OF, type Scalar } from '../model/colour_maps';
 import { SCALAR } from '../model/tissue';
+import { text } from '../text/text';
 import type { Tool } from '../wire/messages.gen';
 import type { ToolState } from '../wire/records';
 import type { Frame, FrameBuffers, Joined } from '../wire/worker_messages';
@@ -298,12 +299,11 @@ export class Viewport {
 
   /** Returns the picture as PNG. */
   async png(): Promise<Blob> {
-    if (this.graphics !== 'ready') throw new Error('there is no picture to save yet');
+    if (this.graphics !== 'ready') throw new Error(text.viewport.noPicture);
     this.setDetail(FULL);
     this.render();
-    return new Promise<Blob>((resolve, reject) =>
-      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be written'))), 'image/png'),
-    ).finally(() => this.resize());
+    const written = new Promise<Blob>((resolve, reject) => this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error(text.viewport.notWritten))), 'image/png'));
+    return written.finally(() => this.resize());
   }
 
   private frameTissue(): void {

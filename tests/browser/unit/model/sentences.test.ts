@@ -2,6 +2,7 @@
 import { errorWords, memberWords, meshWords, sentence, unitText } from '../../../../clients/web/src/model/sentences';
 import { nameOf } from '../../../../clients/web/src/model/person';
 import { cameraText, readCamera } from '../../../../clients/web/src/panels/address';
+import { text } from '../../../../clients/web/src/text/text';
 import { PARAMETERS } from '../../../../clients/web/src/wire/messages.gen';
 import { RpcError } from '../../../../clients/web/src/wire/connection';
 
@@ -16,6 +17,17 @@ describe('errors for people', () => {
     const refused = new RpcError('bad_params', 'Invalid params', 'params.layers[2].young_modulus_pa', 'must be positive');
     expect(errorWords(refused)).toBe('Young modulus: must be positive.');
     expect(memberWords('hot_radius_m')).toBe('Hot radius');
+    expect(memberWords('constructor')).toBe('Constructor');
+  });
+
+  it('name the member by the catalogue where the catalogue has it', () => {
+    const { members } = text.sentences;
+    members['hot_radius_m'] = 'Heißer Radius';
+    try {
+      expect(memberWords('hot_radius_m')).toBe('Heißer Radius');
+    } finally {
+      delete members['hot_radius_m'];
+    }
   });
 
   it('have no unit left in the name of a number, nor a caret in its unit', () => {
