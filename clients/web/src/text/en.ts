@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every text of the page, in English. The groups are named after the modules that show them. A text with values is a
 // function.
-import type { LIMITS, Layer, MODELS, PROJECTIONS } from '../wire/messages.gen';
+import type { HelloResult, LIMITS, Layer, MODELS, PROJECTIONS } from '../wire/messages.gen';
 
 export const en = {
   // ---- the document
@@ -53,6 +53,57 @@ export const en = {
     apply: 'Apply',
     gravity: 'Gravity',
     gravityAlong: (axis: string) => `Gravity ${axis}`,
+  },
+  mode: {
+    modes: {
+      operate: { name: 'Operate', title: 'Instrument, power, time and camera' },
+      research: { name: 'Research', title: 'All of Operate, and sessions, tools, materials, view and plots' },
+    },
+  },
+  operate: {
+    instrument: 'Instrument',
+    inHand: 'Instrument in hand',
+    power: 'Power',
+    powerSlider: 'Power: temperature of the hot tip',
+    tip: (celsius: string) => `${celsius} °C at the tip`,
+    takeFirst: 'Take the tool first',
+    you: 'You',
+    yourName: 'Your name',
+    yourNameTitle: 'other people in the session see this name',
+    driver: (person: string, tool: string) => `${person} uses the ${tool}.`,
+    session: 'Session',
+    camera: 'Camera',
+  },
+  overlay: {
+    connecting: 'Connecting…',
+    roles: { view: 'view', operate: 'operate', admin: 'admin' } satisfies Record<HelloResult['role'], string>,
+    online: (server: string, role: string) => `${server} · ${role}`,
+    lost: (reason: string) => `No connection: ${reason}. Trying again.`,
+    tokenNeeded: 'An access token is needed',
+    noSession: 'no session',
+    /** one paragraph each */
+    mouseHint: [
+      'Move the mouse over the tissue to move the tool. Press to cut.',
+      'Go slowly. Tissue needs a few seconds of heat before it parts.',
+      'Drag beside the tissue to turn the view. Use the timeline below to view an earlier time.',
+    ],
+    fingerHint: [
+      'Touch the tissue to cut. Choose Move to move the tool without heat.',
+      'Go slowly. Tissue needs a few seconds of heat before it parts.',
+      'Use two fingers to turn the view. Use the timeline to view an earlier time.',
+    ],
+    allKeys: 'All keys',
+    manual: 'Manual',
+    understood: 'Understood',
+    help: 'Help',
+    dismiss: 'Dismiss',
+    asks: (person: string, tool: string) => `${person} asks for the ${tool}.`,
+    handOver: 'Hand over',
+    keep: 'Keep it',
+    // read out by screen readers
+    faces: (layer: string, count: number) => `${layer} ${count} faces`,
+    toolAt: (tool: string, position: string) => `${tool} at ${position} mm`,
+    reading: (layers: string, tool: string) => `${layers}. ${tool}`,
   },
   parameters: {
     /** shown for a parameter under the pointer */
