@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every text of the page, in English. The groups are named after the modules that show them. A text with values is a
 // function.
-import type { HelloResult, LIMITS, Layer, MODELS, PROJECTIONS } from '../wire/messages.gen';
+import type { FrameProgress, HelloResult, LIMITS, Layer, MODELS, PROJECTIONS } from '../wire/messages.gen';
+import type { STAGES } from '../wire/records';
 
 export const en = {
   // ---- the document
@@ -109,6 +110,87 @@ export const en = {
     /** shown for a parameter under the pointer */
     title: (meaning: string, least: string, most: string) => `${meaning}; ${least} to ${most}`,
     outOfRange: (name: string, meaning: string, least: string, most: string, unit: string) => `${name} (${meaning}) must be from ${least} to ${most} ${unit}`.trimEnd(),
+  },
+  past: {
+    loadingBar: 'Loading the past view',
+    live: 'Return to live',
+    /** a time in the other texts of this group */
+    at: (seconds: string) => `t = ${seconds} s`,
+    seen: (at: string) => `You see the past at ${at}. The session continues.`,
+    notShown: (at: string, reason: string) => `${at} cannot be shown. ${reason}`,
+    notShownNow: (at: string, reason: string) => `${at} cannot be shown now. ${reason}`,
+    loading: (at: string) => `Loading ${at}…`,
+    stages: {
+      building: 'preparing a second copy of the tissue',
+      reading: 'reading the stored state',
+      restoring: 'restoring the stored state',
+      replaying: 'replaying the commands',
+    } satisfies Record<FrameProgress['stage'], string>,
+    loadingStage: (at: string, stage: string) => `Loading ${at}: ${stage}…`,
+  },
+  plots: {
+    title: 'Plots',
+    csv: 'Save as CSV',
+    last: (seconds: number) => `The last ${seconds} s`,
+    // titles of the plots, and the names of their lines
+    stageTimes: 'Time of each stage of a step, ms',
+    stages: {
+      commands: 'commands',
+      predict: 'predict',
+      local: 'local',
+      global: 'global',
+      contact: 'contact',
+      heat: 'heat',
+      dissect: 'dissect',
+      frame: 'frame',
+    } satisfies Record<(typeof STAGES)[number], string>,
+    speed: 'Simulated time over real time',
+    rate: 'rate',
+    frameTimes: 'Latency of frames, and time to decode one, ms',
+    latency: 'latency',
+    decoding: 'decoding',
+    frameSize: 'Size of a frame, KB',
+    frame: 'frame',
+    // figures above the plots, in one list
+    frameRate: (frames: string) => `${frames} frames/s`,
+    dataRate: (kilobytes: string) => `${kilobytes} KB/s`,
+    noFrames: 'no frames received',
+    skipped: (frames: number) => `${frames} skipped`,
+  },
+  ruler: {
+    remove: 'Remove the ruler',
+  },
+  sessionPlots: {
+    title: 'Tools over the session',
+    temperature: 'Temperature of the tip, °C',
+    force: 'Force, N',
+    energy: 'Energy taken up by the tissue, J',
+    /** the name of a plot for screen readers */
+    over: (title: string) => `${title}, over the session`,
+    noValues: 'No values are known for this time',
+  },
+  time: {
+    pause: 'Pause',
+    resume: 'Resume',
+    step: 'Step',
+    reset: 'Start over',
+    resetTitle: 'Return to the whole tissue at time 0',
+    resetQuestion: 'Start over?',
+    resetLoss: 'This resets the tissue for everyone in the session.',
+    speed: 'Speed',
+    timeline: 'Timeline: time to view',
+    /** before the time is known */
+    rewindHere: 'Rewind here',
+    rewindTo: (time: string) => `Rewind to ${time}`,
+    rewindQuestion: (time: string) => `Rewind to ${time}?`,
+    rewindLoss: 'This rewinds the session for everyone. The later history is kept as a branch.',
+    rewind: 'Rewind',
+    events: 'Events',
+    eventsLabel: 'Events: choose one to view its time',
+    // beside the time
+    faulted: 'stopped by an error',
+    paused: 'paused',
+    tick: (tick: number) => `tick ${tick}`,
   },
 
   // ---- hands, model and scene
