@@ -160,6 +160,17 @@ export const en = {
   ruler: {
     remove: 'Remove the ruler',
   },
+  sceneRecording: {
+    record: 'Record as MCAP',
+    stop: 'Stop and save the MCAP file',
+    workerFailed: 'The recording has failed: a part of this page stopped. Reload the page to record again.',
+    failed: (reason: string) => `The recording has failed: ${reason}`,
+    full: 'The recording has reached its limit of 1 GB and was saved.',
+  },
+  senses: {
+    title: 'Smoke and sound',
+    switches: { smoke: 'Smoke', tone: 'Activation tone', sizzle: 'Sizzle', alarm: 'Alarm when the connection fails' },
+  },
   sessionPlots: {
     title: 'Tools over the session',
     temperature: 'Temperature of the tip, °C',
@@ -191,6 +202,59 @@ export const en = {
     faulted: 'stopped by an error',
     paused: 'paused',
     tick: (tick: number) => `tick ${tick}`,
+  },
+  veil: {
+    noGraphics: 'The picture needs WebGL 2, which this browser does not offer. Turn on hardware acceleration in the browser’s settings, or use another browser. Everything but the picture works.',
+    lostGraphics: 'The graphics card lost the picture. The page is drawing the picture again.',
+    reload: 'Reload the page',
+    connecting: 'Connecting to the simulation…',
+    lost: (reason: string) => `No connection: ${reason}. Trying again. The picture is old.`,
+    tokenNeeded: 'This simulation needs an access token.',
+    enterToken: 'Enter the token',
+    progress: 'Under way',
+    busy: (work: string) => `${work}…`,
+    noSession: 'No session is open. Create one under Research > Sessions > New session.',
+    starting: (session: string) => `${session} is being built…`,
+    opening: (session: string) => `Opening ${session}…`,
+    silent: (seconds: string) => `The simulation has sent nothing for ${seconds} s. The picture is old.`,
+  },
+  vessels: {
+    title: 'Blood vessels',
+    /** a vessel in the list, without figures */
+    state: (vessel: string, state: string) => `${vessel}: ${state}`,
+    stateAndFigures: (vessel: string, state: string, figures: string) => `${vessel}: ${state}; ${figures}`,
+  },
+  video: {
+    record: 'Record a video',
+    stop: 'Stop and save the video',
+    unsupported: 'this browser cannot record video',
+    stopped: 'The browser has stopped recording. The part so far is saved.',
+  },
+  view: {
+    title: 'View',
+    colour: 'Colour',
+    colourings: {
+      tissue: 'tissue',
+      exposure: 'heat exposure',
+      charring: 'charring',
+      stress: 'stress',
+      temperature: 'temperature',
+    },
+    // titles of the legend
+    legends: {
+      exposure: 'Heat exposure (1: tissue parts)',
+      charring: 'Charring: share of edges that heat has parted',
+      stress: 'Von Mises stress',
+      temperature: 'Temperature',
+    },
+    /** at the legend of temperature, in place of the least temperature */
+    noValues: 'no values',
+    layers: 'Layers',
+    wireframe: 'Wireframe',
+    force: 'Show the force on the tool',
+    theme: 'Theme',
+    themes: { 'as the system': 'as the system', 'dark': 'dark', 'light': 'light' },
+    png: 'Save the picture',
   },
 
   // ---- hands, model and scene
