@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Materials per layer and region: the protocol's numbers with units and ranges; gravity; pins and forces.
 import type { Control } from '../model/control';
+import { text } from '../text/text';
 import { PARAMETERS, type Layer } from '../wire/messages.gen';
 import { attempt, element, field, problemPlace } from './dom';
 import { forcesSection } from './forces';
@@ -31,7 +32,7 @@ function materialForm(control: Control, { layer, region, values }: Material): HT
   const limits = limitInputs(layer.kind);
   inputs.show(values);
   limits.show(values);
-  const apply = element('button', { type: 'submit', disabled: !control.model.mayOperate }, 'Apply');
+  const apply = element('button', { type: 'submit', disabled: !control.model.mayOperate }, text.materials.apply);
   const form = element('form', { class: 'form' }, ...inputs.fields, ...limits.fields, apply, problem);
   form.addEventListener('submit', (event) => {
     event.preventDefault();
@@ -41,7 +42,7 @@ function materialForm(control: Control, { layer, region, values }: Material): HT
     };
     void attempt(problem, work, apply);
   });
-  const words = region === null ? `${layer.name} (${layer.kind})` : `${layer.name}, region ${region}`;
+  const words = region === null ? text.materials.layer(layer.name, text.materials.kinds[layer.kind]) : text.materials.region(layer.name, region);
   return element('details', { class: 'section', open: region === null }, element('summary', {}, words), form);
 }
 
@@ -51,14 +52,14 @@ function gravityForm(control: Control): HTMLElement {
   const inputs = gravity.map((value, i) =>
     element('input', { type: 'number', min: '-100', max: '100', step: 'any', value: String(value), name: `gravity-${'xyz'[i]}` }),
   );
-  const apply = element('button', { type: 'submit', disabled: !control.model.mayOperate }, 'Apply');
-  const form = element('form', { class: 'form' }, ...inputs.map((input, i) => field(`Gravity ${'xyz'[i]}`, input, 'm/s²')), apply, problem);
+  const apply = element('button', { type: 'submit', disabled: !control.model.mayOperate }, text.materials.apply);
+  const form = element('form', { class: 'form' }, ...inputs.map((input, i) => field(text.materials.gravityAlong('xyz'[i]), input, 'm/s²')), apply, problem);
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     const [x, y, z] = inputs.map((input) => input.valueAsNumber);
     void attempt(problem, () => control.call('gravity.set', { gravity_m_s2: [x, y, z] }), apply);
   });
-  return element('details', { class: 'section' }, element('summary', {}, 'Gravity'), form);
+  return element('details', { class: 'section' }, element('summary', {}, text.materials.gravity), form);
 }
 
 /** New forms for old ones, with the same ones open and the focus on the same control. */
@@ -83,10 +84,10 @@ export function materialsPanel(control: Control): Panel {
     shown = now;
     const forms = [...layers.flatMap(materialsOf).map((material) => materialForm(control, material)), gravityForm(control)];
     replaceForms(changing, forms);
-    if (layers.length === 0) changing.replaceChildren(element('p', { class: 'about' }, 'Join a session to see its materials.'));
+    if (layers.length === 0) changing.replaceChildren(element('p', { class: 'about' }, text.materials.empty));
   };
   model.on('joined', show);
   model.on('tools', show);
   show();
-  return { id: 'materials', title: 'Materials', body };
+  return { id: 'materials', title: text.materials.title, body };
 }

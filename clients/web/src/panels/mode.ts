@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The two modes of the page. Operate has instrument, power, time and camera, for trainees. Research also has sessions,
 // materials, limits and plots. The browser stores the choice.
+import { text } from '../text/text';
 import { button, byId } from './dom';
 
 export type Mode = 'operate' | 'research';
 
-const MODES: readonly (readonly [Mode, string, string])[] = [
-  ['operate', 'Operate', 'Instrument, power, time and camera'],
-  ['research', 'Research', 'All of Operate, and sessions, tools, materials, view and plots'],
-];
+const MODES = ['operate', 'research'] as const satisfies readonly Mode[];
 const KEPT = 'mode';
 
 /** Returns a function that chooses a mode. */
@@ -23,8 +21,9 @@ export function modeSwitch(changed: (mode: Mode) => void): (mode: Mode) => void 
     localStorage.setItem(KEPT, mode);
     show(mode);
   };
-  for (const [mode, words, title] of MODES) {
-    place.append(button(words, () => choose(mode), { title, data: { mode } }));
+  for (const mode of MODES) {
+    const { name, title } = text.mode.modes[mode];
+    place.append(button(name, () => choose(mode), { title, data: { mode } }));
   }
   show(localStorage.getItem(KEPT) === 'research' ? 'research' : 'operate');
   return choose;

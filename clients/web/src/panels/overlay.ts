@@ -5,6 +5,7 @@ import { nameOf } from '../model/person';
 import type { Control } from '../model/control';
 import type { LinkState } from '../wire/connection';
 import type { Notice } from '../model/model';
+import { text } from '../text/text';
 import { attempt, button, byId, element, problemPlace } from './dom';
 
 const NOTICE_MS = 9000;
@@ -13,13 +14,13 @@ const NOTICES_MAX = 4;
 function linkWords(link: LinkState): string {
   switch (link.state) {
     case 'connecting':
-      return 'Connecting…';
+      return text.overlay.connecting;
     case 'online':
-      return `${link.hello.server} · ${link.hello.role}`;
+      return text.overlay.online(link.hello.server, text.overlay.roles[link.hello.role]);
     case 'lost':
-      return `No connection: ${link.words}. Trying again.`;
+      return text.overlay.lost(link.words);
     case 'refused':
-      return link.status === 'unauthorized' ? 'An access token is needed' : link.words;
+      return link.status === 'unauthorized' ? text.overlay.tokenNeeded : link.words;
   }
 }
 
@@ -31,34 +32,23 @@ export function showLink(control: Control): void {
     place.className = `link ${model.link.state}`;
   };
   model.on('link', show);
-  model.on('joined', (joined) => (byId('where').textContent = joined ? joined.description.summary.session : 'no session'));
+  model.on('joined', (joined) => (byId('where').textContent = joined ? joined.description.summary.session : text.overlay.noSession));
   show();
 }
-
-const MOUSE_HINT = [
-  'Move the mouse over the tissue to move the tool. Press to cut.',
-  'Go slowly. Tissue needs a few seconds of heat before it parts.',
-  'Drag beside the tissue to turn the view. Use the timeline below to view an earlier time.',
-];
-const FINGER_HINT = [
-  'Touch the tissue to cut. Choose Move to move the tool without heat.',
-  'Go slowly. Tissue needs a few seconds of heat before it parts.',
-  'Use two fingers to turn the view. Use the timeline to view an earlier time.',
-];
 
 /** Adds the button Help, which lists all controls. The cue on the tissue is enough to begin. */
 export function showHelp(): void {
   const hint = byId('hint');
   const open = (): void => {
     hint.replaceChildren(
-      ...(window.matchMedia('(pointer: coarse)').matches ? FINGER_HINT : MOUSE_HINT).map((words) => element('p', {}, words)),
-      element('details', {}, element('summary', {}, 'All keys'), element('dl', {}, ...KEY_HELP.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]))),
-      element('p', {}, element('a', { href: 'manual/', target: '_blank', rel: 'noopener' }, 'Manual')), // the daemon's own
-      button('Understood', () => (hint.hidden = true)),
+      ...(window.matchMedia('(pointer: coarse)').matches ? text.overlay.fingerHint : text.overlay.mouseHint).map((words) => element('p', {}, words)),
+      element('details', {}, element('summary', {}, text.overlay.allKeys), element('dl', {}, ...KEY_HELP.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]))),
+      element('p', {}, element('a', { href: 'manual/', target: '_blank', rel: 'noopener' }, text.overlay.manual)), // the daemon's own
+      button(text.overlay.understood, () => (hint.hidden = true)),
     );
     hint.hidden = !hint.hidden;
   };
-  document.querySelector('.bar')?.append(button('Help', open, { id: 'help' }));
+  document.querySelector('.bar')?.append(button(text.overlay.help, open, { id: 'help' }));
 }
 
 export function showNotices(control: Control): void {
@@ -67,7 +57,7 @@ export function showNotices(control: Control): void {
     const same = [...place.children].find((child) => child.firstChild?.textContent === words);
     same?.remove();
     const line = element('div', { class: `notice ${kind}` }, element('span', {}, words));
-    line.append(button('×', () => line.remove(), { aria: { label: 'Dismiss' } }));
+    line.append(button('×', () => line.remove(), { aria: { label: text.overlay.dismiss } }));
     place.append(line);
     while (place.children.length > NOTICES_MAX) place.firstElementChild?.remove();
     setTimeout(() => line.remove(), NOTICE_MS);
@@ -77,11 +67,11 @@ export function showNotices(control: Control): void {
     if (!asked) return;
     const problem = problemPlace();
     const done = (): void => control.model.setTakeover(null);
-    const give = button('Hand over', () => {
+    const give = button(text.overlay.handOver, () => {
       void attempt(problem, () => control.handOver(asked.tool, asked.client), give).then((given) => given === null || done());
     });
-    const words = `${nameOf(asked)} asks for the ${asked.tool}.`;
-    place.append(element('div', { class: 'notice info asked' }, element('span', {}, words), give, button('Keep it', done), problem));
+    const words = text.overlay.asks(nameOf(asked), asked.tool);
+    place.append(element('div', { class: 'notice info asked' }, element('span', {}, words), give, button(text.overlay.keep, done), problem));
   });
 }
 
@@ -94,8 +84,8 @@ export function showReading(control: Control): void {
   setInterval(() => {
     const { frame, toolState: tool } = model;
     if (!frame) return;
-    const layers = Object.entries(frame.drawnFaces).map(([name, count]) => `${name} ${count} faces`);
-    const at = tool ? `${tool.name} at ${tool.positionM.map((v) => (1000 * v).toFixed(1)).join(', ')} mm` : '';
-    place.textContent = `${layers.join(', ')}. ${at}`;
+    const layers = Object.entries(frame.drawnFaces).map(([name, count]) => text.overlay.faces(name, count));
+    const at = tool ? text.overlay.toolAt(tool.name, tool.positionM.map((v) => (1000 * v).toFixed(1)).join(', ')) : '';
+    place.textContent = text.overlay.reading(layers.join(', '), at);
   }, READING_MS);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inputs for the numbers of a table, with unit, range and meaning.
 import { memberWords, unitText } from '../model/sentences';
+import { text } from '../text/text';
 import type { Parameter } from '../wire/messages.gen';
 import { element, field, short } from './dom';
 
@@ -44,7 +45,7 @@ export function parameterInputs(parameters: readonly Parameter[]): ParameterInpu
     const { unit, scale } = SHOWN[parameter.unit] ?? { unit: unitText(parameter.unit), scale: 1 };
     const [least, most] = [rounded(parameter.least * scale), rounded(parameter.most * scale)];
     const input = element('input', { type: 'number', name: parameter.name, min: String(least), max: String(most), step: 'any' });
-    const title = `${parameter.meaning}; ${short(least)} to ${short(most)}`;
+    const title = text.parameters.title(parameter.meaning, short(least), short(most));
     return { parameter, scale, unit, least, most, input, label: field(memberWords(parameter.name), input, unit, title), shown: '', exact: 0 };
   });
   return {
@@ -73,7 +74,7 @@ export function parameterInputs(parameters: readonly Parameter[]): ParameterInpu
           continue;
         }
         if (!(value >= least && value <= most))
-          throw new Error(`${memberWords(parameter.name)} (${parameter.meaning}) must be from ${short(least)} to ${short(most)} ${unit}`.trimEnd());
+          throw new Error(text.parameters.outOfRange(memberWords(parameter.name), parameter.meaning, short(least), short(most), unit));
         values[parameter.name] = Math.min(Math.max(value / scale, parameter.least), parameter.most);
       }
       return values;

@@ -3,31 +3,30 @@
 // the progress of loading, and has a button to return.
 import type { Control } from '../model/control';
 import { errorWords } from '../model/sentences';
+import { text } from '../text/text';
 import { RpcError } from '../wire/connection';
 import { button, byId, element } from './dom';
 
 const SETTLED_MS = 250; // time without motion of the timeline after which the view is requested
 
-const STAGE_WORDS = { building: 'preparing a second copy of the tissue', reading: 'reading the stored state', restoring: 'restoring the stored state', replaying: 'replaying the commands' };
-
 export function showPast(control: Control): void {
   const { model } = control;
   const place = byId('past');
   const words = element('p');
-  const bar = element('progress', { max: 1, aria: { label: 'Loading the past view' } });
-  place.append(words, bar, button('Return to live', () => model.hold(null), { id: 'live' }));
+  const bar = element('progress', { max: 1, aria: { label: text.past.loadingBar } });
+  place.append(words, bar, button(text.past.live, () => model.hold(null), { id: 'live' }));
   let timer: ReturnType<typeof setTimeout> | undefined;
   let wanted: number | null = null;
 
-  const at = (tick: number): string => `t = ${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
-  const say = (text: string, going: boolean): void => {
-    if (words.textContent !== text) words.textContent = text;
+  const at = (tick: number): string => text.past.at((tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2));
+  const say = (sentence: string, going: boolean): void => {
+    if (words.textContent !== sentence) words.textContent = sentence;
     bar.hidden = !going;
     if (!going) bar.removeAttribute('value');
   };
   const there = (): boolean => wanted !== null && model.frame?.past?.tick === wanted;
   const tell = (): void => {
-    if (wanted !== null && there()) say(`You see the past at ${at(wanted)}. The session continues.`, false);
+    if (wanted !== null && there()) say(text.past.seen(at(wanted)), false);
   };
   const ask = async (tick: number): Promise<void> => {
     try {
@@ -35,7 +34,7 @@ export function showPast(control: Control): void {
     } catch (error) {
       if (tick !== wanted) return; // replaced by another request
       const later = error instanceof RpcError && error.status === 'bad_state';
-      say(`${at(tick)} cannot be shown${later ? ' now' : ''}. ${errorWords(error)}`, false);
+      say((later ? text.past.notShownNow : text.past.notShown)(at(tick), errorWords(error)), false);
     }
   };
   const look = (tick: number | null): void => {
@@ -46,7 +45,7 @@ export function showPast(control: Control): void {
       control.lookAtPresent();
       return;
     }
-    say(`Loading ${at(tick)}…`, true);
+    say(text.past.loading(at(tick)), true);
     timer = setTimeout(() => void ask(tick), SETTLED_MS);
   };
 
@@ -54,7 +53,7 @@ export function showPast(control: Control): void {
   model.on('frame', tell);
   model.on('looking', ({ tick, stage, from_tick: from, at_tick: now }) => {
     if (tick !== wanted || there()) return;
-    say(`Loading ${at(tick)}: ${STAGE_WORDS[stage]}…`, true);
+    say(text.past.loadingStage(at(tick), text.past.stages[stage]), true);
     if (stage === 'replaying' && tick > from) bar.value = (now - from) / (tick - from);
     else bar.removeAttribute('value');
   });

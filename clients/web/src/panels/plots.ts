@@ -4,6 +4,7 @@ import type uPlot from 'uplot';
 
 import { samplesCsv } from '../model/samples';
 import type { Model } from '../model/model';
+import { text } from '../text/text';
 import { STAGES } from '../wire/records';
 import type { Sample } from '../wire/worker_messages';
 import { button, element, save } from './dom';
@@ -22,27 +23,27 @@ interface Plot {
 
 const PLOTS: readonly Plot[] = [
   {
-    title: 'Time of each stage of a step, ms',
-    series: [...STAGES],
+    title: text.plots.stageTimes,
+    series: STAGES.map((stage) => text.plots.stages[stage]),
     values: ({ statistics }) => STAGES.map((_, i) => (statistics ? 1000 * statistics.stageS[i] : null)),
   },
   {
-    title: 'Simulated time over real time',
-    series: ['rate'],
+    title: text.plots.speed,
+    series: [text.plots.rate],
     values: ({ statistics }) => [statistics ? statistics.realtimeFactor : null],
   },
-  { title: 'Latency of frames, and time to decode one, ms', series: ['latency', 'decoding'], values: (s) => [s.latencyMs, s.decodeMs] },
-  { title: 'Size of a frame, KB', series: ['frame'], values: (s) => [s.bytes / 1000] },
+  { title: text.plots.frameTimes, series: [text.plots.latency, text.plots.decoding], values: (s) => [s.latencyMs, s.decodeMs] },
+  { title: text.plots.frameSize, series: [text.plots.frame], values: (s) => [s.bytes / 1000] },
 ];
 
 export function plotsPanel(model: Model): Panel {
   const body = element('div');
   const counts = element('output', { class: 'state' });
-  const csv = button('Save as CSV', () =>
+  const csv = button(text.plots.csv, () =>
     save(`cautery-${model.session ?? 'statistics'}.csv`, new Blob([samplesCsv(model.samples)], { type: 'text/csv' })),
   );
   const session = sessionPlots(model);
-  body.append(session.place, element('h2', {}, `The last ${SPAN_S} s`), counts, element('div', { class: 'buttons' }, csv));
+  body.append(session.place, element('h2', {}, text.plots.last(SPAN_S)), counts, element('div', { class: 'buttons' }, csv));
   const places = PLOTS.map((plot) => {
     const place = element('div', { class: 'plot', aria: { role: 'img', label: plot.title } }, element('p', { class: 'of' }, plot.title));
     body.append(place);
@@ -64,8 +65,8 @@ export function plotsPanel(model: Model): Panel {
     });
     const seconds = last.atS - (recent[0]?.atS ?? last.atS);
     const bytes = recent.reduce((sum, sample) => sum + sample.bytes, 0);
-    const rate = seconds > 0 ? [`${(recent.length / seconds).toFixed(0)} frames/s`, `${(bytes / seconds / 1000).toFixed(0)} KB/s`] : ['no frames received'];
-    counts.value = [...rate, `${model.frame?.framesSkipped ?? 0} skipped`].join(', ');
+    const rate = seconds > 0 ? [text.plots.frameRate((recent.length / seconds).toFixed(0)), text.plots.dataRate((bytes / seconds / 1000).toFixed(0))] : [text.plots.noFrames];
+    counts.value = [...rate, text.plots.skipped(model.frame?.framesSkipped ?? 0)].join(', ');
   };
   setInterval(draw, DRAW_MS);
   new ResizeObserver(() => {
@@ -75,7 +76,7 @@ export function plotsPanel(model: Model): Panel {
   }).observe(body);
   return {
     id: 'plots',
-    title: 'Plots',
+    title: text.plots.title,
     body,
     shown: (now) => {
       visible = now;

@@ -2,6 +2,7 @@
 // The ruler over the picture, with its length in millimetres.
 import type { Ruler } from '../hands/ruler';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { button, byId, element } from './dom';
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -15,7 +16,7 @@ export function showRuler(ruler: Ruler, viewport: Viewport): () => void {
   svg.setAttribute('aria-hidden', 'true');
   svg.append(line);
   const words = element('output');
-  const away = button('×', () => ruler.clear(), { aria: { label: 'Remove the ruler' } });
+  const away = button('×', () => ruler.clear(), { aria: { label: text.ruler.remove } });
   const label = element('p', {}, words, away);
   place.append(svg, label);
   let shown = '';

@@ -4,6 +4,7 @@ import type { Model } from '../model/model';
 import type { LayerFaces, SeenMoment } from '../model/scene_update';
 import type { TissueView } from '../scene/tissue_view';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import type { FromMcap, ToMcap } from '../wire/mcap_worker';
 import type { Frame } from '../wire/worker_messages';
 import { attempt, button, save } from './dom';
@@ -36,9 +37,9 @@ function facesOf(tissue: TissueView): LayerFaces[] {
 /** Returns a button that begins and ends a recording; `problem` shows why it cannot. */
 export function sceneRecordingButton(model: Model, viewport: Viewport, problem: HTMLElement): HTMLButtonElement {
   let going: Recording | null = null;
-  const press = button('Record as MCAP', () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'mcap', ariaPressed: 'false' });
+  const press = button(text.sceneRecording.record, () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'mcap', ariaPressed: 'false' });
   const show = (): void => {
-    press.textContent = going ? 'Stop and save the MCAP file' : 'Record as MCAP';
+    press.textContent = going ? text.sceneRecording.stop : text.sceneRecording.record;
     press.ariaPressed = String(going !== null);
   };
   const send = (recording: Recording, message: ToMcap): void => recording.worker.postMessage(message);
@@ -78,11 +79,11 @@ export function sceneRecordingButton(model: Model, viewport: Viewport, problem: 
       step: -1,
       seen: null,
     };
-    worker.addEventListener('error', () => finish(recording, 'The recording has failed: a part of this page stopped. Reload the page to record again.'));
+    worker.addEventListener('error', () => finish(recording, text.sceneRecording.workerFailed));
     worker.addEventListener('message', ({ data }: MessageEvent<FromMcap>) => {
-      if (data.type === 'failure') finish(recording, `The recording has failed: ${data.message}`);
+      if (data.type === 'failure') finish(recording, text.sceneRecording.failed(data.message));
       if (data.type === 'full') {
-        model.notice('warning', 'The recording has reached its limit of 1 GB and was saved.');
+        model.notice('warning', text.sceneRecording.full);
         end();
       }
       if (data.type !== 'file') return;

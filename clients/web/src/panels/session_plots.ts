@@ -5,13 +5,14 @@ import type uPlot from 'uplot';
 
 import type { ToolMoment } from '../model/history';
 import type { Model } from '../model/model';
+import { text } from '../text/text';
 import { element, short } from './dom';
 import { makePlot, plotColour, resizePlot } from './plot';
 
 const PLOTS: readonly (readonly [string, string, (moment: ToolMoment) => number])[] = [
-  ['Temperature of the tip, °C', '°C', ({ temperatureC }) => temperatureC],
-  ['Force, N', 'N', ({ forceN }) => forceN],
-  ['Energy taken up by the tissue, J', 'J', ({ energyJ }) => energyJ],
+  [text.sessionPlots.temperature, '°C', ({ temperatureC }) => temperatureC],
+  [text.sessionPlots.force, 'N', ({ forceN }) => forceN],
+  [text.sessionPlots.energy, 'J', ({ energyJ }) => energyJ],
 ];
 const CURSOR = 'session';
 /** Largest number of points; more cannot be distinguished in the width of a panel. */
@@ -24,9 +25,9 @@ export interface SessionPlots {
 }
 
 export function sessionPlots(model: Model): SessionPlots {
-  const figures = PLOTS.map(([title]) => element('div', { class: 'plot', aria: { role: 'img', label: `${title}, over the session` } }, element('p', { class: 'of' }, title)));
+  const figures = PLOTS.map(([title]) => element('div', { class: 'plot', aria: { role: 'img', label: text.sessionPlots.over(title) } }, element('p', { class: 'of' }, title)));
   const told = element('output', { class: 'state', id: 'at-cursor' });
-  const place = element('section', { class: 'form', aria: { label: 'Tools over the session' } }, element('h2', {}, 'Tools over the session'), told, ...figures);
+  const place = element('section', { class: 'form', aria: { label: text.sessionPlots.title } }, element('h2', {}, text.sessionPlots.title), told, ...figures);
   let plots: uPlot[] = [];
   let tools = '';
   let pointed: number | null = null;
@@ -36,7 +37,7 @@ export function sessionPlots(model: Model): SessionPlots {
     const tick = pointed ?? model.held;
     const moment = tick === null ? model.history.moments.at(-1) : model.history.at(tick);
     const each = [...(moment?.tools ?? [])].map(([name, { temperatureC, forceN, energyJ }]) => `${name} ${temperatureC.toFixed(0)} °C, ${short(forceN, 2)} N, ${short(energyJ, 3)} J`);
-    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'No values are known for this time';
+    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : text.sessionPlots.noValues;
     const words = `${when}${moment ? ': ' : ''}${each.join('; ')}`;
     if (told.value !== words) told.value = words;
   };

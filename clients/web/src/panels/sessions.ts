@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions: join, create from a scene with its parameters, upload a mesh, fork, destroy.
 import type { Control } from '../model/control';
+import { text } from '../text/text';
 import type { Link } from '../wire/link';
 import type { Scene, SessionSummary } from '../wire/messages.gen';
 import { ask } from './ask';
@@ -12,29 +13,33 @@ import { uploadForm } from './upload';
 
 const REFRESH_MS = 5000; // refresh of states and counts while the list is visible
 
+function detailsOf({ scene, state, time_s, subscriber_count }: SessionSummary): string {
+  return text.sessions.details(scene, text.sessions.states[state], time_s.toFixed(1), subscriber_count);
+}
+
 function row(control: Control, summary: SessionSummary, problem: HTMLElement): HTMLElement {
   const here = summary.session === control.model.session;
-  const details = `${summary.scene}, ${summary.state}, ${summary.time_s.toFixed(1)} s, ${summary.subscriber_count} watching`;
+  const details = detailsOf(summary);
   const join = button(summary.session, () => control.watch(summary.session), {
     class: 'session-name',
-    title: `Watch ${summary.session}`,
+    title: text.sessions.watch(summary.session),
     aria: here ? { current: 'true' } : {},
   });
-  const destroy = button('Destroy', () => {
-    const lost = `This deletes the session for everyone: the tissue, ${summary.time_s.toFixed(1)} s of history, all snapshots and the script.`;
-    void ask(`Destroy ${summary.session}?`, lost, 'Destroy').then((sure) => {
+  const destroy = button(text.sessions.destroy, () => {
+    const lost = text.sessions.destroyLoss(summary.time_s.toFixed(1));
+    void ask(text.sessions.destroyQuestion(summary.session), lost, text.sessions.destroy).then((sure) => {
       if (sure) void attempt(problem, () => control.destroy(summary.session), destroy);
     });
   });
-  destroy.setAttribute('aria-label', `Destroy ${summary.session}`);
+  destroy.setAttribute('aria-label', text.sessions.destroyLabel(summary.session));
   destroy.disabled = !control.model.mayOperate;
   return element('li', { class: here ? 'session here' : 'session' }, join, element('small', {}, details), destroy);
 }
 
 /** A session of another daemon. The link loads the page again, because a connection reaches only one daemon. */
 function rowElsewhere(summary: SessionSummary): HTMLElement {
-  const details = `${summary.scene}, ${summary.state}, ${summary.time_s.toFixed(1)} s, ${summary.subscriber_count} watching`;
-  const link = element('a', { class: 'session-name', title: `Watch ${summary.session}, on another server` }, summary.session);
+  const details = detailsOf(summary);
+  const link = element('a', { class: 'session-name', title: text.sessions.watchElsewhere(summary.session) }, summary.session);
   link.href = `?session=${encodeURIComponent(summary.session)}`;
   return element('li', { class: 'session' }, link, element('small', {}, details));
 }
@@ -43,14 +48,14 @@ function rowElsewhere(summary: SessionSummary): HTMLElement {
 function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const { model, link } = control;
   const scene = element('select', { name: 'scene' });
-  const name = nameInput({ name: 'name', maxLength: 40, placeholder: 'automatic' });
+  const name = nameInput({ name: 'name', maxLength: 40, placeholder: text.sessions.automatic });
   const iterations = element('input', { type: 'number', name: 'iterations', min: '1', max: '1000', step: '1' });
   const step = element('input', { type: 'number', name: 'step', min: '1', max: '33.3', step: 'any' });
   const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
   const seed = element('input', { type: 'number', name: 'seed', min: '0', step: '1' });
   const about = element('p', { class: 'about' });
   const unread = problemPlace(); // separate, because the page also loads scenes by itself, which must not hide another problem
-  const submit = element('button', { type: 'submit' }, 'Create');
+  const submit = element('button', { type: 'submit' }, text.sessions.create);
   let definition: Scene | null = null;
   const load = async (): Promise<void> => {
     about.textContent = model.scenes.find((other) => other.name === scene.value)?.description ?? '';
@@ -71,21 +76,21 @@ function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const form = element(
     'form',
     { class: 'form' },
-    field('Scene', scene),
+    field(text.sessions.scene, scene),
     unread,
     about,
-    field('Name', name),
-    field('Iterations', iterations, '', 'iterations per step: more iterations make tissue stiffer and the step slower'),
-    field('Step', step, 'ms', 'simulated time of one step'),
-    field('Gravity', gravity, 'm/s²', 'acceleration along z (negative: down)'),
-    field('Seed', seed, '', 'seed of all random numbers: the same seed gives the same tissue'),
+    field(text.sessions.name, name),
+    field(text.sessions.iterations, iterations, '', text.sessions.iterationsTitle),
+    field(text.sessions.step, step, 'ms', text.sessions.stepTitle),
+    field(text.sessions.gravity, gravity, 'm/s²', text.sessions.gravityTitle),
+    field(text.sessions.seed, seed, '', text.sessions.seedTitle),
     submit,
   );
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     void attempt(problem, () => control.create(request(definition, { scene, name, iterations, step, gravity, seed })), submit);
   });
-  return element('details', { class: 'section' }, element('summary', {}, 'New session'), form);
+  return element('details', { class: 'section' }, element('summary', {}, text.sessions.newSession), form);
 }
 
 interface CreateFields {
@@ -116,14 +121,14 @@ function request(definition: Scene | null, fields: CreateFields): { scene?: stri
 
 function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
-  const name = nameInput({ name: 'fork', maxLength: 40, placeholder: 'name' });
-  name.setAttribute('aria-label', 'Name of the new session');
-  const fork = button('Fork this session into a new one', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork', title: 'Create a new session from the present state of this one' });
+  const name = nameInput({ name: 'fork', maxLength: 40, placeholder: text.sessions.forkName });
+  name.setAttribute('aria-label', text.sessions.forkNameLabel);
+  const fork = button(text.sessions.fork, () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork', title: text.sessions.forkTitle });
   const exported = (format: 'vtu' | 'obj'): HTMLButtonElement => {
-    const press = button(`Save as .${format}`, () => void attempt(problem, () => control.call('session.export', { format }), press));
+    const press = button(text.sessions.saveAs(format), () => void attempt(problem, () => control.call('session.export', { format }), press));
     return press;
   };
-  const log = button('Save the commands as a script', () => void attempt(problem, () => control.call('session.log', {}), log));
+  const log = button(text.sessions.saveLog, () => void attempt(problem, () => control.call('session.log', {}), log));
   const buttons = [fork, exported('vtu'), exported('obj'), log];
   const refresh = (): void => {
     for (const one of buttons) one.disabled = model.joined === null || model.link.state !== 'online';
@@ -138,24 +143,23 @@ function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
 export function sessionsPanel(control: Control, link: Link, reveal: () => void): Panel {
   const { model } = control;
   const problem = problemPlace();
-  const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
+  const list = element('ul', { class: 'sessions', aria: { label: text.sessions.list } });
   const stale = problemPlace(); // separate, because the page refreshes the list by itself
   const about = element('p', { class: 'about' });
   const show = (): void => {
     list.replaceChildren(
       ...model.sessions.map((summary) => row(control, summary, problem)),
       ...model.elsewhere.map(rowElsewhere),
-      ...model.silent.map((label) => element('li', {}, `The server ${label} does not answer. Its sessions are not in this list.`)),
+      ...model.silent.map((label) => element('li', {}, text.sessions.silent(label))),
     );
-    if (list.childElementCount === 0) list.replaceChildren(element('li', {}, 'No sessions yet. Create one below.'));
+    if (list.childElementCount === 0) list.replaceChildren(element('li', {}, text.sessions.empty));
   };
   model.on('sessions', show);
   model.on('link', show);
   model.on('joined', (joined) => {
     const description = joined?.description;
     about.textContent = description
-      ? `${description.description} ${description.summary.vertex_count} vertices, ${description.triangle_count} triangles, ` +
-        `${description.tetrahedron_count} tetrahedra, ${description.link_count} links.`
+      ? text.sessions.about(description.description, description.summary.vertex_count, description.triangle_count, description.tetrahedron_count, description.link_count)
       : '';
   });
   const body = element(
@@ -174,7 +178,7 @@ export function sessionsPanel(control: Control, link: Link, reveal: () => void):
     if (!visible || document.hidden || model.link.state !== 'online' || list.contains(document.activeElement)) return;
     void attempt(stale, async () => model.setSessions((await link.call('session.list', {})).sessions));
   }, REFRESH_MS);
-  return { id: 'sessions', title: 'Sessions', body, shown: (now) => (visible = now) };
+  return { id: 'sessions', title: text.sessions.title, body, shown: (now) => (visible = now) };
 }
 
 export function saveReceived(name: string, mediaType: string, bytes: Uint8Array<ArrayBuffer>): void {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The section that stores the state under a name and restores it.
 import type { Control } from '../model/control';
+import { text } from '../text/text';
 import { attempt, button, element, field, problemPlace } from './dom';
 import { nameInput } from './names';
 
@@ -14,7 +15,7 @@ export function snapshotSection(control: Control): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
   const said = element('p', { class: 'about', aria: { role: 'status' } });
-  const name = nameInput({ name: 'snapshot', maxLength: 48, placeholder: 'automatic' });
+  const name = nameInput({ name: 'snapshot', maxLength: 48, placeholder: text.snapshots.automatic });
   const known = element('datalist', { id: 'snapshots' });
   name.setAttribute('list', known.id);
   /** names of snapshots; those of other branches are not in the timeline, but can be restored */
@@ -24,24 +25,24 @@ export function snapshotSection(control: Control): HTMLElement {
     taken = [...new Set([...taken, ...namesIn(control)])];
     known.replaceChildren(...taken.map((value) => element('option', { value })));
   };
-  const take = element('button', { type: 'submit' }, 'Take a snapshot');
-  const back = button('Restore it', () => {
+  const take = element('button', { type: 'submit' }, text.snapshots.take);
+  const back = button(text.snapshots.restore, () => {
     const work = async (): Promise<void> => {
-      if (name.value === '') throw new Error('enter the name of the snapshot to restore');
+      if (name.value === '') throw new Error(text.snapshots.nameMissing);
       const tick = await control.restore(name.value);
-      said.textContent = `Restored ${name.value} at ${seconds(tick)}. Energy is off.`;
+      said.textContent = text.snapshots.restored(name.value, seconds(tick));
       await control.loadTimeline();
     };
     void attempt(problem, work, back);
   }, { id: 'restore' });
-  const form = element('form', { class: 'form' }, field('Name', name), known, element('div', { class: 'buttons' }, take, back), said, problem);
+  const form = element('form', { class: 'form' }, field(text.snapshots.name, name), known, element('div', { class: 'buttons' }, take, back), said, problem);
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     const work = async (): Promise<void> => {
       const made = await control.call('session.snapshot', name.value === '' ? {} : { name: name.value });
       taken.push(made.name);
       name.value = made.name;
-      said.textContent = `${made.name} was saved at ${seconds(made.tick)}.`;
+      said.textContent = text.snapshots.saved(made.name, seconds(made.tick));
       showKnown();
     };
     void attempt(problem, work, take);
@@ -62,5 +63,5 @@ export function snapshotSection(control: Control): HTMLElement {
     refresh();
   });
   refresh();
-  return element('details', { class: 'section', id: 'snapshot' }, element('summary', {}, 'Snapshots'), form);
+  return element('details', { class: 'section', id: 'snapshot' }, element('summary', {}, text.snapshots.title), form);
 }

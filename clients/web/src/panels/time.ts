@@ -2,6 +2,7 @@
 // The time bar: pause, step, speed, and the timeline with its events, from which a session can be rewound.
 import type { Control } from '../model/control';
 import { EVENT_WORDS, momentsOf } from '../model/moments';
+import { text } from '../text/text';
 import type { TimelineEvent } from '../wire/messages.gen';
 import type { Frame } from '../wire/worker_messages';
 import { ask } from './ask';
@@ -37,39 +38,39 @@ function nameMoments(place: HTMLSelectElement, events: readonly TimelineEvent[],
   if (place.dataset['last'] === last && place.dataset['count'] === String(events.length)) return;
   Object.assign(place.dataset, { last, count: String(events.length) });
   const options = momentsOf(events, seconds).map(({ tick, words }) => element('option', { value: String(tick) }, words));
-  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'Events'), ...options);
+  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, text.time.events), ...options);
 }
 
 export function timeBar(control: Control, shared: number | null): void {
   const { model } = control;
   const problem = problemPlace();
-  const pause = button('Pause', () => {
+  const pause = button(text.time.pause, () => {
     const paused = model.frame?.paused === true;
     void attempt(problem, () => control.call(paused ? 'session.resume' : 'session.pause', {}), pause);
   }, { id: 'pause' });
-  const step = button('Step', () => void attempt(problem, () => control.call('session.step', { ticks: 1 }), step), { id: 'step', class: 'research-only' });
-  const reset = button('Start over', () => {
-    void ask('Start over?', 'This resets the tissue for everyone in the session.', 'Start over').then((sure) => {
+  const step = button(text.time.step, () => void attempt(problem, () => control.call('session.step', { ticks: 1 }), step), { id: 'step', class: 'research-only' });
+  const reset = button(text.time.reset, () => {
+    void ask(text.time.resetQuestion, text.time.resetLoss, text.time.reset).then((sure) => {
       if (sure) void attempt(problem, () => control.reset(), reset);
     });
-  }, { id: 'reset', title: 'Return to the whole tissue at time 0' });
-  const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
+  }, { id: 'reset', title: text.time.resetTitle });
+  const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: text.time.speed } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
   speed.value = '1';
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
-  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to view' } });
+  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: text.time.timeline } });
   const track = element('div', { class: 'track' }, slider);
-  const rewind = button('Rewind here', () => {
+  const rewind = button(text.time.rewindHere, () => {
     const tick = slider.valueAsNumber;
-    void ask(`Rewind to ${seconds(tick)}?`, 'This rewinds the session for everyone. The later history is kept as a branch.', 'Rewind').then((sure) => {
+    void ask(text.time.rewindQuestion(seconds(tick)), text.time.rewindLoss, text.time.rewind).then((sure) => {
       if (sure) void attempt(problem, () => control.rewind(tick).then(() => model.hold(null)), rewind);
     });
   }, { id: 'rewind', hidden: true });
-  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: 'Events: choose one to view its time' } });
+  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: text.time.eventsLabel } });
   moments.addEventListener('change', () => model.hold(Number(moments.value)));
   const now = element('output', { class: 'now', id: 'now' });
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
   const tell = (): void => {
-    rewind.textContent = `Rewind to ${seconds(slider.valueAsNumber)}`;
+    rewind.textContent = text.time.rewindTo(seconds(slider.valueAsNumber));
     slider.setAttribute('aria-valuetext', seconds(slider.valueAsNumber));
   };
   slider.addEventListener('input', () => {
@@ -125,15 +126,19 @@ export function timeBar(control: Control, shared: number | null): void {
     if (!frame.paused && frame.paused === paused && performance.now() - writtenMs < WRITE_MS) return;
     writtenMs = performance.now();
     const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
-    const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · stopped by an error' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
-    if (now.value !== text) now.value = text;
+    const words = [`${frame.timeS.toFixed(2)} s`];
+    if (frame.faulted || frame.paused) words.push(frame.faulted ? text.time.faulted : text.time.paused);
+    if (research()) words.push(text.time.tick(frame.tick));
+    if (rate !== undefined && !frame.paused && research()) words.push(`${rate.toFixed(2)} ×`);
+    const line = words.join(' · ');
+    if (now.value !== line) now.value = line;
   };
   model.on('frame', (frame) => {
     showShared();
     writeTime(frame);
     if (frame.paused !== paused) {
       paused = frame.paused;
-      pause.textContent = paused ? 'Resume' : 'Pause';
+      pause.textContent = paused ? text.time.resume : text.time.pause;
       enable();
     }
   });

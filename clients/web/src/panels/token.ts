@@ -2,6 +2,7 @@
 // The dialog for the access token. It shows beside the input why a token was not accepted. The user can open the dialog
 // again after closing it. Password managers find a name and a password in it.
 import type { Model } from '../model/model';
+import { text } from '../text/text';
 import { button, element, field, problemPlace } from './dom';
 
 /** Returns a function that opens the dialog. */
@@ -9,9 +10,9 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
   const token = element('input', { type: 'password', name: 'password', id: 'token-input', autocomplete: 'current-password', required: true });
   const user = element('input', { type: 'text', name: 'username', value: 'cautery', autocomplete: 'username', readOnly: true, class: 'unseen', tabIndex: -1, aria: { hidden: 'true' } });
   const problem = problemPlace();
-  const submit = element('button', { type: 'submit' }, 'Connect');
-  const form = element('form', { class: 'form' }, user, field('Access token', token), problem, element('div', { class: 'buttons' }, submit, button('Close', () => dialog.close())));
-  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation needs an access token. Ask its administrator for one.'), form);
+  const submit = element('button', { type: 'submit' }, text.token.connect);
+  const form = element('form', { class: 'form' }, user, field(text.token.label, token), problem, element('div', { class: 'buttons' }, submit, button(text.token.close, () => dialog.close())));
+  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: text.token.label } }, element('p', {}, text.token.about), form);
   document.body.append(dialog);
   let given = false;
   const open = (): void => {
@@ -37,11 +38,11 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
     }
     if (link.state === 'connecting') return;
     busy(false);
-    if (link.state === 'lost' && given) say(`No answer: ${link.words}. The page tries again.`);
+    if (link.state === 'lost' && given) say(text.token.lost(link.words));
     if (link.state !== 'refused' || link.status !== 'unauthorized') return;
     open();
     if (!given) return;
-    say('This token was not accepted. Check that the token is complete and has not expired.');
+    say(text.token.refused);
     token.select();
   });
   const say = (words: string): void => {

@@ -3,6 +3,7 @@
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
 import { hasHeat, hasJaws, type Shape } from '../model/tool_parts';
+import { text } from '../text/text';
 import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
 import { ask } from './ask';
 import { attempt, button, element, field, problemPlace, short } from './dom';
@@ -17,30 +18,23 @@ const SHOWN = ['temperature_c', 'hot_radius_m', 'tip_length_m', 'shaft_radius_m'
 const OF_JAWS = ['jaw_open_rad'];
 const OF_HEAT = ['temperature_c', 'hot_radius_m'];
 const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
-const OFF_WORDS = {
-  never_enabled: 'energy off',
-  commanded: 'energy off',
-  watchdog: 'energy off: no signal from the driver',
-  restored: 'energy off: the session was rewound',
-  taken_over: 'energy off: another user took the tool',
-} as const;
 
 function shapeSelect(): HTMLSelectElement {
-  return element('select', { name: 'shape' }, ...TOOL_SHAPES.map((shape) => element('option', { value: shape }, shape)));
+  return element('select', { name: 'shape' }, ...TOOL_SHAPES.map((shape) => element('option', { value: shape }, text.tools.shapes[shape])));
 }
 
 function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; refresh(): void } {
   const { model } = control;
   const shape = shapeSelect();
   const sizes = parameterInputs(PARAMETERS.tool.filter((parameter) => SHOWN.includes(parameter.name)));
-  const apply = element('button', { type: 'submit' }, 'Apply');
-  const remove = button('Remove', () => {
+  const apply = element('button', { type: 'submit' }, text.tools.apply);
+  const remove = button(text.tools.remove, () => {
     const tool = model.selectedTool ?? '';
-    void ask(`Remove the ${tool}?`, 'This removes the tool for everyone in the session.', 'Remove').then((sure) => {
+    void ask(text.tools.removeQuestion(tool), text.tools.removeLoss, text.tools.remove).then((sure) => {
       if (sure) void attempt(problem, () => control.removeTool(tool), remove);
     });
   });
-  const form = element('form', { class: 'form' }, field('Shape', shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
+  const form = element('form', { class: 'form' }, field(text.tools.shape, shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
   const offer = (): void => {
     const wanted = shape.value as Shape;
     sizes.offer((name) => (OF_JAWS.includes(name) ? hasJaws(wanted) : !OF_HEAT.includes(name) || hasHeat(wanted)));
@@ -54,7 +48,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     const work = async (): Promise<void> => {
-      if (!model.tool) throw new Error('choose a tool first');
+      if (!model.tool) throw new Error(text.tools.chooseFirst);
       const wanted = { ...model.tool, ...sizes.read(), shape: shape.value as Shape };
       await control.configureTool(wanted);
       forget();
@@ -83,14 +77,14 @@ function addForm(control: Control): HTMLElement {
   const shape = shapeSelect();
   shape.value = 'grasper';
   shape.addEventListener('change', () => (name.value = shape.value));
-  const add = element('button', { type: 'submit' }, 'Add');
-  const form = element('form', { class: 'form' }, field('Shape', shape), field('Name', name), add, problem);
+  const add = element('button', { type: 'submit' }, text.tools.add);
+  const form = element('form', { class: 'form' }, field(text.tools.shape, shape), field(text.tools.name, name), add, problem);
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     void attempt(problem, () => control.addTool({ name: name.value, shape: shape.value as Shape, position_m: [0.03, 0, 0.05] }), add);
   });
   model.on('tools', () => (add.disabled = !model.mayOperate || !model.joined));
-  return element('details', { class: 'section' }, element('summary', {}, 'Add a tool'), form);
+  return element('details', { class: 'section' }, element('summary', {}, text.tools.addTitle), form);
 }
 
 export function toolsPanel(control: Control, hand: ToolHand): Panel {
@@ -101,13 +95,13 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
   const guide = element(
     'select',
     { name: 'guide' },
-    element('option', { value: 'surface' }, 'on the surface'),
-    element('option', { value: 'plane' }, 'in the view plane'),
+    element('option', { value: 'surface' }, text.tools.guides.surface),
+    element('option', { value: 'plane' }, text.tools.guides.plane),
   );
   guide.addEventListener('change', () => (hand.guide = guide.value === 'plane' ? 'plane' : 'surface'));
   const jaw = element('input', { type: 'range', min: '0', max: '1', step: '0.01', name: 'jaw' });
   jaw.addEventListener('input', () => hand.setJaw(jaw.valueAsNumber));
-  const jawField = field('Jaws', jaw, '', 'jaw opening, closed to open');
+  const jawField = field(text.tools.jaws, jaw, '', text.tools.jawsTitle);
   const state = element('output', { class: 'state' });
   const driving = drivingButtons(control, problem);
   const edit = editForm(control, problem);
@@ -121,14 +115,14 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
   model.on('frame', () => {
     const tool = model.toolState;
     if (!tool) return;
-    const energy = tool.energized ? 'energy on' : OFF_WORDS[tool.energyOff];
+    const energy = tool.energized ? text.tools.energyOn : text.tools.energyOff[tool.energyOff];
     const force = Math.hypot(...tool.forceN);
-    const pressed = tool.jawForceN < LEAST_FORCE_N ? '' : ` pressed with ${short(tool.jawForceN, 2)} N`;
-    const grasp = !tool.grasping ? '' : tool.graspedVertices === 0 ? ', jaws empty' : `, holds ${tool.graspedVertices} points${pressed}${tool.slipping ? ', slipping' : ''}`;
-    const power = tool.deliveredW > 0 ? ` at ${short(tool.deliveredW, 2)} W${tool.loadOhm > 0 ? ` into ${short(tool.loadOhm, 3)} Ω` : ''}` : '';
-    const text = `${energy}${power}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
-    if (state.value !== text) state.value = text;
+    const pressed = tool.jawForceN < LEAST_FORCE_N ? '' : text.tools.pressed(short(tool.jawForceN, 2));
+    const grasp = !tool.grasping ? '' : tool.graspedVertices === 0 ? text.tools.jawsEmpty : `${text.tools.holds(tool.graspedVertices)}${pressed}${tool.slipping ? text.tools.slipping : ''}`;
+    const power = tool.deliveredW > 0 ? `${text.tools.power(short(tool.deliveredW, 2))}${tool.loadOhm > 0 ? text.tools.load(short(tool.loadOhm, 3)) : ''}` : '';
+    const line = `${energy}${power}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
+    if (state.value !== line) state.value = line;
   });
-  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, vesselList(model), field('Tool moves', guide), jawField, generatorForm(control), edit.form, addForm(control));
-  return { id: 'tools', title: 'Tools', body };
+  const body = element('div', {}, problem, field(text.tools.inHand, choose), driving.place, state, vesselList(model), field(text.tools.moves, guide), jawField, generatorForm(control), edit.form, addForm(control));
+  return { id: 'tools', title: text.tools.title, body };
 }

@@ -3,39 +3,34 @@
 // and a scene around the mesh, from which a session is created.
 import type { Control } from '../model/control';
 import { meshWords } from '../model/sentences';
+import { text } from '../text/text';
 import type { Link } from '../wire/link';
 import type { MeshRead, MeshReading } from '../wire/messages.gen';
 import { attempt, button, check, element, field, problemPlace } from './dom';
 
-const TISSUES: readonly (readonly [string, string])[] = [
-  ['', 'automatic'],
-  ['fat', 'fat (tetrahedra)'],
-  ['fascia', 'fascia (triangles)'],
-];
-const SIDES: readonly (readonly [string, string])[] = [
-  ['', 'automatic'],
-  ...['bottom', 'top', 'left', 'right', 'front', 'back', 'left,right', 'front,back', 'none'].map((side) => [side, side.replace(',', ' and ')] as const),
-];
+const TISSUES = ['fat', 'fascia'] as const;
+const SIDES = ['bottom', 'top', 'left', 'right', 'front', 'back', 'left,right', 'front,back', 'none'] as const;
 
 const UPLOAD_NAME = 'mesh';
 
 /** Returns the chosen file. The two files of TetGen are joined, with the points first. */
 function chosen(files: FileList | null): File {
   const [first, second, ...more] = [...(files ?? [])].sort((a, b) => Number(b.name.endsWith('.node')) - Number(a.name.endsWith('.node')));
-  if (!first) throw new Error('choose a mesh file first');
-  if (first.size === 0) throw new Error('the file is empty');
+  if (!first) throw new Error(text.upload.noFile);
+  if (first.size === 0) throw new Error(text.upload.emptyFile);
   if (!second) return first;
-  if (more.length > 0 || !first.name.endsWith('.node')) throw new Error('choose one mesh file, or the .node and the .ele file of TetGen');
+  if (more.length > 0 || !first.name.endsWith('.node')) throw new Error(text.upload.tooManyFiles);
   return new File([first, '\n', second], first.name);
 }
 
 /** Returns the report and the note of a reading, in the words of the form. */
 function reportWords({ report, note }: MeshReading): string {
-  return meshWords(note === undefined ? report.text : `${report.text}note: ${note}\n`);
+  return meshWords(note === undefined ? report.text : `${report.text}${text.upload.note(note)}\n`);
 }
 
-function choice(name: string, of: readonly (readonly [string, string])[]): HTMLSelectElement {
-  return element('select', { name }, ...of.map(([value, words]) => element('option', { value }, words)));
+/** Returns a choice of these values; the first option is the empty value, with the words for `automatic`. */
+function choice<Value extends string>(name: string, values: readonly Value[], words: Readonly<Record<Value | 'automatic', string>>): HTMLSelectElement {
+  return element('select', { name }, element('option', { value: '' }, words.automatic), ...values.map((value) => element('option', { value }, words[value])));
 }
 
 interface WishFields {
@@ -45,20 +40,20 @@ interface WishFields {
 
 /** Returns the fields with the options for reading the file. */
 function wishFields(): WishFields {
-  const kind = choice('kind', TISSUES);
-  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guessed', min: '1e-6', max: '1000000', step: 'any' });
-  const edge = element('input', { type: 'number', name: 'edge', placeholder: 'automatic', min: '0.001', max: '10000', step: 'any' });
-  const labels = element('input', { type: 'text', name: 'labels', placeholder: 'all', maxLength: 255 });
-  const pin = choice('pin', SIDES);
+  const kind = choice('kind', TISSUES, text.upload.tissues);
+  const size = element('input', { type: 'number', name: 'unit', placeholder: text.upload.unitGuessed, min: '1e-6', max: '1000000', step: 'any' });
+  const edge = element('input', { type: 'number', name: 'edge', placeholder: text.upload.edgeAutomatic, min: '0.001', max: '10000', step: 'any' });
+  const labels = element('input', { type: 'text', name: 'labels', placeholder: text.upload.labelsAll, maxLength: 255 });
+  const pin = choice('pin', SIDES, text.upload.sides);
   let strict = false;
   return {
     fields: [
-      field('Tissue', kind, '', 'automatic: fat if the file has tetrahedra or a closed surface, else fascia'),
-      field('One unit is', size, 'mm', 'length of one unit of the file: 1 for millimetres, 1000 for metres. Empty: guessed from the size of the mesh.'),
-      field('Edge length', edge, 'mm', 'edge length of the tetrahedra that fill a surface or a segmentation'),
-      field('Labels', labels, '', 'labels of the segmentation to use, for example 1,3'),
-      field('Pinned', pin, '', 'automatic: the bottom, or the rim of a sheet. Add pins with Pin in the picture.'),
-      check('Strict: refuse a mesh with errors instead of repairing it', 'strict', (on) => (strict = on)),
+      field(text.upload.tissue, kind, '', text.upload.tissueTitle),
+      field(text.upload.unit, size, 'mm', text.upload.unitTitle),
+      field(text.upload.edge, edge, 'mm', text.upload.edgeTitle),
+      field(text.upload.labels, labels, '', text.upload.labelsTitle),
+      field(text.upload.pinned, pin, '', text.upload.pinnedTitle),
+      check(text.upload.strict, 'strict', (on) => (strict = on)),
     ],
     read: () => ({
       upload: UPLOAD_NAME,
@@ -94,14 +89,14 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   const problem = problemPlace();
   const file = element('input', { type: 'file', name: 'mesh', multiple: true, required: true });
   const wish = wishFields();
-  const bar = element('progress', { max: 1, value: 0, hidden: true, aria: { label: 'Upload' } });
+  const bar = element('progress', { max: 1, value: 0, hidden: true, aria: { label: text.upload.progress } });
   const report = element('pre', { class: 'report', hidden: true, aria: { role: 'status' } });
-  const submit = element('button', { type: 'submit' }, 'Upload and create');
+  const submit = element('button', { type: 'submit' }, text.upload.submit);
   let cancelled = false;
   const discard = (): void => {
     link.call('upload.discard', { name: UPLOAD_NAME }).catch(() => undefined);
   };
-  const cancel = button('Cancel', () => {
+  const cancel = button(text.upload.cancel, () => {
     cancelled = true;
     discard(); // this also ends the meshing on the daemon
   }, { hidden: true });
@@ -136,7 +131,7 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
     try {
       await create(mesh);
     } catch (error) {
-      throw cancelled ? new Error('cancelled', { cause: error }) : error;
+      throw cancelled ? new Error(text.upload.cancelled, { cause: error }) : error;
     } finally {
       bar.hidden = cancel.hidden = true;
     }
@@ -144,7 +139,7 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   const form = element(
     'form',
     { class: 'form' },
-    field('Mesh file', file, '', 'formats: Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, NRRD, NIfTI, or both files of TetGen'),
+    field(text.upload.file, file, '', text.upload.fileTitle),
     ...wish.fields,
     element('div', { class: 'buttons' }, submit, cancel),
     bar,
@@ -161,7 +156,7 @@ export function uploadForm(control: Control, link: Link, reveal: () => void): HT
   };
   model.on('link', refresh);
   refresh();
-  const section = element('details', { class: 'section', id: 'upload' }, element('summary', {}, 'Your own mesh'), form);
+  const section = element('details', { class: 'section', id: 'upload' }, element('summary', {}, text.upload.title), form);
   watchDrops(may, (files) => {
     file.files = files;
     section.open = true;

@@ -3,6 +3,7 @@
 // restored, or if the daemon sends nothing. It shows a text, and a progress bar while something is under way.
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { button, byId, element } from './dom';
 
 const LOOK_MS = 250;
@@ -16,17 +17,14 @@ interface Veil {
   action?: { words: string; press: () => void };
 }
 
-const RELOAD = { words: 'Reload the page', press: (): void => window.location.reload() };
+const RELOAD = { words: text.veil.reload, press: (): void => window.location.reload() };
 
 function graphics(viewport: Viewport): Veil | null {
   switch (viewport.graphics) {
     case 'none':
-      return {
-        words: 'The picture needs WebGL 2, which this browser does not offer. Turn on hardware acceleration in the browser’s settings, or use another browser. Everything but the picture works.',
-        busy: false,
-      };
+      return { words: text.veil.noGraphics, busy: false };
     case 'lost':
-      return { words: 'The graphics card lost the picture. The page is drawing the picture again.', busy: true, action: RELOAD };
+      return { words: text.veil.lostGraphics, busy: true, action: RELOAD };
     case 'ready':
       return null;
   }
@@ -34,10 +32,10 @@ function graphics(viewport: Viewport): Veil | null {
 
 function connection({ model }: Control, enterToken: () => void): Veil | null {
   const { link } = model;
-  if (link.state === 'connecting') return { words: 'Connecting to the simulation…', busy: true };
-  if (link.state === 'lost') return { words: `No connection: ${link.words}. Trying again. The picture is old.`, busy: true };
+  if (link.state === 'connecting') return { words: text.veil.connecting, busy: true };
+  if (link.state === 'lost') return { words: text.veil.lost(link.words), busy: true };
   if (link.state !== 'refused') return null;
-  if (link.status === 'unauthorized') return { words: 'This simulation needs an access token.', busy: false, action: { words: 'Enter the token', press: enterToken } };
+  if (link.status === 'unauthorized') return { words: text.veil.tokenNeeded, busy: false, action: { words: text.veil.enterToken, press: enterToken } };
   return { words: link.words, busy: false, action: RELOAD };
 }
 
@@ -45,7 +43,7 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
   const { model } = control;
   const place = byId('veil');
   const words = element('p');
-  const bar = element('progress', { aria: { label: 'Under way' } });
+  const bar = element('progress', { aria: { label: text.veil.progress } });
   const action = button('', () => undefined);
   place.append(element('div', { class: 'veil-card' }, words, bar, action));
   let framedAt = performance.now();
@@ -59,17 +57,17 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
     const now = performance.now();
     if (control.busy.length === 0) busySince = null;
     else busySince ??= now;
-    if (busySince !== null && now - busySince >= QUICK_MS) return { words: `${control.busy[0]}…`, busy: true };
+    if (busySince !== null && now - busySince >= QUICK_MS) return { words: text.veil.busy(control.busy[0]), busy: true };
     if (model.link.state !== 'online') return null;
-    if (model.session === null) return { words: 'No session is open. Create one under Research > Sessions > New session.', busy: false };
-    if (model.summary?.state === 'starting') return { words: `${model.session} is being built…`, busy: true };
+    if (model.session === null) return { words: text.veil.noSession, busy: false };
+    if (model.summary?.state === 'starting') return { words: text.veil.starting(model.session), busy: true };
     if (model.frame?.session !== model.session || !shows(model.session)) {
       const quick = everShown && now - joinedAt < QUICK_MS;
-      return quick ? null : { words: `Opening ${model.session}…`, busy: true };
+      return quick ? null : { words: text.veil.opening(model.session), busy: true };
     }
     everShown = true;
     if (model.frame.paused || model.frame.faulted || document.hidden || now - framedAt < SILENT_MS) return null;
-    return { words: `The simulation has sent nothing for ${((now - framedAt) / 1000).toFixed(0)} s. The picture is old.`, busy: true };
+    return { words: text.veil.silent(((now - framedAt) / 1000).toFixed(0)), busy: true };
   };
   const show = (): void => {
     const veil = graphics(viewport) ?? connection(control, enterToken) ?? waiting();

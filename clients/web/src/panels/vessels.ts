@@ -2,6 +2,7 @@
 // Shows blood vessels: a warning while a vessel bleeds, a message about a new seal, and a list of all vessels.
 import type { Model } from '../model/model';
 import { figuresOf, stateWords, VesselWatch } from '../model/vessel_words';
+import { text } from '../text/text';
 import { element } from './dom';
 
 const REFRESH_MS = 250; // numbers that change faster cannot be read
@@ -64,7 +65,7 @@ export function watchVessels(model: Model): void {
 /** Returns a list of the vessels of the session, hidden if there are none. */
 export function vesselList(model: Model): HTMLElement {
   const list = element('ul', { class: 'vessels' });
-  const section = element('section', { hidden: true, aria: { label: 'Blood vessels' } }, element('h2', {}, 'Blood vessels'), list);
+  const section = element('section', { hidden: true, aria: { label: text.vessels.title } }, element('h2', {}, text.vessels.title), list);
   const show = unhurried(() => {
     const vessels = model.frame?.vessels ?? [];
     section.hidden = vessels.length === 0;
@@ -72,7 +73,8 @@ export function vesselList(model: Model): HTMLElement {
     vessels.forEach((vessel, i) => {
       const line = list.children[i] ?? list.appendChild(element('li'));
       const figures = figuresOf(vessel);
-      const words = `${vessel.name}: ${stateWords(vessel)}${figures === '' ? '' : `; ${figures}`}`;
+      const state = stateWords(vessel);
+      const words = figures === '' ? text.vessels.state(vessel.name, state) : text.vessels.stateAndFigures(vessel.name, state, figures);
       if (line.textContent !== words) line.textContent = words;
     });
   });

@@ -2,6 +2,7 @@
 // Records the picture as a video, with the recorder of the browser. The file is saved when the recording is stopped.
 import type { Model } from '../model/model';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { attempt, button, save } from './dom';
 
 const PICTURES_A_SECOND = 30;
@@ -22,21 +23,21 @@ interface Recording {
 /** Returns a button that begins and ends a recording; `problem` shows why it cannot. */
 export function videoButton(model: Model, viewport: Viewport, problem: HTMLElement): HTMLButtonElement {
   let going: Recording | null = null;
-  const press = button('Record a video', () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'video', ariaPressed: 'false' });
+  const press = button(text.video.record, () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'video', ariaPressed: 'false' });
 
   const show = (): void => {
-    press.textContent = going ? 'Stop and save the video' : 'Record a video';
+    press.textContent = going ? text.video.stop : text.video.record;
     press.ariaPressed = String(going !== null);
   };
   const begin = (): void => {
     const kind = 'MediaRecorder' in window ? KINDS.find(({ type }) => MediaRecorder.isTypeSupported(type)) : undefined;
-    if (!kind) throw new Error('this browser cannot record video');
+    if (!kind) throw new Error(text.video.unsupported);
     const name = `cautery-${model.session ?? 'view'}-${model.frame?.tick ?? 0}.${kind.ending}`;
     const stream = viewport.canvas.captureStream(PICTURES_A_SECOND);
     const recorder = new MediaRecorder(stream, { mimeType: kind.type, videoBitsPerSecond: BITS_A_SECOND });
     const parts: Blob[] = [];
     recorder.addEventListener('dataavailable', ({ data }) => parts.push(data));
-    recorder.addEventListener('error', () => model.notice('error', 'The browser has stopped recording. The part so far is saved.'));
+    recorder.addEventListener('error', () => model.notice('error', text.video.stopped));
     recorder.addEventListener('stop', () => {
       stop();
       save(name, new Blob(parts, { type: kind.type }));

@@ -3,6 +3,7 @@
 import type { Control } from '../model/control';
 import { colourAt, MAP_OF, type ColourMap, type Scalar } from '../model/colour_maps';
 import type { ViewOptions, Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import type { Frame } from '../wire/worker_messages';
 import { cameraViews } from './camera';
 import { attempt, button, byId, check, element, field, problemPlace, save, short } from './dom';
@@ -10,19 +11,8 @@ import { sceneRecordingButton } from './scene_recording';
 import type { Panel } from './tabs';
 import { videoButton } from './video';
 
-const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
-  ['tissue', 'tissue'],
-  ['exposure', 'heat exposure'],
-  ['charring', 'charring'],
-  ['stress', 'stress'],
-  ['temperature', 'temperature'],
-];
-const TITLES: Readonly<Record<Scalar, string>> = {
-  exposure: 'Heat exposure (1: tissue parts)',
-  charring: 'Charring: share of edges that heat has parted',
-  stress: 'Von Mises stress',
-  temperature: 'Temperature',
-};
+const COLOURINGS: readonly ViewOptions['colouring'][] = ['tissue', 'exposure', 'charring', 'stress', 'temperature'];
+const THEMES = ['as the system', 'dark', 'light'] as const; // as the browser stores them
 
 function paint(canvas: HTMLCanvasElement, map: ColourMap): void {
   const context = canvas.getContext('2d');
@@ -38,7 +28,7 @@ function endsOf(scalar: Scalar, frame: Frame | null): readonly [string, string] 
   if (scalar === 'stress') return ['0', `${short(frame?.stressScalePa ?? 0, 2)} Pa`];
   if (scalar !== 'temperature') return ['0', '1'];
   const range = frame?.temperatureRangeC;
-  return range ? [`${range[0].toFixed(0)} °C`, `${range[1].toFixed(0)} °C`] : ['no values', ''];
+  return range ? [`${range[0].toFixed(0)} °C`, `${range[1].toFixed(0)} °C`] : [text.view.noValues, ''];
 }
 
 function legend(control: Control, options: () => ViewOptions): () => void {
@@ -61,7 +51,7 @@ function legend(control: Control, options: () => ViewOptions): () => void {
     const { colouring } = options();
     place.hidden = colouring === 'tissue';
     if (colouring === 'tissue') return;
-    title.textContent = TITLES[colouring];
+    title.textContent = text.view.legends[colouring];
     paint(colours, MAP_OF[colouring]);
     tellEnds(colouring);
   };
@@ -71,7 +61,7 @@ function themes(viewport: Viewport): HTMLElement {
   const choose = element(
     'select',
     { name: 'theme' },
-    ...['as the system', 'dark', 'light'].map((value) => element('option', { value }, value)),
+    ...THEMES.map((value) => element('option', { value }, text.view.themes[value])),
   );
   const system = window.matchMedia('(prefers-color-scheme: dark)');
   const apply = (): void => {
@@ -86,7 +76,7 @@ function themes(viewport: Viewport): HTMLElement {
   });
   system.addEventListener('change', apply);
   apply();
-  return field('Theme', choose);
+  return field(text.view.theme, choose);
 }
 
 export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: HTMLElement, clip: HTMLElement): Panel {
@@ -99,9 +89,9 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     control.show(options.colouring === 'stress' || options.colouring === 'temperature' ? options.colouring : null);
     refreshLegend();
   };
-  const colouring = element('select', { name: 'colouring', id: 'colouring' }, ...COLOURINGS.map(([value, words]) => element('option', { value }, words)));
+  const colouring = element('select', { name: 'colouring', id: 'colouring' }, ...COLOURINGS.map((value) => element('option', { value }, text.view.colourings[value])));
   colouring.addEventListener('change', () => set({ colouring: colouring.value as ViewOptions['colouring'] }));
-  const layers = element('fieldset', {}, element('legend', {}, 'Layers'));
+  const layers = element('fieldset', {}, element('legend', {}, text.view.layers));
   model.on('joined', (joined) => {
     const names = [...new Set(joined?.batches.map((batch) => batch.layer))];
     const boxes = names.map((name) =>
@@ -112,19 +102,19 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
         set({ hiddenLayers: hidden });
       }, !options.hiddenLayers.has(name)),
     );
-    layers.replaceChildren(element('legend', {}, 'Layers'), ...boxes);
+    layers.replaceChildren(element('legend', {}, text.view.layers), ...boxes);
   });
   const problem = problemPlace();
-  const png = button('Save the picture', () => {
+  const png = button(text.view.png, () => {
     void attempt(problem, async () => save(`cautery-${model.session ?? 'view'}-${model.frame?.tick ?? 0}.png`, await viewport.png()), png);
   });
   const body = element(
     'div',
     {},
-    field('Colour', colouring),
+    field(text.view.colour, colouring),
     layers,
-    check('Wireframe', 'wireframe', (on) => set({ wireframe: on })),
-    check('Show the force on the tool', 'force', (on) => set({ forceArrow: on })),
+    check(text.view.wireframe, 'wireframe', (on) => set({ wireframe: on })),
+    check(text.view.force, 'force', (on) => set({ forceArrow: on })),
     inspectSwitch,
     clip,
     cameraViews(viewport),
@@ -132,5 +122,5 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     element('div', { class: 'buttons' }, png, videoButton(model, viewport, problem), sceneRecordingButton(model, viewport, problem)),
     problem,
   );
-  return { id: 'view', title: 'View', body };
+  return { id: 'view', title: text.view.title, body };
 }
