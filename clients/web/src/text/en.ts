@@ -2,9 +2,7 @@
 // Every text of the page, in English. The groups are named after the modules that show them. A text with values is a
 // function.
 import type { Held, Lost } from '../hands/holds';
-import type { TimelineEvent } from '../wire/messages.gen';
-import type { EnergyOff } from '../wire/records';
-import type { FrameProgress, HelloResult, LIMITS, Layer, MODELS, PROJECTIONS, SessionSummary, TOOL_SHAPES } from '../wire/messages.gen';
+import type { FrameProgress, HelloResult, LIMITS, Layer, MODELS, PROJECTIONS, SessionSummary, TimelineEvent, TOOL_SHAPES } from '../wire/messages.gen';
 import type { EnergyOff, STAGES } from '../wire/records';
 
 export const en = {
