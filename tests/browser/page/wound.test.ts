@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes pictures of a scripted cut: before, during and after, from far to close, along the cut and across it. Only
-// `run_viewer_tests.sh wound` makes them, for clients/web/pictures/wound, where people look at them.
+// Makes pictures of a scripted cut: before, during and after, from far to close, along the cut and across it; those after
+// the cut in both themes. Only `run_viewer_tests.sh wound` makes them, for clients/web/pictures/wound, where people look
+// at them.
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
@@ -61,9 +62,10 @@ describe.runIf(FOLDER)('a scripted cut', () => {
     return record(stage.daemon.url, SESSION, stay + ticks + 1, lead(from, to, stay, ticks, energized));
   };
 
-  const look = async (when: string): Promise<void> => {
+  const look = async (when: string, colorScheme: 'dark' | 'light' = 'dark'): Promise<void> => {
     for (const [name, camera] of Object.entries(CAMERAS)) {
-      const viewer = await ViewerPage.openFirst(stage.browser, `${stage.daemon.url}?session=${SESSION}&camera=${camera}`, { viewport: WINDOW });
+      if (colorScheme === 'light' && name.endsWith('low')) continue;
+      const viewer = await ViewerPage.openFirst(stage.browser, `${stage.daemon.url}?session=${SESSION}&camera=${camera}`, { viewport: WINDOW, colorScheme });
       await viewer.live(SESSION);
       await viewer.page.evaluate(() => document.querySelectorAll<HTMLElement>('#cue, #handles').forEach((one) => (one.style.visibility = 'hidden')));
       await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
@@ -88,5 +90,6 @@ describe.runIf(FOLDER)('a scripted cut', () => {
     await play(END, AWAY, 0, 0.1, false);
     await play(AWAY, AWAY, 2, 1, false); // the cut tissue comes to rest
     await look('after');
+    await look('after-light', 'light');
   }, 1_800_000);
 });
