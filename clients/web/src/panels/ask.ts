@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Asks the user before something is lost. Without an answer, or with Escape, nothing is lost.
+import { text } from '../text/text';
 import { button, element } from './dom';
 
 export function ask(question: string, consequence: string, yes: string): Promise<boolean> {
@@ -10,7 +11,7 @@ export function ask(question: string, consequence: string, yes: string): Promise
       dialog.remove();
       resolve(sure);
     };
-    const keep = button('Cancel', answer(false), { autofocus: true });
+    const keep = button(text.ask.cancel, answer(false), { autofocus: true });
     dialog.append(
       element('p', { class: 'question' }, question),
       element('p', {}, consequence),

@@ -2,6 +2,7 @@
 // Views of the camera: standard views, and views that the user has saved under a name.
 import type { CameraPose } from '../scene/orbit';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { cameraText, readCamera } from './address';
 import { button, element, field } from './dom';
 
@@ -14,12 +15,12 @@ const KEPT = 'views';
 const VIEWS_MAX = 12;
 const NAME_MAX = 24;
 
-const FIELDS = [['trocar', 'trocar'], ['open', 'open field']] as const;
+const FIELDS = ['trocar', 'open'] as const;
 const FIELD_KEPT = 'field';
 
 /** The round picture of an endoscope, or the open field; the browser keeps the choice. One for each place that shows it. */
 function fieldChoice(viewport: Viewport): HTMLElement {
-  const choose = element('select', { name: 'field' }, ...FIELDS.map(([value, words]) => element('option', { value }, words)));
+  const choose = element('select', { name: 'field' }, ...FIELDS.map((value) => element('option', { value }, text.camera.fields[value])));
   choose.value = localStorage.getItem(FIELD_KEPT) === 'open' ? 'open' : 'trocar';
   choose.addEventListener('change', () => {
     localStorage.setItem(FIELD_KEPT, choose.value);
@@ -27,7 +28,7 @@ function fieldChoice(viewport: Viewport): HTMLElement {
     for (const other of document.querySelectorAll<HTMLSelectElement>('select[name=field]')) other.value = choose.value;
   });
   viewport.setTrocar(choose.value === 'trocar');
-  return field('View', choose);
+  return field(text.camera.view, choose);
 }
 
 /** Standard views. */
@@ -41,13 +42,13 @@ export function cameraButtons(viewport: Viewport): HTMLElement {
   const buttons = element(
     'div',
     { class: 'buttons' },
-    to('First view', () => orbit.reset()),
-    to('From above', () => orbit.look(FROM_ABOVE)),
-    to('Low, along the tissue', () => orbit.look(ALONG)),
-    to('From the left', () => orbit.look(ASIDE, -QUARTER)),
-    to('From the right', () => orbit.look(ASIDE, QUARTER)),
-    to('Nearer', () => orbit.zoom(NEARER)),
-    to('Farther', () => orbit.zoom(1 / NEARER)),
+    to(text.camera.first, () => orbit.reset()),
+    to(text.camera.above, () => orbit.look(FROM_ABOVE)),
+    to(text.camera.low, () => orbit.look(ALONG)),
+    to(text.camera.left, () => orbit.look(ASIDE, -QUARTER)),
+    to(text.camera.right, () => orbit.look(ASIDE, QUARTER)),
+    to(text.camera.nearer, () => orbit.zoom(NEARER)),
+    to(text.camera.farther, () => orbit.zoom(1 / NEARER)),
   );
   return element('div', { class: 'form' }, fieldChoice(viewport), buttons);
 }
@@ -71,7 +72,7 @@ function keptViews(): View[] {
 /** Standard views, and those that this browser keeps. */
 export function cameraViews(viewport: Viewport): HTMLElement {
   const list = element('div', { class: 'buttons', id: 'views' });
-  const name = element('input', { name: 'view', maxLength: NAME_MAX, placeholder: 'name', aria: { label: 'Name of the view' } });
+  const name = element('input', { name: 'view', maxLength: NAME_MAX, placeholder: text.camera.name, aria: { label: text.camera.nameLabel } });
   const put = (views: View[]): void => {
     localStorage.setItem(KEPT, JSON.stringify(views));
     show();
@@ -84,16 +85,16 @@ export function cameraViews(viewport: Viewport): HTMLElement {
         viewport.orbit.restore(pose);
         viewport.invalidate();
       });
-      const forget = button('×', () => put(keptViews().filter(({ name: other }) => other !== view.name)), { aria: { label: `Delete the view ${view.name}` } });
+      const forget = button('×', () => put(keptViews().filter(({ name: other }) => other !== view.name)), { aria: { label: text.camera.deleteView(view.name) } });
       return [element('div', { class: 'choice' }, go, forget)];
     }));
   };
-  const keep = button('Save this view', () => {
+  const keep = button(text.camera.save, () => {
     const views = keptViews();
-    const called = name.value.trim() || `View ${views.length + 1}`;
+    const called = name.value.trim() || text.camera.unnamed(views.length + 1);
     put([...views.filter((view) => view.name !== called), { name: called, camera: cameraText(viewport.orbit.here) }].slice(-VIEWS_MAX));
     name.value = '';
   });
   show();
-  return element('fieldset', {}, element('legend', {}, 'Camera'), element('div', { class: 'form' }, cameraButtons(viewport), list, element('div', { class: 'buttons' }, name, keep)));
+  return element('fieldset', {}, element('legend', {}, text.camera.title), element('div', { class: 'form' }, cameraButtons(viewport), list, element('div', { class: 'buttons' }, name, keep)));
 }

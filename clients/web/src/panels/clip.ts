@@ -2,9 +2,10 @@
 // A plane that hides tissue in the picture, to look inside. It does not change the simulation.
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { element, field } from './dom';
 
-const AXES = [['', 'nothing'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
+const AXES = [['', text.clip.nothing], ['0', text.clip.right], ['1', text.clip.behind], ['2', text.clip.above]] as const;
 const STEPS = 200;
 const MM = 1000;
 
@@ -13,7 +14,7 @@ export function clipFields(control: Control, viewport: Viewport): { fields: HTML
   const axis = element('select', { name: 'clip' }, ...AXES.map(([value, words]) => element('option', { value }, words)));
   const share = element('input', { type: 'range', name: 'clip-at', min: '0', max: String(STEPS), value: String(STEPS / 2) });
   const shown = element('small');
-  const where = element('label', { class: 'field' }, element('span', {}, 'Up to'), share, shown);
+  const where = element('label', { class: 'field' }, element('span', {}, text.clip.upTo), share, shown);
   const apply = (): void => {
     where.hidden = axis.value === '';
     const all = control.model.joined?.surroundings?.all;
@@ -37,5 +38,5 @@ export function clipFields(control: Control, viewport: Viewport): { fields: HTML
     axis.value = '';
     apply();
   };
-  return { fields: element('div', { class: 'form' }, field('Hide tissue', axis), where), off };
+  return { fields: element('div', { class: 'form' }, field(text.clip.hide, axis), where), off };
 }

@@ -7,6 +7,7 @@ import { pick } from '../model/pick';
 import { hasHeat } from '../model/tool_parts';
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
+import { text } from '../text/text';
 import { byId } from './dom';
 
 const REACH = 0.17; // half length of the stroke, as a share of the width of the tissue
@@ -52,7 +53,7 @@ export function showCue(control: Control, viewport: Viewport): () => void {
   const place = byId('cue');
   draw(place);
   const words = place.querySelector('p')!;
-  words.textContent = window.matchMedia('(pointer: coarse)').matches ? 'Touch here and draw slowly' : 'Press here and draw slowly';
+  words.textContent = window.matchMedia('(pointer: coarse)').matches ? text.cue.touch : text.cue.press;
   const line = place.querySelector('line')!;
   let stroke: Stroke | null = null;
   let shown = '';

@@ -2,16 +2,12 @@
 // The section that pins and unpins vertices, and applies outer forces to them.
 import type { Control } from '../model/control';
 import type { Selection } from '../wire/messages.gen';
+import { text } from '../text/text';
 import { attempt, button, element, field, problemPlace } from './dom';
 
 type Vector = [number, number, number];
 
-const KINDS: readonly (readonly [Selection['kind'], string])[] = [
-  ['sphere', 'in a sphere'],
-  ['nearest', 'nearest to a point'],
-  ['box', 'in a box'],
-  ['rim', 'on the rim of a layer'],
-];
+const KINDS = ['sphere', 'nearest', 'box', 'rim'] as const;
 const MM = 1000;
 const FORCE_N_MAX = 10;
 
@@ -27,7 +23,7 @@ function vectorField(label: string, name: string, unit: string, most: number): {
     row,
     read() {
       const values = inputs.map((input) => input.valueAsNumber);
-      if (values.some((value) => !(Math.abs(value) <= most))) throw new Error(`${label} must be three numbers from ${-most} to ${most} ${unit}`);
+      if (values.some((value) => !(Math.abs(value) <= most))) throw new Error(text.forces.outOfRange(label, most, unit));
       return values as Vector;
     },
     show(values) {
@@ -41,14 +37,14 @@ const metres = (millimetres: Vector): Vector => millimetres.map((value) => value
 /** Fields for a selection of vertices by their rest positions. */
 function selectionFields(control: Control): { fields: HTMLElement[]; read(): Selection; refresh(): void } {
   const { model } = control;
-  const kind = element('select', { name: 'selection' }, ...KINDS.map(([value, words]) => element('option', { value }, words)));
+  const kind = element('select', { name: 'selection' }, ...KINDS.map((value) => element('option', { value }, text.forces.kinds[value])));
   const layer = element('select', { name: 'selection-layer' });
-  const center = vectorField('Point', 'center', 'mm', 1e5);
+  const center = vectorField(text.forces.point, 'center', 'mm', 1e5);
   const radius = element('input', { type: 'number', name: 'radius', value: '5', min: '0', max: '100000', step: 'any' });
-  const radiusField = field('Radius', radius, 'mm');
-  const least = vectorField('From', 'least', 'mm', 1e5);
-  const most = vectorField('To', 'most', 'mm', 1e5);
-  const atTip = button('Use the position of the tool’s tip', () => {
+  const radiusField = field(text.forces.radius, radius, 'mm');
+  const least = vectorField(text.forces.from, 'least', 'mm', 1e5);
+  const most = vectorField(text.forces.to, 'most', 'mm', 1e5);
+  const atTip = button(text.forces.atTip, () => {
     const tip = model.toolState?.positionM;
     if (tip) center.show(tip.map((value) => value * MM) as Vector);
   });
@@ -61,18 +57,18 @@ function selectionFields(control: Control): { fields: HTMLElement[]; read(): Sel
   kind.addEventListener('change', show);
   show();
   return {
-    fields: [field('Vertices', kind), field('Of layer', layer), center.row, atTip, radiusField, least.row, most.row],
+    fields: [field(text.forces.vertices, kind), field(text.forces.ofLayer, layer), center.row, atTip, radiusField, least.row, most.row],
     refresh() {
       const before = layer.value;
       const names = model.joined?.description.layers.filter(({ kind: of }) => of !== 'links').map(({ name }) => name) ?? [];
-      layer.replaceChildren(element('option', { value: '' }, 'any'), ...names.map((value) => element('option', { value }, value)));
+      layer.replaceChildren(element('option', { value: '' }, text.forces.anyLayer), ...names.map((value) => element('option', { value }, value)));
       layer.value = names.includes(before) ? before : '';
     },
     read() {
       const of = layer.value === '' ? {} : { layer: layer.value };
       switch (kind.value as Selection['kind']) {
         case 'rim':
-          if (layer.value === '') throw new Error('choose the layer for the rim');
+          if (layer.value === '') throw new Error(text.forces.noRim);
           return { kind: 'rim', ...of };
         case 'box':
           return { kind: 'box', least_m: metres(least.read()), most_m: metres(most.read()), ...of };
@@ -90,7 +86,7 @@ export function forcesSection(control: Control): HTMLElement {
   const problem = problemPlace();
   const said = element('p', { class: 'about', aria: { role: 'status' } });
   const selection = selectionFields(control);
-  const force = vectorField('Force on each vertex', 'force', 'N', FORCE_N_MAX);
+  const force = vectorField(text.forces.force, 'force', 'N', FORCE_N_MAX);
   const doing = (words: string, told: string, work: () => Promise<unknown>): HTMLButtonElement => {
     const press = button(words, () => {
       said.textContent = '';
@@ -101,11 +97,11 @@ export function forcesSection(control: Control): HTMLElement {
     return press;
   };
   const buttons = [
-    doing('Pin', 'Pinned.', () => control.call('pin', { selection: selection.read() })),
-    doing('Unpin', 'Unpinned.', () => control.call('unpin', { selection: selection.read() })),
-    doing('Apply the force', 'The force acts until you change it.', () =>
+    doing(text.forces.pin, text.forces.pinned, () => control.call('pin', { selection: selection.read() })),
+    doing(text.forces.unpin, text.forces.unpinned, () => control.call('unpin', { selection: selection.read() })),
+    doing(text.forces.push, text.forces.pushed, () =>
       control.call('force.set', { selection: selection.read(), force_n: force.read() })),
-    doing('No force', 'No outer force acts on these vertices.', () => control.call('force.set', { selection: selection.read(), force_n: [0, 0, 0] })),
+    doing(text.forces.none, text.forces.noneLeft, () => control.call('force.set', { selection: selection.read(), force_n: [0, 0, 0] })),
   ];
   const refresh = (): void => {
     for (const one of buttons) one.disabled = !model.mayOperate || model.joined === null;
@@ -120,7 +116,7 @@ export function forcesSection(control: Control): HTMLElement {
   return element(
     'details',
     { class: 'section', id: 'forces' },
-    element('summary', {}, 'Pins and forces'),
+    element('summary', {}, text.forces.title),
     element(
       'div',
       { class: 'form' },

@@ -3,6 +3,7 @@
 import type { Control } from '../model/control';
 import { becoming, instrumentOf, modeNamed } from '../model/instruments';
 import type { Instrument, InstrumentMode } from '../wire/messages.gen';
+import { text } from '../text/text';
 import { attempt, element, field, problemPlace } from './dom';
 
 const words = (name: string): string => name.replaceAll('-', ' ');
@@ -20,8 +21,8 @@ export function generatorForm(control: Control): HTMLElement {
   const mode = element('select', { name: 'mode' });
   const power = element('input', { type: 'number', name: 'power_w', step: 'any' });
   const about = element('p', { class: 'about' });
-  const apply = element('button', { type: 'submit' }, 'Set');
-  const form = element('form', { class: 'form' }, element('h2', {}, 'Generator'), field('Instrument', instrument), field('Mode', mode), field('Power', power, 'W'), about, element('div', { class: 'buttons' }, apply), problem);
+  const apply = element('button', { type: 'submit' }, text.generator.set);
+  const form = element('form', { class: 'form' }, element('h2', {}, text.generator.title), field(text.generator.instrument, instrument), field(text.generator.mode, mode), field(text.generator.power, power, 'W'), about, element('div', { class: 'buttons' }, apply), problem);
   const chosen = (): Instrument | undefined => model.instruments.find(({ name }) => name === instrument.value);
   const chosenMode = (): InstrumentMode | undefined => {
     const profile = chosen();
@@ -33,7 +34,7 @@ export function generatorForm(control: Control): HTMLElement {
     power.min = String(now.power_least_w);
     power.max = String(now.power_most_w);
     power.value = String(watts ?? now.power_w);
-    about.textContent = `${chosen()?.description ?? ''} ${named(now.mode)}: ${now.description}.`;
+    about.textContent = text.generator.about(chosen()?.description ?? '', named(now.mode), now.description);
   };
   const showModes = (wanted: string): void => offer(mode, (chosen()?.modes ?? []).map((one) => one.mode), wanted);
   instrument.addEventListener('change', () => {

@@ -4,6 +4,7 @@ import { pick } from '../model/pick';
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import type { VertexState } from '../wire/worker_messages';
+import { text } from '../text/text';
 import { byId, check, short } from './dom';
 
 const AGAIN_MS = 200; // refresh while the pointer rests, because the tissue changes
@@ -30,9 +31,9 @@ function find(viewport: Viewport, x: number, y: number): Found | null {
 function words({ layer, vertex, stressed }: Found, state: VertexState, position: ArrayLike<number>): string {
   const at = [0, 1, 2].map((c) => (MM * position[3 * vertex + c]).toFixed(1)).join(', ');
   const temperature = state.temperatureC === null ? '' : `${state.temperatureC.toFixed(1)} °C`;
-  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress is shown for fat only';
-  const heat = `${Math.round(100 * state.exposure)} % of the heat exposure at which this tissue parts`;
-  return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
+  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : text.inspect.fatOnly;
+  const heat = text.inspect.exposure(Math.round(100 * state.exposure));
+  return [text.inspect.vertex(layer, vertex), `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
 }
 
 /** Returns the switch, and a function that turns it off. */
@@ -72,7 +73,7 @@ export function showInspected(control: Control, viewport: Viewport): { switch: H
     place.hidden = true;
     control.inspect(now);
   };
-  const box = check('Show what is under the pointer', 'inspect', set);
+  const box = check(text.inspect.show, 'inspect', set);
   const off = (): void => {
     box.querySelector('input')!.checked = false;
     set(false);

@@ -2,7 +2,7 @@
 // Every text of the page, in English. The groups are named after the modules that show them. A text with values is a
 // function.
 import type { Held, Lost } from '../hands/holds';
-import type { FrameProgress, HelloResult, LIMITS, Layer, MODELS, PROJECTIONS, SessionSummary, TimelineEvent, TOOL_SHAPES } from '../wire/messages.gen';
+import type { FrameProgress, HelloResult, LIMITS, Layer, MODELS, PROJECTIONS, Selection, SessionSummary, TimelineEvent, TOOL_SHAPES } from '../wire/messages.gen';
 import type { EnergyOff, STAGES } from '../wire/records';
 
 export const en = {
@@ -29,6 +29,149 @@ export const en = {
   },
 
   // ---- panels, a to i
+  ask: {
+    cancel: 'Cancel',
+  },
+  camera: {
+    title: 'Camera',
+    view: 'View',
+    fields: { trocar: 'trocar', open: 'open field' },
+    first: 'First view',
+    above: 'From above',
+    low: 'Low, along the tissue',
+    left: 'From the left',
+    right: 'From the right',
+    nearer: 'Nearer',
+    farther: 'Farther',
+    // views that the user saves under a name
+    name: 'name',
+    nameLabel: 'Name of the view',
+    unnamed: (number: number) => `View ${number}`,
+    save: 'Save this view',
+    deleteView: (view: string) => `Delete the view ${view}`,
+  },
+  clip: {
+    hide: 'Hide tissue',
+    // the side from which tissue is hidden
+    nothing: 'nothing',
+    right: 'from the right',
+    behind: 'from behind',
+    above: 'from above',
+    /** beside the slider that moves the plane */
+    upTo: 'Up to',
+  },
+  cue: {
+    touch: 'Touch here and draw slowly',
+    press: 'Press here and draw slowly',
+  },
+  devices: {
+    title: 'Pedal, gamepad, 3D mouse',
+    choosePedal: 'Choose the pedal’s key',
+    pressPedal: 'Press the pedal now.',
+    forgetPedal: 'Forget the pedal',
+    noPedal: 'The browser sees a foot pedal as a key. Choose that key here.',
+    pedal: (key: string) => `The pedal is the key ${key}. Energy is on while the pedal is down.`,
+    gamepad: 'A gamepad works as soon as you press one of its buttons. The sticks move the tool, and the right trigger turns energy on.',
+    chooseMouse: 'Choose the 3D mouse',
+    noWebHid: 'A 3D mouse needs a browser with WebHID, such as Chromium or Edge.',
+    noMouse: 'The cap of a 3D mouse moves the tool, and its first button turns energy on. The browser asks which device it may use. Choose the mouse there.',
+    mouse: (device: string) => `${device} moves the tool. Energy is on while its first button is held.`,
+  },
+  driving: {
+    free: (tool: string) => `The ${tool} is free. Use it to become its driver.`,
+    freeToWatch: (tool: string) => `The ${tool} is free. Your access allows you to watch only.`,
+    own: (tool: string) => `You use the ${tool}.`,
+    other: (person: string, tool: string) => `${person} uses the ${tool}.`,
+    noTools: 'This session has no tools.',
+    take: 'Take the tool',
+    takeQuestion: (tool: string, person: string) => `Take the ${tool} from ${person}?`,
+    takeLoss: (person: string) => `Its energy goes off, and ${person} can no longer move the tool.`,
+    takeIt: 'Take it',
+    ask: 'Ask its driver',
+    asked: 'The driver was asked for the tool.',
+    release: 'Release the tool',
+  },
+  forces: {
+    title: 'Pins and forces',
+    vertices: 'Vertices',
+    // which vertices
+    kinds: {
+      sphere: 'in a sphere',
+      nearest: 'nearest to a point',
+      box: 'in a box',
+      rim: 'on the rim of a layer',
+    } satisfies Record<Selection['kind'], string>,
+    ofLayer: 'Of layer',
+    anyLayer: 'any',
+    point: 'Point',
+    radius: 'Radius',
+    // opposite corners of a box
+    from: 'From',
+    to: 'To',
+    atTip: 'Use the position of the tool’s tip',
+    noRim: 'choose the layer for the rim',
+    outOfRange: (field: string, most: number, unit: string) => `${field} must be three numbers from ${-most} to ${most} ${unit}`,
+    pin: 'Pin',
+    pinned: 'Pinned.',
+    unpin: 'Unpin',
+    unpinned: 'Unpinned.',
+    force: 'Force on each vertex',
+    push: 'Apply the force',
+    pushed: 'The force acts until you change it.',
+    none: 'No force',
+    noneLeft: 'No outer force acts on these vertices.',
+  },
+  generator: {
+    title: 'Generator',
+    instrument: 'Instrument',
+    mode: 'Mode',
+    power: 'Power',
+    set: 'Set',
+    about: (instrument: string, mode: string, meaning: string) => `${instrument} ${mode}: ${meaning}.`,
+  },
+  handles: {
+    /** name of a group of buttons, for screen readers */
+    presses: 'What a press on the tissue does',
+    press: {
+      work: { name: 'Cut', title: 'Press on the tissue to cut; energy is on until you release' },
+      move: { name: 'Move', title: 'Press on the tissue to move the tool there without energy' },
+      look: { name: 'Look', title: 'Drag to turn the view; the tool does not move' },
+      measure: { name: 'Measure', title: 'Drag over the tissue to measure a distance; the tool does not move' },
+      pin: { name: 'Pin', title: 'Drag over the tissue to pin it within 5 mm of the pointer; the tool does not move' },
+    },
+    grasp: 'Grasp',
+    energy: 'Energy',
+    energyOn: 'Energy on',
+    energyTitle: 'Hold this button, or Space, to turn energy on',
+    notYours: 'Only the person who uses the tool can turn energy on',
+    latch: 'Keep on',
+    latchTitle: (seconds: number) => `Keep energy on without holding, for at most ${seconds} s (L)`,
+    latched: (seconds: number) => `Energy stays on for ${seconds} s. Press Keep on, L or Escape to turn energy off.`,
+    nearer: 'Nearer',
+    nearerTitle: 'Nearer (S)',
+    deeper: 'Deeper',
+    deeperTitle: 'Deeper (W)',
+    depth: 'Depth',
+    depthTitle: 'Depth of the tool. Press to return the tool to the surface.',
+    depthLabel: (depth: string) => `Depth: ${depth}. Press to return to the surface.`,
+  },
+  inspect: {
+    show: 'Show what is under the pointer',
+    vertex: (layer: string, vertex: number) => `${layer}, vertex ${vertex}`,
+    fatOnly: 'stress is shown for fat only',
+    exposure: (percent: number) => `${percent} % of the heat exposure at which this tissue parts`,
+  },
+  invite: {
+    title: 'Invite others',
+    joins: 'Anyone who opens this link joins this session.',
+    holdsToken: 'This link contains your access token. Anyone who has the link can do what you can. Give it only to people you trust.',
+    code: 'The link as a QR code',
+    link: 'Link to this session',
+    copy: 'Copy the link',
+    copied: 'Copied.',
+    notCopied: 'This browser does not allow pages to copy. Press Ctrl+C.',
+    close: 'Close',
+  },
 
   // ---- panels, l to z
   limits: {
