@@ -82,8 +82,8 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 	cau_vec3 gravity = cau_vec3_of(session->scene->gravity_m_s2);
 	cau_vec3 momentum = {0, 0, 0}, force = {0, 0, 0}, torque = {0, 0, 0};
 	for (int32_t v = 0; v < tissue->vertex_count; v++) {
-		cau_vec3 x = cau_vec3_of(session->position + 3 * (size_t)v);
-		cau_vec3 velocity = cau_vec3_of(session->velocity + 3 * (size_t)v);
+		cau_vec3 x = cau_vec3_of(session->vertices.position + 3 * (size_t)v);
+		cau_vec3 velocity = cau_vec3_of(session->vertices.velocity + 3 * (size_t)v);
 		cau_vec3 f = cau_scale(-1, elastic_gradient(session, v));
 		momentum = cau_add_scaled(momentum, tissue->mass[v], velocity);
 		force = cau_add(force, f);

@@ -24,9 +24,9 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error)
 {
 	cau_energy *energy = &session->energy;
 	const cau_step_solver *solver = &session->solver;
-	energy->dirty = cau_arena_array(&session->arena, (size_t)solver->slots.work_count, 1);
+	energy->dirty = cau_arena_array(&session->memory.arena, (size_t)solver->slots.work_count, 1);
 	energy->sum_j =
-		cau_arena_array(&session->arena, SUMS * (size_t)solver->chunk_count, sizeof(double));
+		cau_arena_array(&session->memory.arena, SUMS * (size_t)solver->chunk_count, sizeof(double));
 	energy->stale = true;
 	if (!energy->dirty || !energy->sum_j)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
@@ -145,7 +145,7 @@ void cau_session_begin_energy(cau_session *session)
 // Returns the work done at a moved support: the support's motion against the elements' forces.
 static double support_work(const cau_session *session, int32_t vertex, const double move[3])
 {
-	CAU_ASSERT(session->fixed[vertex], "vertex %d is no support", vertex);
+	CAU_ASSERT(session->vertices.fixed[vertex], "vertex %d is no support", vertex);
 	const cau_incidence *incidence = &session->solver.slots.incidence;
 	const cau_elements *elements = &session->solver.elements;
 	double work = 0;
@@ -161,8 +161,8 @@ static void vertex_part(void *context, int32_t chunk)
 	cau_session *session = context;
 	CAU_ASSERT_INDEX(chunk, session->solver.chunk_count);
 	const cau_step_solver *solver = &session->solver;
-	const double *x = session->position, *start = session->position_start;
-	const double *velocity = session->velocity, *force = session->external;
+	const double *x = session->vertices.position, *start = session->vertices.start;
+	const double *velocity = session->vertices.velocity, *force = session->vertices.external;
 	const double *push = session->substep.push; // tools' force in the first substep, or NULL
 	const double *gravity = session->scene->gravity_m_s2;
 	double work = 0, before = 0, after = 0, inertia = 0;
@@ -204,15 +204,15 @@ static double tool_work(const cau_session *session)
 	double work = 0;
 	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
-		cau_vec3 way = cau_sub(cau_contact_point(row, session->position),
-		                       cau_contact_point(row, session->position_start));
+		cau_vec3 way = cau_sub(cau_contact_point(row, session->vertices.position),
+		                       cau_contact_point(row, session->vertices.start));
 		work += cau_dot(cau_vec3_of(row->reaction), way);
 	}
 	for (int32_t k = 0; k < session->solver.drag_count; k++) {
 		const cau_drag *drag = &session->solver.drag[k];
 		for (size_t c = 0, at = 3 * (size_t)drag->vertex; c < 3; c++)
-			work -= drag->coefficient * (session->position[at + c] - drag->target[c]) *
-			        (session->position[at + c] - session->position_start[at + c]);
+			work -= drag->coefficient * (session->vertices.position[at + c] - drag->target[c]) *
+			        (session->vertices.position[at + c] - session->vertices.start[at + c]);
 	}
 	return cau_session_last_share(session) * work;
 }

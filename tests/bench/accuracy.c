@@ -69,7 +69,7 @@ static void measure(turns *t, int32_t steps, bench_accuracy_result *result)
 		}
 		double accurate = step_s(t->session), fixed = step_s(t->fixed);
 		if (sampled)
-			error[samples++] = step_error(t->session, t->exact->position, t->accuracy);
+			error[samples++] = step_error(t->session, t->exact->vertices.position, t->accuracy);
 		if (i < 0)
 			continue;
 		accurate_s += accurate;

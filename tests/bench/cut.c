@@ -196,7 +196,7 @@ static int step_along(along_run *run, int32_t at, bench_along_result *result)
 	result->elements_removed = frame.statistics.elements_removed;
 	if (!sampled)
 		return 0;
-	double is = step_error(session, run->exact->position, run->accuracy);
+	double is = step_error(session, run->exact->vertices.position, run->accuracy);
 	run->found[result->sampled++] = is;
 	run->optimistic += is > 3 * reported;
 	return 0;

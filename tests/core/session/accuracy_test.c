@@ -77,7 +77,8 @@ static void sample(cau_session *session, cau_session *exact, sampled *of)
 	stage_step(exact, 1);
 	stage_step(session, 1);
 	cau_frame frame = stage_frame(session);
-	of->error[of->count] = step_error(session, exact->position, session->solver.accuracy.wanted);
+	of->error[of->count] =
+		step_error(session, exact->vertices.position, session->solver.accuracy.wanted);
 	of->told[of->count] = frame.statistics.error;
 	of->force[of->count++] = force_error(session, exact);
 	of->iterations += frame.statistics.iterations;

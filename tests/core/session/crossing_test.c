@@ -70,7 +70,7 @@ static cau_scene_def *press_scene(const press *p)
 static cau_vec3 corner(const cau_session *session, int32_t face, int k)
 {
 	int32_t v = session->tissue.faces.vertex[3 * (size_t)face + (size_t)k];
-	return cau_vec3_of(session->position + 3 * (size_t)v);
+	return cau_vec3_of(session->vertices.position + 3 * (size_t)v);
 }
 
 static bool is_drawn(const cau_session *session, int32_t face)

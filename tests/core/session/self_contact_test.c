@@ -62,7 +62,7 @@ static double lowest_of_sheet_m(const cau_session *session)
 	const cau_tissue_layer *sheet = &session->tissue.layer[0];
 	double least = INFINITY;
 	for (int32_t v = sheet->first_vertex; v < sheet->first_vertex + sheet->vertex_count; v++)
-		least = fmin(least, session->position[3 * (size_t)v + 2]);
+		least = fmin(least, session->vertices.position[3 * (size_t)v + 2]);
 	return least;
 }
 
@@ -379,7 +379,7 @@ static void what_begins_crossed_stays_calm(void **state)
 	// Bends one sheet through the other.
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
 		if ((int32_t)v >= session->tissue.layer[1].first_vertex)
-			session->position[3 * v + 2] += 0.1 * session->position[3 * v];
+			session->vertices.position[3 * v + 2] += 0.1 * session->vertices.position[3 * v];
 	assert_true(surface_crossings(session) > 0);
 	for (int tick = 0; tick < 60; tick++) {
 		stage_step(session, 1);
