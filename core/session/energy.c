@@ -225,7 +225,7 @@ static void measure_gain(cau_session *session)
 	double inertia_j = 0, work_j = 0, kinetic_j = 0, touching_j = 0;
 	if (session->solver.collide) {
 		touching_j = session->collide.start_energy_j;
-		gain_j += session->collide.energy_j - touching_j;
+		gain_j += session->collide.result.energy_j - touching_j;
 	}
 	for (int32_t k = 0; k < session->solver.chunk_count; k++) {
 		const double *sum = energy->sum_j + SUMS * (size_t)k;

@@ -59,7 +59,7 @@ static void go_in_legs(cau_session *session, const double *guess, double *at)
 	cau_collide *collide = &session->collide;
 	for (int leg = 0; leg < MOST_LEGS; leg++) {
 		go(session, at);
-		if (!collide->out_of_reach)
+		if (!collide->filter.out_of_reach)
 			return;
 		ask_for(session, at, guess);
 		cau_collide_filter(collide, session->pool, at, true);

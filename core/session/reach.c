@@ -409,8 +409,8 @@ bool cau_session_feels_faces(const cau_tool *tool)
 void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part)
 {
 	reach r = begin(session, index, part);
-	for (int32_t i = 0; i < session->contact.memory_count; i++) {
-		const cau_contact_memory *kept = &session->contact.memory[i];
+	for (int32_t i = 0; i < session->contact.sides.memory_count; i++) {
+		const cau_contact_memory *kept = &session->contact.sides.memory[i];
 		if (kept->tool != index || !kept->pushed || !is_drawn(session, kept->face))
 			continue;
 		cau_candidate c = candidate_of(&r, kept->face);

@@ -91,7 +91,7 @@ static void take_vertices(cau_session *session, const snapshot_state *state)
 		memcpy(session->rest.from, state->vertices.quiet_from, 3 * n * sizeof(double));
 	if (session->scene->contact_thickness_m > 0) {
 		cau_collide_forget(&session->collide);
-		memcpy(session->collide.exempt_before, state->vertices.exempt_before, n);
+		memcpy(session->collide.search.exempt_before, state->vertices.exempt_before, n);
 	}
 }
 
@@ -182,18 +182,20 @@ static void take_contact(cau_session *session, const snapshot_state *state)
 	size_t bytes =
 		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	cau_contact_clear(set);
-	set->epoch = session->solver.factor_epoch;
-	set->column_count = (int32_t)count;
-	memcpy(set->column_vertex, state->columns.vertex, count * sizeof *set->column_vertex);
-	memcpy(set->column_version, state->columns.version, count * sizeof *set->column_version);
+	set->columns.epoch = session->solver.factor_epoch;
+	set->columns.count = (int32_t)count;
+	memcpy(set->columns.vertex, state->columns.vertex, count * sizeof *set->columns.vertex);
+	memcpy(set->columns.version, state->columns.version, count * sizeof *set->columns.version);
 	for (size_t i = 0; i < count && i < CAU_WHOLE_COLUMNS; i++)
-		memcpy(set->column[i], state->columns.whole[i], bytes);
+		memcpy(set->columns.whole[i], state->columns.whole[i], bytes);
 	for (size_t i = 0; i < count; i++)
 		for (size_t k = 0; k <= i; k++)
-			set->inverse[i * CAU_MAX_COLUMNS + k] = set->inverse[k * CAU_MAX_COLUMNS + i] =
-				state->columns.inverse[i * CAU_MAX_COLUMNS + k];
-	set->memory_count = state->head.sizes.memory;
-	memcpy(set->memory, state->memory, (size_t)set->memory_count * sizeof *set->memory);
+			set->columns.inverse[i * CAU_MAX_COLUMNS + k] =
+				set->columns.inverse[k * CAU_MAX_COLUMNS + i] =
+					state->columns.inverse[i * CAU_MAX_COLUMNS + k];
+	set->sides.memory_count = state->head.sizes.memory;
+	memcpy(set->sides.memory, state->memory,
+	       (size_t)set->sides.memory_count * sizeof *set->sides.memory);
 }
 
 // Takes the tools with their heat grids from `state`.

@@ -20,9 +20,10 @@ static uint64_t build_hash(void)
 
 static int32_t kept_columns(const cau_session *session)
 {
-	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_COLUMNS + 1);
-	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
-	                                                              : 0;
+	CAU_ASSERT_INDEX(session->contact.columns.count, CAU_MAX_COLUMNS + 1);
+	return session->contact.columns.epoch == session->solver.factor_epoch
+	           ? session->contact.columns.count
+	           : 0;
 }
 
 static snapshot_sizes view_sizes(const cau_session *session)
@@ -33,7 +34,7 @@ static snapshot_sizes view_sizes(const cau_session *session)
 	                        .commands = session->queue.count,
 	                        .active = session->shrink.active_count,
 	                        .columns = kept_columns(session),
-	                        .memory = session->contact.memory_count,
+	                        .memory = session->contact.sides.memory_count,
 	                        .over = session->dissection.tears.over_count,
 	                        .waiting = session->update.waiting_count,
 	                        .operations = session->update.operation_count};
@@ -171,7 +172,7 @@ void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapsho
 	                                       .external = own->vertices.external,
 	                                       .diagonal = own->solver.system.diagonal,
 	                                       .quiet_from = own->rest.from,
-	                                       .exempt_before = own->collide.exempt_before},
+	                                       .exempt_before = own->collide.search.exempt_before},
 	                          .dissection = {.exposure = own->dissection.exposure,
 	                                         .parted = own->dissection.parted,
 	                                         .dose = own->dissection.doses.dose,
@@ -185,11 +186,11 @@ void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapsho
 	                          .waiting = own->update.waiting,
 	                          .operation = own->update.operation,
 	                          .tool = own->tool,
-	                          .memory = own->contact.memory,
-	                          .columns = {.vertex = own->contact.column_vertex,
-	                                      .version = own->contact.column_version,
-	                                      .whole = own->contact.column,
-	                                      .inverse = own->contact.inverse},
+	                          .memory = own->contact.sides.memory,
+	                          .columns = {.vertex = own->contact.columns.vertex,
+	                                      .version = own->contact.columns.version,
+	                                      .whole = own->contact.columns.whole,
+	                                      .inverse = own->contact.columns.inverse},
 	                          .cells = own->heat.cells};
 	if (own->vessels) {
 		state->vessels.fusion = own->vessels->fusion;

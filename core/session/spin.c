@@ -416,6 +416,6 @@ void cau_session_keep_momentum(cau_session *session)
 {
 	const cau_collide *collide = session->solver.collide;
 	if (!session->contact.row_count && !session->solver.drag_count &&
-	    !(collide && collide->touching_count))
+	    !(collide && collide->result.touching_count))
 		turn_pieces(session, keep_momentum);
 }

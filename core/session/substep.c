@@ -66,7 +66,7 @@ static void note_disturbance(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++)
 		any = any || session->contact.tool[i].held_back;
 	if (collide)
-		any = any || collide->held_back || collide->cut_short_count > 0;
+		any = any || collide->filter.held_back || collide->cut_short_count > 0;
 	session->substep.disturbed = session->substep.disturbed || any;
 }
 

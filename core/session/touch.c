@@ -206,7 +206,7 @@ void cau_session_find_contacts(cau_session *session)
 {
 	cau_contact_clear(&session->contact);
 	session->contact.left_out_count = 0;
-	session->contact.begun_count = -1;
+	session->contact.begun.count = -1;
 	session->contact.torn = session->dissection.tears.elements_torn > 0;
 	session->contact.let_through = false;
 	session->solver.drag_count = 0;
@@ -231,13 +231,13 @@ static void keep_unheld(cau_session *session, int32_t rows)
 {
 	cau_contact_set *set = &session->contact;
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	set->begun_count = rows;
+	set->begun.count = rows;
 	memcpy(session->touch.unheld, session->vertices.position, bytes);
 	session->touch.unheld_farthest_m = session->touch.farthest_m;
 	for (int32_t i = 0; i < rows; i++)
-		memcpy(set->begun_reaction[i], set->row[i].reaction, sizeof set->begun_reaction[i]);
+		memcpy(set->begun.reaction[i], set->row[i].reaction, sizeof set->begun.reaction[i]);
 	for (int32_t i = 0; i < set->tool_count; i++)
-		memcpy(set->begun_offset[i], set->tool[i].offset, sizeof set->begun_offset[i]);
+		memcpy(set->begun.offset[i], set->tool[i].offset, sizeof set->begun.offset[i]);
 }
 
 static const double missed_m = 1e-4; // a face deeper than this at its constraint is not held yet
@@ -249,8 +249,8 @@ bool cau_session_find_missed(cau_session *session)
 	cau_contact_set *set = &session->contact;
 	int32_t rows = set->row_count, feeling = 0;
 	cau_session_take_poses(session);
-	bool first = set->begun_count < 0;
-	set->touched_count = 0;
+	bool first = set->begun.count < 0;
+	set->sides.touched_count = 0;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		feeling += cau_session_feels_faces(&session->tool[i]);
 	if (!feeling)
@@ -276,7 +276,7 @@ bool cau_session_find_missed(cau_session *session)
 bool cau_session_find_thrown(cau_session *session)
 {
 	double room = 0;
-	if (session->contact.begun_count < 0)
+	if (session->contact.begun.count < 0)
 		return false;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
@@ -295,13 +295,13 @@ void cau_session_let_through(cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	CAU_ASSERT_INDEX(set->begun_count, set->row_count + 1);
+	CAU_ASSERT_INDEX(set->begun.count, set->row_count + 1);
 	memcpy(session->vertices.position, session->touch.unheld, bytes);
-	set->row_count = set->begun_count;
+	set->row_count = set->begun.count;
 	for (int32_t i = 0; i < set->row_count; i++)
-		memcpy(set->row[i].reaction, set->begun_reaction[i], sizeof set->row[i].reaction);
+		memcpy(set->row[i].reaction, set->begun.reaction[i], sizeof set->row[i].reaction);
 	for (int32_t i = 0; i < set->tool_count; i++)
-		memcpy(set->tool[i].offset, set->begun_offset[i], sizeof set->tool[i].offset);
+		memcpy(set->tool[i].offset, set->begun.offset[i], sizeof set->tool[i].offset);
 	cau_session_take_poses(session);
 	set->let_through = true;
 }

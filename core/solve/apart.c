@@ -21,9 +21,9 @@ static bool passes(cau_step_solver *solver, const double *from)
 		solver->kernels->vectors->longest(solver->trial_increment, solver->tissue->vertex_count);
 	if (!cau_collide_foresee(collide, longest))
 		return false;
-	for (int32_t k = 0; k < collide->unclear_count; k++)
+	for (int32_t k = 0; k < collide->filter.unclear_count; k++)
 		for (int i = 0; i < 4; i++)
-			read_step(solver, collide->pair[collide->unclear[k]].vertex[i]);
+			read_step(solver, collide->pair[collide->filter.unclear[k]].vertex[i]);
 	return cau_collide_lets_pass(collide, from, longest);
 }
 
@@ -106,7 +106,7 @@ bool cau_solver_keep_apart(cau_step_solver *solver, const double *from)
 {
 	bool shorter = shorten(solver), changed = filter(solver, from);
 	if (shorter && !changed) {
-		solver->collide->held_back = true;
+		solver->collide->filter.held_back = true;
 		solver->collide->held_back_count++;
 	}
 	return shorter || changed;

@@ -201,7 +201,7 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 	const double far_below = 0.01;
 	double most =
 		solver->conservative ? cau_solver_noise(solver, norm * norm) : far_below * objective;
-	bool touches = solver->collide && solver->collide->touching_count;
+	bool touches = solver->collide && solver->collide->result.touching_count;
 	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
 }
 
@@ -209,7 +209,7 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 // says nothing about the remaining error.
 static bool is_held_back(const cau_step_solver *solver)
 {
-	return solver->collide && solver->collide->held_back;
+	return solver->collide && solver->collide->filter.held_back;
 }
 
 // True if the active constraints of tools changed in this increment. The contraction of the
@@ -229,8 +229,8 @@ static bool touches_elsewhere(const cau_step_solver *solver)
 // earlier steps then predict nothing.
 static bool forget_touching(const cau_step_solver *solver, uint64_t *touching)
 {
-	bool changed = solver->collide->touching_hash != *touching;
-	*touching = solver->collide->touching_hash;
+	bool changed = solver->collide->result.touching_hash != *touching;
+	*touching = solver->collide->result.touching_hash;
 	return changed;
 }
 
@@ -401,14 +401,14 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
 	descent d = {.objective = solver->objective, .backtracks_before = solver->backtracks};
-	d.touching = solver->collide ? solver->collide->touching_hash : 0;
+	d.touching = solver->collide ? solver->collide->result.touching_hash : 0;
 	solver->spared = false;
 	forget_increments(solver);
 	cau_status status = cau_loose_choose(solver, error);
 	if (status)
 		return status;
 	// If the guess moves tissue into tissue, the energy may exceed the energy at the tick's start.
-	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
+	if (solver->collide && solver->collide->result.energy_j > solver->collide->start_energy_j)
 		go_back(solver, &d.objective);
 	for (int32_t k = 0; !iterate(solver, &d, k, &status, error) && !is_last(solver, k);)
 		k++;

@@ -52,11 +52,12 @@ static double add_collisions(cau_step_solver *solver)
 {
 	cau_collide *collide = solver->collide;
 	double energy = cau_collide_evaluate(collide, solver->pool, solver->position);
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		int32_t v = collide->loaded[k];
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		int32_t v = collide->load.vertex[k];
 		CAU_ASSERT_INDEX(v, solver->tissue->vertex_count);
 		if (!solver->fixed[v])
-			solver->kernels->vectors->add(solver->gradient, v, collide->gradient + 3 * (size_t)v);
+			solver->kernels->vectors->add(solver->gradient, v,
+			                              collide->load.gradient + 3 * (size_t)v);
 	}
 	return energy;
 }

@@ -139,9 +139,9 @@ enum { RINGS = 2 };
 static void leave_out(const cau_step_solver *solver, uint8_t *chosen)
 {
 	const cau_contact_set *contact = solver->contact;
-	for (int32_t i = 0; contact && i < contact->corner_count; i++)
-		chosen[contact->corner[i]] = LEFT_OUT;
-	for (int ring = 0; contact && contact->corner_count && ring < RINGS; ring++)
+	for (int32_t i = 0; contact && i < contact->columns.corner_count; i++)
+		chosen[contact->columns.corner[i]] = LEFT_OUT;
+	for (int ring = 0; contact && contact->columns.corner_count && ring < RINGS; ring++)
 		leave_out_ring(solver, chosen);
 	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
 		chosen[v] = chosen[v] == CHOSEN && !solver->fixed[v];

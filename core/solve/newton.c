@@ -318,10 +318,10 @@ static bool keep_apart(cau_step_solver *solver)
 		}
 		vectors->add(solver->trial_increment, region->vertex[i], of);
 	}
-	bool held_back = solver->collide->held_back;
+	bool held_back = solver->collide->filter.held_back;
 	cau_collide_stand(solver->collide, solver->position_before);
 	bool stopped = cau_solver_keep_apart(solver, solver->position_before);
-	solver->collide->held_back = held_back;
+	solver->collide->filter.held_back = held_back;
 	for (size_t v = 0; v < n && stopped; v++) {
 		double of[3];
 		vectors->read(solver->trial_increment, (int32_t)v, of);

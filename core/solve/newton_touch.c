@@ -37,7 +37,7 @@ static bool find_pairs(cau_newton *newton, const cau_collide *collide, double wa
 	for (int32_t k = 0; k < collide->pair_count; k++) {
 		const cau_collide_pair *pair = &collide->pair[k];
 		if (has_row(newton, pair->vertex) && !cau_collide_is_exempt(collide, pair) &&
-		    !cau_collide_is_far(collide, k, collide->away_m + way_m, pair->thickness_m) &&
+		    !cau_collide_is_far(collide, k, collide->seen.away_m + way_m, pair->thickness_m) &&
 		    !add_to(&newton->pair, &newton->pair_count, &newton->pair_room, k))
 			return false;
 	}

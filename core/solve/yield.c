@@ -67,14 +67,14 @@ static double touch(cau_step_solver *solver, const cau_reals *direction)
 {
 	cau_collide *collide = solver->collide;
 	double along = 0;
-	for (int32_t k = 0; k < collide->loaded_count; k++)
-		solver->kernels->vectors->read(direction, collide->loaded[k],
-		                               collide->probe + 3 * (size_t)collide->loaded[k]);
+	for (int32_t k = 0; k < collide->load.count; k++)
+		solver->kernels->vectors->read(direction, collide->load.vertex[k],
+		                               collide->load.probe + 3 * (size_t)collide->load.vertex[k]);
 	cau_collide_apply(collide);
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		size_t at = 3 * (size_t)collide->loaded[k];
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		size_t at = 3 * (size_t)collide->load.vertex[k];
 		for (size_t i = at; i < at + 3; i++)
-			along += collide->probe[i] * collide->answer[i];
+			along += collide->load.probe[i] * collide->load.answer[i];
 	}
 	return along;
 }
@@ -83,9 +83,9 @@ static double touch(cau_step_solver *solver, const cau_reals *direction)
 static void take_off(cau_step_solver *solver, double scale)
 {
 	const cau_collide *collide = solver->collide;
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		int32_t v = collide->loaded[k];
-		const double *force = collide->answer + 3 * (size_t)v;
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		int32_t v = collide->load.vertex[k];
+		const double *force = collide->load.answer + 3 * (size_t)v;
 		if (!solver->fixed[v])
 			solver->kernels->vectors->add(
 				solver->yield.residual, v,
@@ -99,7 +99,7 @@ static void take_off(cau_step_solver *solver, double scale)
 // stiff as A at its vertices.
 static bool first_serves(const cau_step_solver *solver, double stiffer)
 {
-	return stiffer * solver->collide->steepest <= surely * enough;
+	return stiffer * solver->collide->result.steepest <= surely * enough;
 }
 
 // True if the last step was enough. The decrease of E is assumed to shrink from step to step at

@@ -27,8 +27,8 @@ static course run(cau_session *session, int ticks)
 		cau_statistics statistics = stage_frame(session).statistics;
 		c.most_gain_j = fmax(c.most_gain_j, statistics.energy_gain_j);
 		c.error = statistics.error;
-		if (session->collide.touching_count > c.most_touching)
-			c.most_touching = session->collide.touching_count;
+		if (session->collide.result.touching_count > c.most_touching)
+			c.most_touching = session->collide.result.touching_count;
 		if (k % LOOK == 0)
 			assert_int_equal(surface_crossings(session), 0);
 	}
@@ -347,7 +347,7 @@ static void the_same_bits(void **state)
 		stage_step(three, 1);
 		assert_true(cau_session_hash(one) == cau_session_hash(three));
 		if (tick == SAVED) {
-			assert_true(one->collide.touching_count > 0);
+			assert_true(one->collide.result.touching_count > 0);
 			stage_bytes shot = stage_snapshot(one);
 			bool exact = false;
 			assert_int_equal(cau_session_restore(later, shot.bytes, shot.count, &exact, NULL),

@@ -139,11 +139,11 @@ static void test_pressed_without_and_with_friction(void **state)
 // Checks that the kept columns have the same values as S.
 static void assert_columns_are_whole(const pressed *p)
 {
-	for (int32_t i = 0; i < p->set->column_count; i++)
-		for (int32_t k = 0; k < p->set->column_count; k++)
-			assert_near(
-				p->r.solver.kernels->vectors->at(p->set->column[i], p->set->column_vertex[k]),
-				p->set->inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
+	for (int32_t i = 0; i < p->set->columns.count; i++)
+		for (int32_t k = 0; k < p->set->columns.count; k++)
+			assert_near(p->r.solver.kernels->vectors->at(p->set->columns.whole[i],
+			                                             p->set->columns.vertex[k]),
+			            p->set->columns.inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
 }
 
 // Solves with more constraints than whole columns, then with few constraints again. The solution
@@ -169,7 +169,7 @@ static void test_rows_beyond_whole_columns(void **state)
 		}
 		assert_true(cau_contact_is_wide(p.set) == !round);
 		solve(&p);
-		assert_true(p.set->column_count <= CAU_WHOLE_COLUMNS || !round);
+		assert_true(p.set->columns.count <= CAU_WHOLE_COLUMNS || !round);
 		if (round)
 			assert_columns_are_whole(&p);
 		assert_balance(&p);
