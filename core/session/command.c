@@ -239,8 +239,8 @@ static cau_status set_material(cau_session *session, const cau_command *command,
 	session->tissue.layer[index].def = changed;
 	cau_elements_set_materials(&session->solver.elements, &session->solver.slots, &session->tissue,
 	                           session->dissection.alive.element, session->shrink.shrunk);
-	session->solver.conservative =
-		cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+	session->solver.settings.conservative =
+		cau_solver_is_conservative(&session->tissue, session->solver.settings.diagonal);
 	session->energy.stale = true;
 	return cau_matrix_update_refactor(&session->update, &session->dissection.alive, error);
 }

@@ -46,9 +46,9 @@ static cau_status allocate_state(cau_session *session, cau_error *error)
 		return no_memory(error);
 	session->solver.position = vertices->position;
 	session->solver.position_start = vertices->start;
-	session->solver.external = vertices->external;
+	session->solver.forces.external = vertices->external;
 	session->solver.fixed = vertices->fixed;
-	session->solver.drag = session->touch.drag;
+	session->solver.forces.drag = session->touch.drag;
 	session->solver.pool = session->pool;
 	return CAU_OK;
 }
@@ -110,10 +110,11 @@ static cau_status pass_border(const cau_session *session, const cau_session_def 
 		border.bytes = (size_t)(BYTES_OF_VERTEX * border.vertex_count +
 		                        BYTES_OF_ELEMENT * border.element_count);
 	else
-		border.bytes = session->memory.arena.byte_count +
-		               (size_t)((BYTES_OF_FACTOR_ENTRY +
-		                         (session->solver.newton_chosen ? BYTES_OF_NEWTON_ENTRY : 0)) *
-		                        border.factor_entries);
+		border.bytes =
+			session->memory.arena.byte_count +
+			(size_t)((BYTES_OF_FACTOR_ENTRY +
+		              (session->solver.settings.newton_chosen ? BYTES_OF_NEWTON_ENTRY : 0)) *
+		             border.factor_entries);
 	return def->border ? def->border(def->user, &border, error) : CAU_OK;
 }
 

@@ -71,7 +71,7 @@ static void stop_guess(cau_session *session, double *guess)
 {
 	cau_step_solver *solver = &session->solver;
 	cau_collide *collide = solver->collide;
-	double *at = solver->position_before; // the solver does not use this array before the solve
+	double *at = solver->iterate.before; // the solver does not use this array before the solve
 	memcpy(at, session->vertices.start, 3 * (size_t)session->tissue.vertex_count * sizeof(double));
 	go_in_legs(session, guess, at);
 	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {

@@ -16,13 +16,13 @@ cau_status cau_session_rebuild_system(cau_session *session, cau_error *error)
 	cau_solver_finish(solver);
 	memset(&session->update, 0, sizeof session->update);
 	// a system without rows was marked as diagonal; use the scene's choice again
-	solver->diagonal = session->scene->solver == CAU_SOLVER_DIAGONAL;
-	solver->factor_version++;
-	solver->factor_epoch++;
+	solver->settings.diagonal = session->scene->solver == CAU_SOLVER_DIAGONAL;
+	solver->age.version++;
+	solver->age.epoch++;
 	// A pinned vertex has no row any more. From now on nothing writes its part of these arrays.
 	size_t bytes = 4 * (size_t)session->tissue.vertex_count * solver->kernels->vectors->real_bytes;
-	memset(solver->increment, 0, bytes);
-	memset(solver->history.last_increment, 0, bytes);
+	memset(solver->iterate.increment, 0, bytes);
+	memset(solver->anderson.history.last_increment, 0, bytes);
 	memset(session->contact.solution, 0, bytes);
 	// Frees the last rebuilt system. However often pins change, a session holds at most two
 	// systems.

@@ -31,7 +31,7 @@ cau_status cau_session_make_watch(cau_session *session, cau_error *error)
 	cau_watch *watch = &session->watch;
 	watch->chunk_count = (session->tissue.edges.edge_count + EDGES_IN_CHUNK - 1) / EDGES_IN_CHUNK;
 	size_t edge_chunks = (size_t)watch->chunk_count;
-	size_t vertex_chunks = (size_t)session->solver.chunk_count;
+	size_t vertex_chunks = (size_t)session->solver.chunks.count;
 	watch->room_m = cau_arena_array(&session->memory.arena, edge_chunks, sizeof(double));
 	watch->edge = cau_arena_array(&session->memory.arena, edge_chunks, sizeof(int32_t));
 	watch->farthest2_m2 = cau_arena_array(&session->memory.arena, vertex_chunks, sizeof(double));
@@ -99,7 +99,7 @@ cau_status cau_session_locate(const cau_session *session, cau_error *error)
 static void motion_part(void *context, int32_t chunk)
 {
 	cau_session *session = context;
-	CAU_ASSERT_INDEX(chunk, session->solver.chunk_count);
+	CAU_ASSERT_INDEX(chunk, session->solver.chunks.count);
 	const double *x = session->vertices.position, *start = session->vertices.start;
 	double most = fastest_m_s * session->solver.step_s, farthest2 = 0;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK, astray = -1;
@@ -210,7 +210,7 @@ cau_status cau_session_check_motion(cau_session *session, cau_error *error)
 {
 	cau_watch *watch = &session->watch;
 	double farthest2 = 0;
-	int32_t chunks = session->solver.chunk_count;
+	int32_t chunks = session->solver.chunks.count;
 	cau_pool_run(session->pool, chunks, motion_part, session);
 	for (int32_t k = 0; k < chunks; k++) {
 		if (watch->astray[k] >= 0)

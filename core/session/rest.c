@@ -115,7 +115,7 @@ static double most_m(const cau_session *session)
 static bool has_moved(const cau_session *session)
 {
 	double most = most_m(session);
-	for (int32_t chunk = 0; chunk < session->solver.chunk_count; chunk++)
+	for (int32_t chunk = 0; chunk < session->solver.chunks.count; chunk++)
 		if (!(session->watch.farthest2_m2[chunk] <= most * most))
 			return true;
 	return false;
@@ -179,8 +179,8 @@ cau_status cau_session_rest_tick(cau_session *session, cau_error *error)
 	cau_step_solver *solver = &session->solver;
 	memset(session->timing.stage_s, 0, sizeof session->timing.stage_s);
 	session->queue.refusal_count = 0;
-	solver->iterations_done = solver->backtracks = 0;
-	solver->residual = solver->accuracy.error = session->energy.gain_j = 0;
+	solver->result.iterations = solver->result.backtracks = 0;
+	solver->result.residual = solver->accuracy.error = session->energy.gain_j = 0;
 	cau_dissection_begin(&session->dissection);
 	// Refusals and sequence numbers are reported as in every tick.
 	cau_status status = cau_session_apply_commands(session, error);

@@ -63,7 +63,7 @@ static void take_counts(cau_session *session, const snapshot_head *head)
 	cau_session_forget_inversion(session);
 	session->inversion.count = head->inverted;
 	session->driven.count = session->queue.refusal_count = 0;
-	session->solver.factor_version = head->factor.version;
+	session->solver.age.version = head->factor.version;
 	update->group_count = head->factor.group_count;
 	update->waiting_at_start = head->factor.waiting_at_start;
 	update->longest_wait = head->factor.longest_wait;
@@ -171,8 +171,8 @@ static void take_elements(cau_session *session, const snapshot_state *state)
 	memcpy(to->fat.limited, from->fat.limited, (size_t)(fat / CAU_BATCH));
 	memcpy(to->fat.flowed, from->fat.flowed, (size_t)(fat / CAU_BATCH));
 	cau_elements_mark_targets(to, &session->solver.slots);
-	session->solver.conservative =
-		cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+	session->solver.settings.conservative =
+		cau_solver_is_conservative(&session->tissue, session->solver.settings.diagonal);
 }
 
 static void take_contact(cau_session *session, const snapshot_state *state)
@@ -182,7 +182,7 @@ static void take_contact(cau_session *session, const snapshot_state *state)
 	size_t bytes =
 		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	cau_contact_clear(set);
-	set->columns.epoch = session->solver.factor_epoch;
+	set->columns.epoch = session->solver.age.epoch;
 	set->columns.count = (int32_t)count;
 	memcpy(set->columns.vertex, state->columns.vertex, count * sizeof *set->columns.vertex);
 	memcpy(set->columns.version, state->columns.version, count * sizeof *set->columns.version);

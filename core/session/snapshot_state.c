@@ -21,7 +21,7 @@ static uint64_t build_hash(void)
 static int32_t kept_columns(const cau_session *session)
 {
 	CAU_ASSERT_INDEX(session->contact.columns.count, CAU_MAX_COLUMNS + 1);
-	return session->contact.columns.epoch == session->solver.factor_epoch
+	return session->contact.columns.epoch == session->solver.age.epoch
 	           ? session->contact.columns.count
 	           : 0;
 }
@@ -45,7 +45,7 @@ static snapshot_factor view_factor(const cau_session *session)
 	const cau_matrix_update *update = &session->update;
 	return (snapshot_factor){.swap_tick = update->making ? update->swap_tick : 0,
 	                         .longest_wait = update->longest_wait,
-	                         .version = session->solver.factor_version,
+	                         .version = session->solver.age.version,
 	                         .group_count = update->group_count,
 	                         .waiting_at_start = update->making ? update->waiting_at_start : 0,
 	                         .refactorisations = update->refactorisations,

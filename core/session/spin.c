@@ -415,7 +415,7 @@ void cau_session_turn_prediction(cau_session *session)
 void cau_session_keep_momentum(cau_session *session)
 {
 	const cau_collide *collide = session->solver.collide;
-	if (!session->contact.row_count && !session->solver.drag_count &&
+	if (!session->contact.row_count && !session->solver.forces.drag_count &&
 	    !(collide && collide->result.touching_count))
 		turn_pieces(session, keep_momentum);
 }

@@ -35,7 +35,7 @@ static void settle_part(void *context, int32_t index)
 	CAU_ASSERT_INDEX(index, solver->slots.work_count);
 	atomic_fetch_add(&work->inverted,
 	                 solver->kernels->settle(&solver->elements, &solver->slots.work[index],
-	                                         solver->displacement));
+	                                         solver->iterate.displacement));
 }
 
 // Computes plastic flow and counts the inverted tetrahedra (plasticity_kernel.h).
@@ -123,7 +123,7 @@ static bool hold(cau_session *session, int rounds, cau_status *status, cau_error
 		if (round == rounds)
 			return true;
 		solver->contact = &session->contact;
-		solver->objective = cau_solver_evaluate(solver);
+		solver->result.objective = cau_solver_evaluate(solver);
 		*status = descend(session, error);
 	}
 	session->contact.crossing = !*status && cau_session_find_thrown(session);
@@ -136,7 +136,7 @@ static void begin_again(cau_session *session)
 	cau_session_begin_collide(session);
 	cau_session_find_contacts(session);
 	solver->contact = session->contact.row_count ? &session->contact : NULL;
-	solver->objective = cau_solver_evaluate(solver);
+	solver->result.objective = cau_solver_evaluate(solver);
 }
 
 // Whether a tool has open jaws. Tissue between open jaws cannot leave one jaw without entering the
@@ -166,7 +166,7 @@ static cau_status solve(cau_session *session, cau_error *error)
 		if (!session->contact.crossing)
 			break;
 		cau_session_let_through(session);
-		solver->objective = cau_solver_evaluate(solver);
+		solver->result.objective = cau_solver_evaluate(solver);
 		cau_solver_displace(solver);
 		break;
 	}
@@ -201,10 +201,10 @@ static cau_status fault(cau_session *session, cau_status status)
 static void end_solve_stages(cau_session *session)
 {
 	cau_session_stage_end(session, CAU_STAGE_GLOBAL);
-	session->timing.stage_s[CAU_STAGE_LOCAL] = session->solver.local_s;
-	session->timing.stage_s[CAU_STAGE_CONTACT] = session->solver.contact_s;
+	session->timing.stage_s[CAU_STAGE_LOCAL] = session->solver.result.local_s;
+	session->timing.stage_s[CAU_STAGE_CONTACT] = session->solver.result.contact_s;
 	session->timing.stage_s[CAU_STAGE_GLOBAL] -=
-		session->solver.local_s + session->solver.contact_s;
+		session->solver.result.local_s + session->solver.result.contact_s;
 }
 
 // Computes the tick's motion, in one or two substeps (substep.c).

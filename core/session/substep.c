@@ -171,8 +171,8 @@ static void keep_pushes(cau_session *session)
 		for (int32_t k = 0; k < row->corner_count; k++)
 			add_push(push, row->vertex[k], first * row->weight[k], row->reaction);
 	}
-	for (int32_t k = 0; k < session->solver.drag_count; k++) {
-		const cau_drag *drag = &session->solver.drag[k];
+	for (int32_t k = 0; k < session->solver.forces.drag_count; k++) {
+		const cau_drag *drag = &session->solver.forces.drag[k];
 		double away[3];
 		for (int c = 0; c < 3; c++)
 			away[c] =
@@ -183,21 +183,21 @@ static void keep_pushes(cau_session *session)
 
 static void keep_statistics(cau_substep *substep, const cau_step_solver *solver)
 {
-	substep->iterations = solver->iterations_done;
-	substep->backtracks = solver->backtracks;
-	substep->local_s = solver->local_s;
-	substep->contact_s = solver->contact_s;
-	substep->residual = solver->residual;
+	substep->iterations = solver->result.iterations;
+	substep->backtracks = solver->result.backtracks;
+	substep->local_s = solver->result.local_s;
+	substep->contact_s = solver->result.contact_s;
+	substep->residual = solver->result.residual;
 	substep->error = solver->accuracy.error;
 }
 
 static void add_statistics(const cau_substep *substep, cau_step_solver *solver)
 {
-	solver->iterations_done += substep->iterations;
-	solver->backtracks += substep->backtracks;
-	solver->local_s += substep->local_s;
-	solver->contact_s += substep->contact_s;
-	solver->residual = fmax(solver->residual, substep->residual);
+	solver->result.iterations += substep->iterations;
+	solver->result.backtracks += substep->backtracks;
+	solver->result.local_s += substep->local_s;
+	solver->result.contact_s += substep->contact_s;
+	solver->result.residual = fmax(solver->result.residual, substep->residual);
 	// An error of x2 is larger in v2 by 1 / gamma.
 	solver->accuracy.error = fmax(solver->accuracy.error, substep->error) / CAU_SDIRK2_GAMMA;
 }

@@ -156,7 +156,8 @@ static void add_drag(cau_session *session, int32_t index)
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
 			int32_t v = session->heat.near.vertex[i];
 			cau_vec3 x = cau_vec3_of(session->vertices.start + 3 * (size_t)v);
-			if (session->vertices.fixed[v] || solver->drag_count == session->tissue.vertex_count ||
+			if (session->vertices.fixed[v] ||
+			    solver->forces.drag_count == session->tissue.vertex_count ||
 			    cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, CAU_PART_HOT, x,
 			                         NULL) > 0)
 				continue;
@@ -165,7 +166,7 @@ static void add_drag(cau_session *session, int32_t index)
 			                 .coefficient = fmin(def->drag_ns_m / session->substep.length_s, most)};
 			cau_vec3 local = cau_pose_to_local(&tool->pose_before, x);
 			cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), drag.target);
-			solver->drag[solver->drag_count++] = drag;
+			solver->forces.drag[solver->forces.drag_count++] = drag;
 		}
 	}
 }
@@ -209,7 +210,7 @@ void cau_session_find_contacts(cau_session *session)
 	session->contact.begun.count = -1;
 	session->contact.torn = session->dissection.tears.elements_torn > 0;
 	session->contact.let_through = false;
-	session->solver.drag_count = 0;
+	session->solver.forces.drag_count = 0;
 	if (!session->tool_count)
 		return;
 	cau_near_refit(&session->heat.near, session->vertices.position);

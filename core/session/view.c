@@ -174,9 +174,9 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 {
 	const cau_step_solver *solver = &session->solver;
 	*statistics = (cau_statistics){
-		.iterations = solver->iterations_done,
-		.residual = solver->residual,
-		.backtracks = solver->backtracks,
+		.iterations = solver->result.iterations,
+		.residual = solver->result.residual,
+		.backtracks = solver->result.backtracks,
 		.inverted = session->inversion.count,
 		.edges_parted = session->dissection.edges_parted,
 		.elements_removed = session->dissection.elements_removed,

@@ -293,7 +293,8 @@ static void spread_part(void *context, int32_t chunk)
 	const spread *work = context;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	solver->kernels->spread(solver->increment, work->column, work->load, work->count, first, last);
+	solver->kernels->spread(solver->iterate.increment, work->column, work->load, work->count, first,
+	                        last);
 }
 
 static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
@@ -310,7 +311,7 @@ static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
 		work.column[work.count++] = set->columns.whole[c];
 	}
 	if (work.count)
-		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &work);
+		cau_pool_run(solver->pool, solver->chunks.count, spread_part, &work);
 }
 
 // Computes increment += C W^T dr by one application of A^-1 to all loads. This is needed if there
@@ -321,7 +322,7 @@ static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
 	for (int32_t c = 0; c < set->columns.count; c++)
 		vectors->add(set->unit, set->columns.vertex[c], set->change + 3 * (size_t)c);
 	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
-	solver->kernels->add_scaled(solver->increment, 1, set->solution,
+	solver->kernels->add_scaled(solver->iterate.increment, 1, set->solution,
 	                            4 * (int64_t)solver->tissue->vertex_count);
 	for (int32_t c = 0; c < set->columns.count; c++) {
 		double load[3]; // the load as it was rounded to reals
@@ -346,7 +347,7 @@ static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 				set->change[3 * row->column[k] + c] += change;
 				off[c] = -change;
 			}
-			solver->kernels->vectors->add(solver->gradient, row->vertex[k], off);
+			solver->kernels->vectors->add(solver->iterate.gradient, row->vertex[k], off);
 		}
 		memcpy(set->before + 3 * (size_t)i, row->reaction, sizeof row->reaction);
 	}
@@ -372,7 +373,7 @@ static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 	for (int32_t i = 0; i < set->columns.used_count; i++) {
 		int32_t k = set->columns.used[i];
 		double step[3];
-		solver->kernels->vectors->read(solver->increment, set->columns.vertex[k], step);
+		solver->kernels->vectors->read(solver->iterate.increment, set->columns.vertex[k], step);
 		for (int32_t c = 0; c < 3; c++)
 			set->step[c * CAU_MAX_COLUMNS + k] = step[c];
 	}
@@ -462,7 +463,7 @@ double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solve
 		const cau_contact_row *row = &set->row[i];
 		double way[3][3];
 		for (int32_t k = 0; k < row->corner_count; k++)
-			solver->kernels->vectors->read(solver->trial_increment, row->vertex[k], way[k]);
+			solver->kernels->vectors->read(solver->iterate.trial, row->vertex[k], way[k]);
 		cau_vec3 along = cau_contact_weighted(row, way[0]);
 		work += fabs(row->reaction[0] * along.x) + fabs(row->reaction[1] * along.y) +
 		        fabs(row->reaction[2] * along.z);

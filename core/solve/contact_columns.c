@@ -33,7 +33,7 @@ static void make_columns(cau_contact_set *set, cau_step_solver *solver, const in
 			set->columns.inverse[p * CAU_MAX_COLUMNS + i] =
 				set->columns.inverse[i * CAU_MAX_COLUMNS + p] = s;
 		}
-		set->columns.version[p] = solver->factor_version;
+		set->columns.version[p] = solver->age.version;
 		vectors->add(set->unit, set->columns.vertex[p], unload[c]);
 	}
 }
@@ -170,7 +170,7 @@ static void renew(cau_contact_set *set, cau_step_solver *solver)
 	int32_t place[CAU_COLUMNS_RENEWED];
 	int32_t rounds = set->torn && holds_anything(set) ? CAU_MAX_COLUMNS / CAU_COLUMNS_RENEWED : 1;
 	for (int32_t round = 0; round < rounds; round++) {
-		int32_t lagging = find_lagging(set, solver->factor_version, place);
+		int32_t lagging = find_lagging(set, solver->age.version, place);
 		if (!lagging)
 			return;
 		make_columns(set, solver, place, lagging);
@@ -206,9 +206,9 @@ static void find_columns(cau_contact_set *set, int32_t index)
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT(set->row_count > 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows", set->row_count);
-	if (set->columns.epoch != solver->factor_epoch)
+	if (set->columns.epoch != solver->age.epoch)
 		set->columns.count = 0;
-	set->columns.epoch = solver->factor_epoch;
+	set->columns.epoch = solver->age.epoch;
 	int32_t most = cau_contact_is_wide(set) ? CAU_MAX_COLUMNS : CAU_WHOLE_COLUMNS;
 	if (set->columns.count + count_missing(set) > most)
 		drop_unused(set, solver);

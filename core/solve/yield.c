@@ -49,16 +49,16 @@ static void product_part(void *context, int32_t chunk)
 	const product *work = context;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	solver->chunk_dot[chunk] =
+	solver->chunks.dot[chunk] =
 		solver->kernels->dot(work->a, work->b, 4 * (int64_t)first, 4 * (int64_t)(last - first));
 }
 
 static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *b)
 {
 	double all = 0;
-	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
-	for (int32_t chunk = 0; chunk < solver->chunk_count; chunk++)
-		all += solver->chunk_dot[chunk];
+	cau_pool_run(solver->pool, solver->chunks.count, product_part, &(product){solver, a, b});
+	for (int32_t chunk = 0; chunk < solver->chunks.count; chunk++)
+		all += solver->chunks.dot[chunk];
 	return all;
 }
 
@@ -116,28 +116,30 @@ static void begin(cau_step_solver *solver)
 	size_t bytes = 4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes;
 	// sets r = -gradient, and z = p = A^-1 r, which is the present increment; then A p = r
 	memset(y->residual, 0, bytes);
-	add(solver, y->residual, -1, solver->gradient);
+	add(solver, y->residual, -1, solver->iterate.gradient);
 	memcpy(y->image, y->residual, bytes);
-	memcpy(y->direction, solver->increment, bytes);
-	memset(solver->increment, 0, bytes);
+	memcpy(y->direction, solver->iterate.increment, bytes);
+	memset(solver->iterate.increment, 0, bytes);
 }
 
 void cau_solver_yield(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
 	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->touching_count);
-	double size = -dot(solver, solver->gradient, solver->increment), first = size, off[3] = {0};
-	double touching = touch(solver, solver->increment), own = size;
+	double size = -dot(solver, solver->iterate.gradient, solver->iterate.increment), first = size,
+		   off[3] = {0};
+	double touching = touch(solver, solver->iterate.increment), own = size;
 	if (!(size > 0) || !(touching >= 0))
 		return;
 	if (first_serves(solver, touching / own)) {
-		add(solver, solver->increment, size / (touching + own) - 1, solver->increment);
+		add(solver, solver->iterate.increment, size / (touching + own) - 1,
+		    solver->iterate.increment);
 		return;
 	}
 	begin(solver);
 	for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
 		double step = size / (touching + own);
-		add(solver, solver->increment, step, y->direction);
+		add(solver, solver->iterate.increment, step, y->direction);
 		off[1] = sweep ? off[2] : step * size;
 		off[2] = step * size;
 		if (!sweep)

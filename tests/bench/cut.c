@@ -191,7 +191,7 @@ static int step_along(along_run *run, int32_t at, bench_along_result *result)
 		return 1;
 	run->ms[at] = 1e3 * (bench_cpu_s() - before);
 	double reported = run->reported[at] = session->solver.accuracy.error;
-	run->iterations += session->solver.iterations_done;
+	run->iterations += session->solver.result.iterations;
 	run->above += reported > run->accuracy;
 	result->elements_removed = frame.statistics.elements_removed;
 	if (!sampled)

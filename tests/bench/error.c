@@ -122,7 +122,7 @@ static double step_error(pull_run *pull, cau_session *trial, const cau_session *
                          const cau_session *exact, double share, int32_t iterations, double *ms)
 {
 	copy_state(trial, state);
-	trial->solver.iterations = iterations;
+	trial->solver.settings.iterations = iterations;
 	drive(pull, trial, share);
 	double start = bench_now_s();
 	cau_session_step(trial, NULL);
@@ -166,7 +166,8 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 			copy_state(exact, state);
 			drive(pull, exact, share);
 			cau_session_step(exact, NULL);
-			result->reference_residual = fmax(result->reference_residual, exact->solver.residual);
+			result->reference_residual =
+				fmax(result->reference_residual, exact->solver.result.residual);
 			double error = step_error(pull, trial, state, exact, share, options->iterations, &ms);
 			sum += error;
 			samples++;
@@ -222,8 +223,8 @@ int bench_error(const bench_options *options, bench_error_result *result)
 	exact = pinned_session(scene, options);
 	if (!state || !trial || !exact)
 		goto done;
-	if (exact->solver.diagonal)
-		exact->solver.iterations = CONVERGED_DIAGONAL;
+	if (exact->solver.settings.diagonal)
+		exact->solver.settings.iterations = CONVERGED_DIAGONAL;
 	choose(&pull, state);
 	measure(options, &pull, state, trial, exact, result);
 	failed = 0;

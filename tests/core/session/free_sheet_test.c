@@ -67,8 +67,8 @@ static hanging run(const cau_scene_def *scene)
 	hanging of = {0};
 	cau_session *session = stage_open(scene, 1), *exact = stage_open(scene, 1);
 	exact->solver.accuracy.wanted = 0;
-	exact->solver.iterations = CONVERGED;
-	exact->solver.tolerance = converged_residual;
+	exact->solver.settings.iterations = CONVERGED;
+	exact->solver.settings.tolerance = converged_residual;
 	for (int k = 0; k < TICKS; k++) {
 		stage_gravity(session, 0, 0, -9.81); // keeps the tissue awake
 		if (k % EVERY == 0)

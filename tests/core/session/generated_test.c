@@ -277,7 +277,7 @@ static void sample(cau_session *session, cau_session *exact, const generated *of
 	advance(of, session, tick);
 	stage_step(session, 1);
 	double is = step_error(session, exact->vertices.position, wanted);
-	found->unsettled = fmax(found->unsettled, exact->solver.residual);
+	found->unsettled = fmax(found->unsettled, exact->solver.result.residual);
 	found->flattered += is > 3 * session->solver.accuracy.error;
 	error[found->samples++] = is;
 }
@@ -288,8 +288,8 @@ static verdict run(const generated *of)
 	double error[SAMPLES], gained = 0, range = 0;
 	cau_session *session = stage_open(of->scene, 1), *exact = stage_open(of->scene, 1);
 	exact->solver.accuracy.wanted = 0;
-	exact->solver.iterations = CONVERGED;
-	exact->solver.tolerance = converged_residual;
+	exact->solver.settings.iterations = CONVERGED;
+	exact->solver.settings.tolerance = converged_residual;
 	int32_t *ticks =
 		calloc((size_t)session->tissue.primitives.tetrahedron_count + 1, sizeof *ticks);
 	for (int tick = 0; tick < TICKS; tick++) {

@@ -29,8 +29,8 @@ static void make_of(pressed *p, double friction, int32_t along, int32_t across, 
 	rig_pin_box(&p->r, (double[]){-1, -1, -1}, (double[]){1, 1, -0.0299});
 	rig_build(&p->r, NULL, 1);
 	rig_factor(&p->r);
-	p->r.solver.iterations = 600;
-	p->r.solver.tolerance = 1e-10;
+	p->r.solver.settings.iterations = 600;
+	p->r.solver.settings.tolerance = 1e-10;
 	p->tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	p->tool.hot_radius_m = RADIUS_M;
 	p->tool.friction = friction;
@@ -86,7 +86,7 @@ static void assert_balance(const pressed *p)
 	size_t n = 3 * (size_t)p->r.tissue.vertex_count;
 	double *left = calloc(n, sizeof *left), largest = 0;
 	for (size_t i = 0; i < n; i++)
-		left[i] = ((double *)p->r.solver.gradient)[4 * (i / 3) + i % 3];
+		left[i] = ((double *)p->r.solver.iterate.gradient)[4 * (i / 3) + i % 3];
 	for (int32_t k = 0; k < p->set->row_count; k++) {
 		const cau_contact_row *row = &p->set->row[k];
 		largest = fmax(largest, cau_length(cau_vec3_of(row->reaction)));
