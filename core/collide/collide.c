@@ -58,46 +58,46 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		size_t count, bytes;
 	} arrays[] = {
 		{(void **)&collide->exempt, n, 1},
-		{(void **)&collide->exempt_before, n, 1},
+		{(void **)&collide->search.exempt_before, n, 1},
 		{(void **)&collide->stiffness, n, sizeof(double)},
 		{(void **)&collide->longest_m, n, sizeof(double)},
-		{(void **)&collide->anchor, 3 * n, sizeof(double)},
-		{(void **)&collide->reach_m, n, sizeof(double)},
-		{(void **)&collide->seen, 3 * n, sizeof(double)},
-		{(void **)&collide->apart_m, pairs, sizeof(double)},
+		{(void **)&collide->range.anchor, 3 * n, sizeof(double)},
+		{(void **)&collide->range.reach_m, n, sizeof(double)},
+		{(void **)&collide->seen.at, 3 * n, sizeof(double)},
+		{(void **)&collide->seen.apart_m, pairs, sizeof(double)},
 		{(void **)&collide->pair, pairs, sizeof *collide->pair},
 		{(void **)&collide->grip, pairs, sizeof *collide->grip},
-		{(void **)&collide->stopped, pairs, sizeof *collide->stopped},
-		{(void **)&collide->wanted, 3 * n, sizeof(double)},
-		{(void **)&collide->room_m, n, sizeof(double)},
-		{(void **)&collide->pushed, n, 1},
-		{(void **)&collide->unclear, pairs, sizeof(int32_t)},
-		{(void **)&collide->is_loaded, n, 1},
-		{(void **)&collide->loaded, n, sizeof(int32_t)},
-		{(void **)&collide->gradient, 3 * n, sizeof(double)},
-		{(void **)&collide->probe, 3 * n, sizeof(double)},
-		{(void **)&collide->answer, 3 * n, sizeof(double)},
+		{(void **)&collide->filter.stopped, pairs, sizeof *collide->filter.stopped},
+		{(void **)&collide->filter.wanted, 3 * n, sizeof(double)},
+		{(void **)&collide->filter.room_m, n, sizeof(double)},
+		{(void **)&collide->filter.pushed, n, 1},
+		{(void **)&collide->filter.unclear, pairs, sizeof(int32_t)},
+		{(void **)&collide->load.is_loaded, n, 1},
+		{(void **)&collide->load.vertex, n, sizeof(int32_t)},
+		{(void **)&collide->load.gradient, 3 * n, sizeof(double)},
+		{(void **)&collide->load.probe, 3 * n, sizeof(double)},
+		{(void **)&collide->load.answer, 3 * n, sizeof(double)},
 		{(void **)&collide->step, 3 * n, sizeof(double)},
-		{(void **)&collide->face_box, (size_t)tissue->faces.face_count, box},
-		{(void **)&collide->edge_box, (size_t)tissue->edges.edge_count, box},
-		{(void **)&collide->vertex_box, n, box},
-		{(void **)&collide->block_box[0], blocks, box},
-		{(void **)&collide->block_box[1], blocks, box},
-		{(void **)&collide->block_box[2], blocks, box},
-		{(void **)&collide->slice, blocks, sizeof *collide->slice},
-		{(void **)&collide->fresh_box[0], blocks, box},
-		{(void **)&collide->fresh_box[1], blocks, box},
-		{(void **)&collide->fresh_box[2], blocks, box},
-		{(void **)&collide->place_box, blocks, box},
-		{(void **)&collide->block_lane, blocks / CAU_LANES + 1, lanes},
-		{(void **)&collide->touched_lane, blocks / CAU_LANES + 1, lanes},
-		{(void **)&collide->touched, blocks, sizeof(int32_t)},
-		{(void **)&collide->is_touched, blocks, 1},
-		{(void **)&collide->alive_before[0], (size_t)tissue->triangle_count, 1},
-		{(void **)&collide->alive_before[1], (size_t)tissue->tetrahedron_count, 1},
-		{(void **)&collide->alive_before[2], (size_t)tissue->link_count, 1},
-		{(void **)&collide->list[0], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
-		{(void **)&collide->list[1], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
+		{(void **)&collide->search.face_box, (size_t)tissue->faces.face_count, box},
+		{(void **)&collide->search.edge_box, (size_t)tissue->edges.edge_count, box},
+		{(void **)&collide->search.vertex_box, n, box},
+		{(void **)&collide->search.block_box[0], blocks, box},
+		{(void **)&collide->search.block_box[1], blocks, box},
+		{(void **)&collide->search.block_box[2], blocks, box},
+		{(void **)&collide->search.slice, blocks, sizeof *collide->search.slice},
+		{(void **)&collide->search.fresh_box[0], blocks, box},
+		{(void **)&collide->search.fresh_box[1], blocks, box},
+		{(void **)&collide->search.fresh_box[2], blocks, box},
+		{(void **)&collide->search.place_box, blocks, box},
+		{(void **)&collide->search.block_lane, blocks / CAU_LANES + 1, lanes},
+		{(void **)&collide->search.touched_lane, blocks / CAU_LANES + 1, lanes},
+		{(void **)&collide->search.touched, blocks, sizeof(int32_t)},
+		{(void **)&collide->search.is_touched, blocks, 1},
+		{(void **)&collide->search.alive_before[0], (size_t)tissue->triangle_count, 1},
+		{(void **)&collide->search.alive_before[1], (size_t)tissue->tetrahedron_count, 1},
+		{(void **)&collide->search.alive_before[2], (size_t)tissue->link_count, 1},
+		{(void **)&collide->search.list[0], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
+		{(void **)&collide->search.list[1], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
 	};
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
 		*arrays[i].array = cau_arena_array(arena, arrays[i].count, arrays[i].bytes);
@@ -110,15 +110,16 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 static bool make_lanes(cau_collide *collide, cau_arena *arena)
 {
 	const cau_tissue *tissue = collide->tissue;
+	cau_search *search = &collide->search;
 	size_t blocks = (size_t)collide->surface.block_count;
 	int32_t count[] = {tissue->faces.face_count, tissue->edges.edge_count, tissue->vertex_count};
 	bool made = true;
 	for (int what = 0; what < 3; what++) {
 		size_t groups = (size_t)count[what] / CAU_LANES + blocks + 1;
-		collide->lane[what] = cau_arena_array(arena, groups, sizeof *collide->lane[what]);
-		collide->fresh_lane[what] = cau_arena_array(arena, groups, 1);
-		collide->lane_first[what] = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
-		made &= collide->lane[what] && collide->fresh_lane[what] && collide->lane_first[what];
+		search->lane[what] = cau_arena_array(arena, groups, sizeof *search->lane[what]);
+		search->fresh_lane[what] = cau_arena_array(arena, groups, 1);
+		search->lane_first[what] = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
+		made &= search->lane[what] && search->fresh_lane[what] && search->lane_first[what];
 	}
 	return made;
 }

@@ -77,56 +77,42 @@ typedef enum cau_collide_need {
 	CAU_COLLIDE_TICK,
 } cau_collide_need;
 
-typedef struct cau_collide {
-	const cau_tissue *tissue;
-	double thickness_m, friction;
-	const uint8_t *fixed; // (n), n vertices; borrowed: 1 at vertices that no step moves
-	// (n): vertices excluded from contact in this tick: held by jaws, inverted, diverged. They are
-	// in no pair, and no filter moves them.
-	uint8_t *exempt;
-	// Elements that join parts while they are alive: triangles, tetrahedra, links. Borrowed. NULL:
-	// all are alive.
-	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
-	double *stiffness; // N/m, (n): contact stiffness of each vertex
-	double *longest_m; // m, (n): longest edge of each vertex, at rest
-	cau_surface surface;
-	// Range in which the pairs are valid: no vertex is farther than its reach from its anchor. If
-	// `found` is false, no pairs are known.
-	bool found;
+// Range in which the pairs are valid: no vertex is farther than its reach from its anchor.
+typedef struct cau_collide_range {
+	bool found;      // false: no pairs are known
+	bool ahead;      // pairs are known to be valid at the positions of the next evaluation
 	double *anchor;  // m, (n x 3): position around which the pairs of each vertex are known
 	double *reach_m; // m, (n): radius around the anchor
-	bool ahead;      // pairs are known to be valid at the positions of the next evaluation
-	double *seen;    // m, (n x 3): positions at which pairs were last measured
-	double *apart_m; // m, (most_pairs): lower bound of each pair's distance at `seen`
-	double slack_m;  // m: smallest remaining reach of any vertex at `seen`
-	double away_m;   // m: upper bound of any vertex's distance from `seen` to its present position
-	int32_t pair_count, most_pairs;
-	cau_collide_pair *pair; // (most_pairs)
-	int32_t grip_count;
-	cau_collide_grip *grip; // (most_pairs)
-	const double *start;    // m, (n x 3): positions at the tick's start
-	// Results of the last evaluation.
+} cau_collide_range;
+
+// The last measurement of the pairs' distances.
+typedef struct cau_collide_seen {
+	double *at;      // m, (n x 3): positions at which pairs were last measured
+	double *apart_m; // m, (most_pairs): lower bound of each pair's distance at these positions
+	double slack_m;  // m: smallest remaining reach of any vertex at these positions
+	double away_m;   // m: upper bound of any vertex's distance from there to its present position
+} cau_collide_seen;
+
+// The energy of the last evaluation.
+typedef struct cau_collide_result {
 	double energy_j;        // energy of the pairs, without friction
 	int32_t touching_count; // pairs nearer than their thickness
 	double steepest;        // largest ratio of curvature to stiffness of a touching pair
 	uint64_t touching_hash; // hash of the pairs that are nearer than half of their thickness
-	int32_t loaded_count;
-	uint8_t *is_loaded; // (n): 1 at vertices that have a gradient
-	int32_t *loaded;    // (n): the loaded_count vertices that have a gradient
+} cau_collide_result;
+
+// The vertices that had a gradient in the last evaluation: the loaded vertices.
+typedef struct cau_collide_load {
+	int32_t count;
+	int32_t *vertex;    // (n), of which `count` are in use
+	uint8_t *is_loaded; // (n): 1 at loaded vertices
 	double *gradient;   // N, (n x 3): gradient of the energy; 0 at all other vertices
 	double *probe;      // m, (n x 3): input of cau_collide_apply, at loaded vertices
 	double *answer;     // N, (n x 3): result of cau_collide_apply, at loaded vertices
-	// State of the last filter, and counts of the tick.
-	double kept_share; // least share of its distance that a pair keeps in a step (filter.c)
-	// `held_back`: the last filter changed the step. `out_of_reach`: the filter changed the step
-	// because pairs farther away are not known.
-	bool held_back, out_of_reach;
-	int32_t held_back_count, search_count;
-	int32_t cut_short_count; // times that pairs exceeded the capacity, so that steps were shortened
-	double *step;            // m, (n x 3): the step to be filtered
-	double start_energy_j;
-	// ---- find.c: result of the last search
+} cau_collide_load;
 
+// find.c: result of the last search, and scratch memory.
+typedef struct cau_search {
 	// Boxes of the tissue's drawn faces, edges, vertices.
 	cau_collide_box *face_box, *edge_box, *vertex_box;
 	// Boxes of a block's faces, edges, vertices: of all, and of the fresh ones.
@@ -144,7 +130,7 @@ typedef struct cau_collide {
 	uint8_t *fresh_lane[3];
 	// (blocks + 1): begin of each block's list when the groups were laid out
 	int32_t *lane_first[3];
-	// ---- find.c: scratch
+	// ---- scratch
 
 	int32_t touched_count, *touched;              // blocks with a fresh part
 	cau_collide_lanes *block_lane, *touched_lane; // boxes of all faces of each block; boxes of the
@@ -154,8 +140,14 @@ typedef struct cau_collide {
 	bool may_give_up;  // the search may stop early, as the result of a failed search is not used
 	atomic_bool fails; // the search has failed: the pairs exceed the capacity
 	atomic_int listed_count; // pairs that finished blocks have listed
-	// ---- filter.c: scratch
+} cau_search;
 
+// filter.c: state of the last filter, and scratch memory.
+typedef struct cau_filter {
+	double kept_share; // least share of its distance that a pair keeps in a step
+	// `held_back`: the last filter changed the step. `out_of_reach`: the filter changed the step
+	// because pairs farther away are not known.
+	bool held_back, out_of_reach;
 	bool *stopped;   // (most_pairs): the pair has been stopped in this step
 	double *wanted;  // m, (n x 3): the step before the filter changed it
 	double *room_m;  // m, (n): how far a pushed vertex may move
@@ -163,6 +155,37 @@ typedef struct cau_collide {
 	bool pushes_more;
 	// (most_pairs): pairs that cau_collide_foresee could not decide.
 	int32_t unclear_count, *unclear;
+} cau_filter;
+
+typedef struct cau_collide {
+	const cau_tissue *tissue;
+	double thickness_m, friction;
+	const uint8_t *fixed; // (n), n vertices; borrowed: 1 at vertices that no step moves
+	// (n): vertices excluded from contact in this tick: held by jaws, inverted, diverged. They are
+	// in no pair, and no filter moves them.
+	uint8_t *exempt;
+	// Elements that join parts while they are alive: triangles, tetrahedra, links. Borrowed. NULL:
+	// all are alive.
+	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
+	double *stiffness; // N/m, (n): contact stiffness of each vertex
+	double *longest_m; // m, (n): longest edge of each vertex, at rest
+	cau_surface surface;
+	cau_collide_range range;
+	cau_collide_seen seen;
+	int32_t pair_count, most_pairs;
+	cau_collide_pair *pair; // (most_pairs)
+	int32_t grip_count;
+	cau_collide_grip *grip; // (most_pairs)
+	const double *start;    // m, (n x 3): positions at the tick's start
+	double start_energy_j;
+	cau_collide_result result;
+	cau_collide_load load;
+	double *step; // m, (n x 3): the step to be filtered
+	// Counts of the tick.
+	int32_t held_back_count, search_count;
+	int32_t cut_short_count; // times that pairs exceeded the capacity, so that steps were shortened
+	cau_search search;
+	cau_filter filter;
 } cau_collide;
 
 // Creates the tissue contact of one tissue. The caller then sets `fixed` and `start` once.
@@ -178,7 +201,7 @@ double cau_collide_most_step(const cau_collide *collide);
 // of each touching pair.
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 
-// Returns the energy at x, J, with friction. Stores its gradient in `gradient`.
+// Returns the energy at x, J, with friction. Stores its gradient in `load`.
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x);
 
 // Finds the pairs for x (m, n x 3) and for any motion of `count` vertices by at most way_m. Returns
@@ -271,7 +294,7 @@ double cau_collide_away(const cau_collide *collide, const double *x);
 static inline bool cau_collide_is_far(const cau_collide *collide, int32_t pair, double away_m,
                                       double by_m)
 {
-	return collide->apart_m[pair] - 2 * away_m >= by_m;
+	return collide->seen.apart_m[pair] - 2 * away_m >= by_m;
 }
 
 static inline bool cau_collide_is_exempt(const cau_collide *collide, const cau_collide_pair *pair)

@@ -89,8 +89,10 @@ static void look_at(cau_collide *collide, const double *x, int32_t of_edges, int
 				  *face_vertex = collide->tissue->faces.vertex;
 	uint8_t *exempt = collide->exempt;
 	near_parts edges, faces;
-	list_near(&surface->edges, of_edges, edge_vertex, 2, x, &collide->place_box[of_faces], &edges);
-	list_near(&surface->faces, of_faces, face_vertex, 3, x, &collide->place_box[of_edges], &faces);
+	list_near(&surface->edges, of_edges, edge_vertex, 2, x, &collide->search.place_box[of_faces],
+	          &edges);
+	list_near(&surface->faces, of_faces, face_vertex, 3, x, &collide->search.place_box[of_edges],
+	          &faces);
 	for (int32_t i = 0; i < edges.count; i++)
 		for (int32_t k = 0; k < faces.count; k++) {
 			const int32_t *edge = edge_vertex + 2 * (size_t)edges.item[i],
@@ -106,7 +108,7 @@ static void find_boxes(cau_collide *collide, const double *x)
 {
 	const cau_surface_parts *faces = &collide->surface.faces;
 	for (int32_t b = 0; b < collide->surface.block_count; b++) {
-		cau_collide_box *all = &collide->place_box[b];
+		cau_collide_box *all = &collide->search.place_box[b];
 		*all = nowhere;
 		for (int32_t i = faces->first[b]; i < faces->first[b + 1]; i++) {
 			const int32_t *vertex = collide->tissue->faces.vertex + 3 * (size_t)faces->item[i];
@@ -123,7 +125,7 @@ void cau_collide_exempt_crossed(cau_collide *collide, const double *x)
 	find_boxes(collide, x);
 	for (int32_t a = 0; a < blocks; a++)
 		for (int32_t b = 0; b < blocks; b++)
-			if (meets(&collide->place_box[a], &collide->place_box[b]))
+			if (meets(&collide->search.place_box[a], &collide->search.place_box[b]))
 				look_at(collide, x, a, b);
 }
 
@@ -132,36 +134,36 @@ void cau_collide_exempt_crossed(cau_collide *collide, const double *x)
 void cau_collide_note_exempt(cau_collide *collide)
 {
 	size_t n = (size_t)collide->tissue->vertex_count;
-	if (memcmp(collide->exempt, collide->exempt_before, n) == 0)
+	if (memcmp(collide->exempt, collide->search.exempt_before, n) == 0)
 		return;
 	for (size_t v = 0; v < n; v++)
-		if (collide->exempt[v] != collide->exempt_before[v])
+		if (collide->exempt[v] != collide->search.exempt_before[v])
 			collide->surface.changed[v] = 1;
-	memcpy(collide->exempt_before, collide->exempt, n);
+	memcpy(collide->search.exempt_before, collide->exempt, n);
 }
 
 bool cau_collide_touches_again(const cau_collide *collide)
 {
 	for (size_t v = 0; v < (size_t)collide->tissue->vertex_count; v++)
-		if (collide->exempt_before[v] > collide->exempt[v])
+		if (collide->search.exempt_before[v] > collide->exempt[v])
 			return true;
 	return false;
 }
 
 void cau_collide_forget_crossed(cau_collide *collide)
 {
-	memset(collide->exempt_before, 1, (size_t)collide->tissue->vertex_count);
+	memset(collide->search.exempt_before, 1, (size_t)collide->tissue->vertex_count);
 }
 
 void cau_collide_forget(cau_collide *collide)
 {
-	collide->found = false;
+	collide->range.found = false;
 	cau_collide_forget_crossed(collide);
 }
 
 void cau_collide_let_go(cau_collide *collide, int32_t vertex)
 {
 	CAU_ASSERT_INDEX(vertex, collide->tissue->vertex_count);
-	collide->exempt[vertex] = collide->exempt_before[vertex] = 1;
+	collide->exempt[vertex] = collide->search.exempt_before[vertex] = 1;
 	collide->surface.changed[vertex] = 1;
 }

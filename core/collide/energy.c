@@ -59,7 +59,7 @@ static void measure(const cau_collide *collide, int32_t index, const double *x)
 	cau_vec3 corner[4];
 	cau_collide_pair *pair = &collide->pair[index];
 	pair->slope = 0;
-	if (cau_collide_is_far(collide, index, collide->away_m, surely * pair->thickness_m))
+	if (cau_collide_is_far(collide, index, collide->seen.away_m, surely * pair->thickness_m))
 		return;
 	cau_collide_corners(pair, x, corner);
 	if (cau_gap_along(pair->kind, corner, pair->plane) >= surely * pair->thickness_m ||
@@ -100,12 +100,12 @@ static void load(cau_collide *collide, const int32_t vertex[4], const double wei
                  cau_vec3 force)
 {
 	for (int i = 0; i < 4; i++) {
-		double *to = collide->gradient + 3 * (size_t)vertex[i];
+		double *to = collide->load.gradient + 3 * (size_t)vertex[i];
 		if (weight[i] == 0)
 			continue;
-		if (!collide->is_loaded[vertex[i]])
-			collide->loaded[collide->loaded_count++] = vertex[i];
-		collide->is_loaded[vertex[i]] = 1;
+		if (!collide->load.is_loaded[vertex[i]])
+			collide->load.vertex[collide->load.count++] = vertex[i];
+		collide->load.is_loaded[vertex[i]] = 1;
 		to[0] += weight[i] * force.x;
 		to[1] += weight[i] * force.y;
 		to[2] += weight[i] * force.z;
@@ -114,11 +114,11 @@ static void load(cau_collide *collide, const int32_t vertex[4], const double wei
 
 static void unload(cau_collide *collide)
 {
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		memset(collide->gradient + 3 * (size_t)collide->loaded[k], 0, 3 * sizeof(double));
-		collide->is_loaded[collide->loaded[k]] = 0;
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		memset(collide->load.gradient + 3 * (size_t)collide->load.vertex[k], 0, 3 * sizeof(double));
+		collide->load.is_loaded[collide->load.vertex[k]] = 0;
 	}
-	collide->loaded_count = 0;
+	collide->load.count = 0;
 }
 
 // Computes the energy of friction. The friction is elastic up to the largest friction force, and
@@ -162,23 +162,24 @@ static double distance_of(const cau_collide_pair *pair, const double *x)
 // Adds the energy and forces of all pairs, in the pairs' order.
 static void add_pairs(cau_collide *collide, const double *x)
 {
-	collide->energy_j = 0;
-	collide->touching_count = 0;
-	collide->steepest = 0;
-	collide->touching_hash = CAU_HASH_START;
+	collide->result.energy_j = 0;
+	collide->result.touching_count = 0;
+	collide->result.steepest = 0;
+	collide->result.touching_hash = CAU_HASH_START;
 	for (int32_t i = 0; i < collide->pair_count; i++) {
 		const cau_collide_pair *pair = &collide->pair[i];
 		double slope, curvature;
 		if (pair->slope == 0)
 			continue;
 		double distance = distance_of(pair, x);
-		collide->energy_j +=
+		collide->result.energy_j +=
 			potential(pair->stiffness, pair->thickness_m, distance, &slope, &curvature);
-		collide->touching_count++;
-		collide->steepest = fmax(collide->steepest, pair->curvature / pair->stiffness);
+		collide->result.touching_count++;
+		collide->result.steepest =
+			fmax(collide->result.steepest, pair->curvature / pair->stiffness);
 		if (distance < pair->thickness_m / 2)
-			collide->touching_hash =
-				cau_hash_bytes(collide->touching_hash, pair->vertex, sizeof pair->vertex);
+			collide->result.touching_hash =
+				cau_hash_bytes(collide->result.touching_hash, pair->vertex, sizeof pair->vertex);
 		load(collide, pair->vertex, pair->weight, cau_scale(pair->slope, pair->normal));
 	}
 }
@@ -194,11 +195,11 @@ static void see_part(void *context, int32_t share)
 		cau_collide_pair *pair = &collide->pair[i];
 		cau_vec3 corner[4];
 		cau_collide_corners(pair, work->x, corner);
-		collide->apart_m[i] = cau_gap_along(pair->kind, corner, pair->plane);
-		if (collide->apart_m[i] > 2 * pair->thickness_m)
+		collide->seen.apart_m[i] = cau_gap_along(pair->kind, corner, pair->plane);
+		if (collide->seen.apart_m[i] > 2 * pair->thickness_m)
 			continue;
 		cau_gap gap = cau_gap_between(pair->kind, corner);
-		collide->apart_m[i] = gap.distance;
+		collide->seen.apart_m[i] = gap.distance;
 		pair->plane = gap.normal;
 	}
 }
@@ -206,9 +207,9 @@ static void see_part(void *context, int32_t share)
 void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	measuring work = {collide, x};
-	memcpy(collide->seen, x, 3 * (size_t)collide->tissue->vertex_count * sizeof *x);
-	collide->away_m = 0;
-	collide->slack_m = cau_collide_slack(collide, x);
+	memcpy(collide->seen.at, x, 3 * (size_t)collide->tissue->vertex_count * sizeof *x);
+	collide->seen.away_m = 0;
+	collide->seen.slack_m = cau_collide_slack(collide, x);
 	cau_pool_run(pool, share_count(collide), see_part, &work);
 }
 
@@ -220,7 +221,7 @@ double cau_collide_away(const cau_collide *collide, const double *x)
 		size_t at = 3 * (size_t)vertices->item[k];
 		if (collide->exempt[vertices->item[k]])
 			continue;
-		cau_vec3 way = cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->seen + at));
+		cau_vec3 way = cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->seen.at + at));
 		double way2 = cau_dot(way, way);
 		most2 = way2 > most2 ? way2 : most2;
 	}
@@ -229,13 +230,13 @@ double cau_collide_away(const cau_collide *collide, const double *x)
 
 void cau_collide_stand(cau_collide *collide, const double *x)
 {
-	collide->away_m = cau_collide_away(collide, x);
+	collide->seen.away_m = cau_collide_away(collide, x);
 }
 
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x)
 {
-	bool ahead = collide->ahead;
-	collide->ahead = false;
+	bool ahead = collide->range.ahead;
+	collide->range.ahead = false;
 	CAU_ASSERT(!ahead || cau_collide_covers(collide, x, CAU_COLLIDE_PLACE),
 	           "%d pairs are not those of x", collide->pair_count);
 	if (!ahead && !cau_collide_covers(collide, x, CAU_COLLIDE_PLACE)) {
@@ -248,7 +249,7 @@ double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *
 	cau_pool_run(pool, share_count(collide), measure_part, &work);
 	unload(collide);
 	add_pairs(collide, x);
-	double energy = collide->energy_j;
+	double energy = collide->result.energy_j;
 	for (int32_t i = 0; i < collide->grip_count; i++)
 		energy += add_grip(collide, &collide->grip[i], x);
 	return energy;
@@ -260,7 +261,7 @@ bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
 	memset(collide->step, 0, 3 * (size_t)collide->tissue->vertex_count * sizeof *collide->step);
 	for (int32_t i = 0; i < count; i++) {
 		collide->step[3 * (size_t)vertex[i]] = way_m;
-		collide->pushed[vertex[i]] = 1;
+		collide->filter.pushed[vertex[i]] = 1;
 	}
 	bool all = cau_collide_covers(collide, x, CAU_COLLIDE_STEP);
 	int32_t cut_short = collide->cut_short_count;
@@ -272,7 +273,7 @@ bool cau_collide_surround(cau_collide *collide, cau_pool *pool, const double *x,
 		collide->cut_short_count = cut_short; // this search shortened no step
 	}
 	for (int32_t i = 0; i < count; i++)
-		collide->pushed[vertex[i]] = 0;
+		collide->filter.pushed[vertex[i]] = 0;
 	return all;
 }
 
@@ -283,19 +284,20 @@ static void apply(cau_collide *collide, const int32_t vertex[4], const double we
 {
 	cau_vec3 way = {0, 0, 0};
 	for (int i = 0; i < 4; i++)
-		way = cau_add_scaled(way, weight[i], cau_vec3_of(collide->probe + 3 * (size_t)vertex[i]));
+		way = cau_add_scaled(way, weight[i],
+		                     cau_vec3_of(collide->load.probe + 3 * (size_t)vertex[i]));
 	cau_vec3 force = cau_scale(across, way);
 	force = cau_add_scaled(force, (stiffness - across) * cau_dot(way, normal), normal);
 	for (int i = 0; i < 4; i++) {
-		double *to = collide->answer + 3 * (size_t)vertex[i];
+		double *to = collide->load.answer + 3 * (size_t)vertex[i];
 		cau_vec3_to(cau_add_scaled(cau_vec3_of(to), weight[i], force), to);
 	}
 }
 
 void cau_collide_apply(cau_collide *collide)
 {
-	for (int32_t k = 0; k < collide->loaded_count; k++)
-		memset(collide->answer + 3 * (size_t)collide->loaded[k], 0, 3 * sizeof(double));
+	for (int32_t k = 0; k < collide->load.count; k++)
+		memset(collide->load.answer + 3 * (size_t)collide->load.vertex[k], 0, 3 * sizeof(double));
 	for (int32_t i = 0; i < collide->pair_count; i++) {
 		const cau_collide_pair *pair = &collide->pair[i];
 		if (pair->slope != 0)
@@ -333,14 +335,14 @@ static bool has_changed(const cau_collide *collide)
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	collide->held_back_count = collide->search_count = 0;
-	collide->held_back = false;
+	collide->filter.held_back = false;
 	collide->grip_count = 0;
 	cau_collide_forget_dead(collide);
 	cau_collide_note_exempt(collide);
 	if (has_changed(collide) || !cau_collide_covers(collide, x, CAU_COLLIDE_TICK))
 		cau_collide_find(collide, pool, x, CAU_COLLIDE_TICK);
 	cau_collide_see(collide, pool, x);
-	collide->ahead = true;
+	collide->range.ahead = true;
 	collide->start_energy_j = cau_collide_evaluate(collide, pool, x);
 	take_grips(collide);
 }

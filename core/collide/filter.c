@@ -56,7 +56,7 @@ static double most_closing(const cau_collide_pair *pair, const look *l)
 static bool comes_near(const cau_collide *collide, cau_collide_pair *pair, const double *x, look *l)
 {
 	see(collide, pair, x, l);
-	double clear = collide->kept_share * pair->thickness_m;
+	double clear = collide->filter.kept_share * pair->thickness_m;
 	if (cau_collide_is_exempt(collide, pair))
 		return false;
 	if (cau_gap_along(pair->kind, l->corner, pair->plane) - most_closing(pair, l) >= clear)
@@ -66,7 +66,7 @@ static bool comes_near(const cau_collide *collide, cau_collide_pair *pair, const
 		return false;
 	pair->plane = l->normal = gap.normal;
 	l->distance = gap.distance;
-	l->floor = fmax(collide->kept_share * fmin(gap.distance, pair->thickness_m),
+	l->floor = fmax(collide->filter.kept_share * fmin(gap.distance, pair->thickness_m),
 	                fmin(least_share * pair->thickness_m, gap.distance));
 	// the margin covers rounding, by which two evaluations of one distance may differ
 	return cau_gap_along(pair->kind, l->after, gap.normal) < l->floor - 1e-9 * l->distance;
@@ -102,13 +102,13 @@ static void move_corner(cau_collide *collide, int32_t vertex, double by, cau_vec
 	double *step = collide->step + 3 * (size_t)vertex;
 	if (collide->fixed[vertex])
 		return;
-	if (!collide->pushed[vertex]) {
-		collide->pushed[vertex] = 1;
-		collide->pushes_more = true;
+	if (!collide->filter.pushed[vertex]) {
+		collide->filter.pushed[vertex] = 1;
+		collide->filter.pushes_more = true;
 		return;
 	}
 	cau_vec3_to(cau_add_scaled(cau_vec3_of(step), by, normal), step);
-	shorten(collide, vertex, collide->room_m[vertex]);
+	shorten(collide, vertex, collide->filter.room_m[vertex]);
 }
 
 // Moves both parts back along the plane's normal until they keep their distance. A corner moves at
@@ -151,23 +151,24 @@ static void stop(cau_collide *collide, const cau_collide_pair *pair, const look 
 // Whether a pair keeps its distance for all motions of its corners within away_m.
 static bool is_clear(const cau_collide *collide, int32_t pair)
 {
-	return cau_collide_is_far(collide, pair, collide->away_m,
-	                          collide->kept_share * collide->pair[pair].thickness_m);
+	return cau_collide_is_far(collide, pair, collide->seen.away_m,
+	                          collide->filter.kept_share * collide->pair[pair].thickness_m);
 }
 
 static void stop_pairs(cau_collide *collide, const double *x)
 {
 	look l;
 	bool again = true;
-	memset(collide->stopped, 0, (size_t)collide->pair_count * sizeof *collide->stopped);
+	memset(collide->filter.stopped, 0,
+	       (size_t)collide->pair_count * sizeof *collide->filter.stopped);
 	while (again) { // each pair is stopped once at most
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
-			if (collide->stopped[i] || is_clear(collide, i) ||
+			if (collide->filter.stopped[i] || is_clear(collide, i) ||
 			    !comes_near(collide, &collide->pair[i], x, &l))
 				continue;
 			stop(collide, &collide->pair[i], &l);
-			collide->stopped[i] = again = true;
+			collide->filter.stopped[i] = again = true;
 		}
 	}
 }
@@ -183,7 +184,7 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 		int32_t v = vertices->item[k];
 		if (collide->exempt[v])
 			continue;
-		shortened |= shorten(collide, v, by_reach ? just * collide->reach_m[v] : most);
+		shortened |= shorten(collide, v, by_reach ? just * collide->range.reach_m[v] : most);
 		cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)v);
 		longest2 = cau_dot(step, step) > longest2 ? cau_dot(step, step) : longest2;
 	}
@@ -208,8 +209,9 @@ static void take_room(cau_collide *collide)
 	const cau_surface_parts *vertices = &collide->surface.vertices;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
-		if (collide->pushed[v])
-			collide->room_m[v] = fmin(cau_collide_room(collide, v), just * collide->reach_m[v]);
+		if (collide->filter.pushed[v])
+			collide->filter.room_m[v] =
+				fmin(cau_collide_room(collide, v), just * collide->range.reach_m[v]);
 	}
 }
 
@@ -219,8 +221,8 @@ static void part_pairs(cau_collide *collide, const double *x)
 	look l;
 	bool again = true;
 	take_room(collide);
-	collide->pushes_more = false;
-	for (int pass = 0; pass < PASSES && again && !collide->pushes_more; pass++) {
+	collide->filter.pushes_more = false;
+	for (int pass = 0; pass < PASSES && again && !collide->filter.pushes_more; pass++) {
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
 			if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
@@ -241,7 +243,7 @@ static bool note_pushed(cau_collide *collide, const double *x)
 		if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
 			continue;
 		for (int k = 0; k < 4; k++)
-			collide->pushed[vertex[k]] = 1;
+			collide->filter.pushed[vertex[k]] = 1;
 		any = true;
 	}
 	return any;
@@ -254,58 +256,58 @@ static bool note_pushed(cau_collide *collide, const double *x)
 static bool part_known_pairs(cau_collide *collide, cau_pool *pool, const double *x, double longest)
 {
 	size_t n = (size_t)collide->tissue->vertex_count, bytes = 3 * n * sizeof(double);
-	double away = collide->away_m;
+	double away = collide->seen.away_m;
 	bool shortened = false;
 	do {
-		collide->away_m = away;
+		collide->seen.away_m = away;
 		if (!cau_collide_covers_pushed(collide, x))
 			shortened |= find(collide, pool, x);
-		away = collide->away_m;
-		collide->away_m += cau_collide_most_room(collide, longest);
-		memcpy(collide->wanted, collide->step, bytes);
+		away = collide->seen.away_m;
+		collide->seen.away_m += cau_collide_most_room(collide, longest);
+		memcpy(collide->filter.wanted, collide->step, bytes);
 		part_pairs(collide, x);
-		if (collide->pushes_more)
-			memcpy(collide->step, collide->wanted, bytes);
-	} while (collide->pushes_more);
-	memset(collide->pushed, 0, n);
+		if (collide->filter.pushes_more)
+			memcpy(collide->step, collide->filter.wanted, bytes);
+	} while (collide->filter.pushes_more);
+	memset(collide->filter.pushed, 0, n);
 	return shortened;
 }
 
 // Whether any step of at most `longest` from the present positions stays where pairs are known.
 static bool is_within(const cau_collide *collide, double longest)
 {
-	return collide->found && collide->slack_m - collide->away_m >= longest;
+	return collide->range.found && collide->seen.slack_m - collide->seen.away_m >= longest;
 }
 
 // Ends a filter. The positions after the step may be rounded to single precision.
 static void end(cau_collide *collide, bool changed)
 {
 	const double rounding = 1 + 1e-6;
-	collide->away_m *= rounding;
-	collide->ahead = true;
-	collide->held_back = changed;
+	collide->seen.away_m *= rounding;
+	collide->range.ahead = true;
+	collide->filter.held_back = changed;
 }
 
 bool cau_collide_foresee(cau_collide *collide, double longest)
 {
-	collide->kept_share = kept_share;
-	collide->unclear_count = 0;
+	collide->filter.kept_share = kept_share;
+	collide->filter.unclear_count = 0;
 	if (longest > cau_collide_most_step(collide) || !is_within(collide, longest))
 		return false;
 	for (int32_t i = 0; i < collide->pair_count; i++)
-		if (!cau_collide_is_far(collide, i, collide->away_m + longest,
+		if (!cau_collide_is_far(collide, i, collide->seen.away_m + longest,
 		                        kept_share * collide->pair[i].thickness_m))
-			collide->unclear[collide->unclear_count++] = i;
+			collide->filter.unclear[collide->filter.unclear_count++] = i;
 	return true;
 }
 
 bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest)
 {
 	look l;
-	for (int32_t k = 0; k < collide->unclear_count; k++)
-		if (comes_near(collide, &collide->pair[collide->unclear[k]], x, &l))
+	for (int32_t k = 0; k < collide->filter.unclear_count; k++)
+		if (comes_near(collide, &collide->pair[collide->filter.unclear[k]], x, &l))
 			return false;
-	collide->away_m += longest;
+	collide->seen.away_m += longest;
 	end(collide, false);
 	return true;
 }
@@ -313,17 +315,17 @@ bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess)
 {
 	double longest;
-	collide->kept_share = guess ? kept_by_guess : kept_share;
-	CAU_ASSERT(cau_collide_away(collide, x) <= collide->away_m + 1e-9 * collide->thickness_m,
-	           "somebody is farther than %g m from where the tick began", collide->away_m);
+	collide->filter.kept_share = guess ? kept_by_guess : kept_share;
+	CAU_ASSERT(cau_collide_away(collide, x) <= collide->seen.away_m + 1e-9 * collide->thickness_m,
+	           "somebody is farther than %g m from where the tick began", collide->seen.away_m);
 	bool changed = limit(collide, false, &longest);
 	if (!is_within(collide, longest) && !cau_collide_covers(collide, x, CAU_COLLIDE_STEP))
 		changed |= find(collide, pool, x);
-	collide->out_of_reach = changed;
-	collide->away_m += longest;
+	collide->filter.out_of_reach = changed;
+	collide->seen.away_m += longest;
 	if (note_pushed(collide, x)) {
-		collide->away_m -= longest;
-		collide->out_of_reach |= part_known_pairs(collide, pool, x, longest);
+		collide->seen.away_m -= longest;
+		collide->filter.out_of_reach |= part_known_pairs(collide, pool, x, longest);
 		changed = true;
 	}
 	if (changed)

@@ -29,10 +29,10 @@ static parts parts_of(const cau_collide *collide, int what)
 	const cau_surface *surface = &collide->surface;
 	const cau_tissue *tissue = collide->tissue;
 	if (what == FACES)
-		return (parts){&surface->faces, collide->face_box, tissue->faces.vertex, 3};
+		return (parts){&surface->faces, collide->search.face_box, tissue->faces.vertex, 3};
 	if (what == EDGES)
-		return (parts){&surface->edges, collide->edge_box, tissue->edges.vertex, 2};
-	return (parts){&surface->vertices, collide->vertex_box, NULL, 1};
+		return (parts){&surface->edges, collide->search.edge_box, tissue->edges.vertex, 2};
+	return (parts){&surface->vertices, collide->search.vertex_box, NULL, 1};
 }
 
 static const int32_t *corners_of(const parts *p, const int32_t *part)
@@ -64,13 +64,13 @@ static double greater(double a, double b)
 
 static cau_collide_box box_round(const cau_collide *collide, const int32_t *vertex, int count)
 {
-	const double *x = collide->anchor;
+	const double *x = collide->range.anchor;
 	cau_collide_box box = nowhere;
 	for (int k = 0; k < count; k++) {
 		size_t v = (size_t)vertex[k];
 		for (size_t c = 0; c < 3; c++) {
-			box.least[c] = lesser(box.least[c], x[3 * v + c] - collide->reach_m[v]);
-			box.most[c] = greater(box.most[c], x[3 * v + c] + collide->reach_m[v]);
+			box.least[c] = lesser(box.least[c], x[3 * v + c] - collide->range.reach_m[v]);
+			box.most[c] = greater(box.most[c], x[3 * v + c] + collide->range.reach_m[v]);
 		}
 	}
 	return box;
@@ -96,7 +96,7 @@ static bool meets(const cau_collide_box *a, const cau_collide_box *b, double by_
 static void box_part(void *context, int32_t index)
 {
 	cau_collide *collide = context;
-	int32_t block = collide->touched[index];
+	int32_t block = collide->search.touched[index];
 	CAU_ASSERT_INDEX(block, collide->surface.block_count);
 	for (int what = FACES; what <= VERTICES; what++) {
 		parts p = parts_of(collide, what);
@@ -109,8 +109,8 @@ static void box_part(void *context, int32_t index)
 			}
 			widen(&all, &p.box[part]);
 		}
-		collide->block_box[what][block] = all;
-		collide->fresh_box[what][block] = fresh;
+		collide->search.block_box[what][block] = all;
+		collide->search.fresh_box[what][block] = fresh;
 	}
 }
 
@@ -134,14 +134,15 @@ static void lay(const cau_collide *collide, int what, int32_t block)
 	int32_t end = p.list->first[block + 1], g = first_group(&p, block);
 	for (int32_t i = p.list->first[block]; i < end; i += CAU_LANES, g++) {
 		int32_t count = end - i < CAU_LANES ? end - i : CAU_LANES;
-		collide->fresh_lane[what][g] = 0;
+		collide->search.fresh_lane[what][g] = 0;
 		for (int32_t k = 0; k < count; k++) {
 			const cau_collide_box *box = &p.box[p.list->item[i + k]];
-			cau_lanes_put(&collide->lane[what][g], k, box->least, box->most, collide->thickness_m);
-			collide->fresh_lane[what][g] |=
+			cau_lanes_put(&collide->search.lane[what][g], k, box->least, box->most,
+			              collide->thickness_m);
+			collide->search.fresh_lane[what][g] |=
 				(uint8_t)(is_fresh(collide, &p, p.list->item[i + k]) << k);
 		}
-		cau_lanes_close(&collide->lane[what][g], count);
+		cau_lanes_close(&collide->search.lane[what][g], count);
 	}
 }
 
@@ -149,7 +150,7 @@ static void lay_touched(void *context, int32_t index)
 {
 	cau_collide *collide = context;
 	for (int what = FACES; what <= VERTICES; what++)
-		lay(collide, what, collide->touched[index]);
+		lay(collide, what, collide->search.touched[index]);
 }
 
 static void lay_block(void *context, int32_t block)
@@ -167,8 +168,8 @@ static bool begin_elsewhere(cau_collide *collide)
 	for (int what = FACES; what <= VERTICES; what++) {
 		size_t bytes = ((size_t)collide->surface.block_count + 1) * sizeof(int32_t);
 		const int32_t *first = parts_of(collide, what).list->first;
-		elsewhere |= memcmp(collide->lane_first[what], first, bytes) != 0;
-		memcpy(collide->lane_first[what], first, bytes);
+		elsewhere |= memcmp(collide->search.lane_first[what], first, bytes) != 0;
+		memcpy(collide->search.lane_first[what], first, bytes);
 	}
 	return elsewhere;
 }
@@ -189,10 +190,10 @@ static void lay_out(cau_collide *collide, cau_pool *pool)
 	if (begin_elsewhere(collide))
 		cau_pool_run(pool, blocks, lay_block, collide);
 	else
-		cau_pool_run(pool, collide->touched_count, lay_touched, collide);
-	lay_boxes(collide, collide->block_lane, NULL, blocks, collide->block_box[FACES]);
-	lay_boxes(collide, collide->touched_lane, collide->touched, collide->touched_count,
-	          collide->fresh_box[FACES]);
+		cau_pool_run(pool, collide->search.touched_count, lay_touched, collide);
+	lay_boxes(collide, collide->search.block_lane, NULL, blocks, collide->search.block_box[FACES]);
+	lay_boxes(collide, collide->search.touched_lane, collide->search.touched,
+	          collide->search.touched_count, collide->search.fresh_box[FACES]);
 }
 
 // ---- pairs
@@ -204,25 +205,27 @@ static bool may_give_up(const cau_collide *collide)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
 	for (int32_t k = 0; k < vertices->count; k++)
-		if (collide->reach_m[vertices->item[k]] > 0)
+		if (collide->range.reach_m[vertices->item[k]] > 0)
 			return true;
 	return false;
 }
 
 static bool gives_up(const cau_collide *collide)
 {
-	return collide->may_give_up && atomic_load_explicit(&collide->fails, memory_order_relaxed);
+	return collide->search.may_give_up &&
+	       atomic_load_explicit(&collide->search.fails, memory_order_relaxed);
 }
 
 static void list(cau_collide *collide, int32_t block, cau_gap_kind kind, cau_collide_found found)
 {
-	cau_collide_slice *slice = &collide->slice[block];
+	cau_collide_slice *slice = &collide->search.slice[block];
 	if (slice->count[kind] == CAU_COLLIDE_SLICE) {
 		slice->full = true;
-		collide->fails = true;
+		collide->search.fails = true;
 		return;
 	}
-	collide->list[kind][(size_t)block * CAU_COLLIDE_SLICE + (size_t)slice->count[kind]++] = found;
+	collide->search.list[kind][(size_t)block * CAU_COLLIDE_SLICE + (size_t)slice->count[kind]++] =
+		found;
 }
 
 // Parts of a block that are near another block, with their boxes.
@@ -236,7 +239,8 @@ typedef enum wanted_parts { ALL, FRESH, NOT_FRESH } wanted_parts;
 static uint32_t wanted_of(const cau_collide *collide, int what, int32_t block, int32_t group,
                           wanted_parts wanted)
 {
-	uint32_t fresh = collide->is_touched[block] ? collide->fresh_lane[what][group] : 0;
+	uint32_t fresh =
+		collide->search.is_touched[block] ? collide->search.fresh_lane[what][group] : 0;
 	return wanted == ALL ? ~0U : wanted == FRESH ? fresh : ~fresh;
 }
 
@@ -254,7 +258,7 @@ static bool list_near(const cau_collide *collide, int what, int32_t block, wante
 	cau_collide_asking asking = ask(collide, within);
 	near->count = 0;
 	for (int32_t i = p.list->first[block], g = first; i < end; i += CAU_LANES, g++) {
-		const cau_collide_lanes *group = &collide->lane[what][g];
+		const cau_collide_lanes *group = &collide->search.lane[what][g];
 		uint32_t met = cau_lanes_meet(group, &asking) & wanted_of(collide, what, block, g, wanted);
 		for (; met; met &= met - 1)
 			take(near, p.list->item[i + __builtin_ctz(met)], group, __builtin_ctz(met));
@@ -273,8 +277,9 @@ typedef struct meeting {
 static bool meet(const cau_collide *collide, const int32_t block[2], const int what[2], bool fresh,
                  meeting *m)
 {
-	cau_collide_box *const *own_box = fresh ? collide->fresh_box : collide->block_box,
-						   *const *box = fresh ? collide->block_box : collide->fresh_box;
+	cau_collide_box *const *own_box = fresh ? collide->search.fresh_box : collide->search.block_box,
+						   *const *box =
+							   fresh ? collide->search.block_box : collide->search.fresh_box;
 	const cau_collide_box *own = &own_box[what[0]][block[0]], *others = &box[what[1]][block[1]];
 	return meets(own, others, collide->thickness_m) &&
 	       list_near(collide, what[0], block[0], fresh ? FRESH : NOT_FRESH, others, &m->own) &&
@@ -299,7 +304,8 @@ static void look_at_vertex(cau_collide *collide, int32_t block, int32_t v, int32
 	if (!shares_corner(&v, 1, c, 3) &&
 	    cau_collide_may_touch(collide, CAU_GAP_VERTEX_FACE, (int32_t[]){v, c[0], c[1], c[2]},
 	                          &found) &&
-	    meets(&collide->vertex_box[v], &collide->face_box[face], collide->thickness_m))
+	    meets(&collide->search.vertex_box[v], &collide->search.face_box[face],
+	          collide->thickness_m))
 		list(collide, block, CAU_GAP_VERTEX_FACE, found);
 }
 
@@ -311,7 +317,7 @@ static void look_at_edge(cau_collide *collide, int32_t block, int32_t e, int32_t
 	if (!shares_corner(a, 2, b, 2) &&
 	    cau_collide_may_touch(collide, CAU_GAP_EDGE_EDGE, (int32_t[]){a[0], a[1], b[0], b[1]},
 	                          &found) &&
-	    meets(&collide->edge_box[e], &collide->edge_box[f], collide->thickness_m))
+	    meets(&collide->search.edge_box[e], &collide->search.edge_box[f], collide->thickness_m))
 		list(collide, block, CAU_GAP_EDGE_EDGE, found);
 }
 
@@ -362,20 +368,20 @@ static void look_at(cau_collide *collide, int32_t block, int32_t other, bool fre
 
 static void look_at_fresh(cau_collide *collide, int32_t block)
 {
-	cau_collide_asking asking = ask(collide, &collide->fresh_box[FACES][block]);
+	cau_collide_asking asking = ask(collide, &collide->search.fresh_box[FACES][block]);
 	for (int32_t b = 0; b < collide->surface.block_count; b += CAU_LANES)
-		for (uint32_t met = cau_lanes_meet(&collide->block_lane[b / CAU_LANES], &asking);
+		for (uint32_t met = cau_lanes_meet(&collide->search.block_lane[b / CAU_LANES], &asking);
 		     met && !gives_up(collide); met &= met - 1)
 			look_at(collide, block, b + __builtin_ctz(met), true);
 }
 
 static void look_at_others(cau_collide *collide, int32_t block)
 {
-	cau_collide_asking asking = ask(collide, &collide->block_box[FACES][block]);
-	for (int32_t k = 0; k < collide->touched_count; k += CAU_LANES)
-		for (uint32_t met = cau_lanes_meet(&collide->touched_lane[k / CAU_LANES], &asking);
+	cau_collide_asking asking = ask(collide, &collide->search.block_box[FACES][block]);
+	for (int32_t k = 0; k < collide->search.touched_count; k += CAU_LANES)
+		for (uint32_t met = cau_lanes_meet(&collide->search.touched_lane[k / CAU_LANES], &asking);
 		     met && !gives_up(collide); met &= met - 1)
-			look_at(collide, block, collide->touched[k + __builtin_ctz(met)], false);
+			look_at(collide, block, collide->search.touched[k + __builtin_ctz(met)], false);
 }
 
 // ---- pairs that a block keeps
@@ -383,11 +389,11 @@ static void look_at_others(cau_collide *collide, int32_t block)
 // Removes the block's pairs that have a fresh part.
 static void keep(cau_collide *collide, int32_t block)
 {
-	cau_collide_slice *slice = &collide->slice[block];
+	cau_collide_slice *slice = &collide->search.slice[block];
 	parts vertices = parts_of(collide, VERTICES), edges = parts_of(collide, EDGES),
 		  faces = parts_of(collide, FACES);
 	for (int kind = 0; kind < 2; kind++) {
-		cau_collide_found *found = collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE;
+		cau_collide_found *found = collide->search.list[kind] + (size_t)block * CAU_COLLIDE_SLICE;
 		const parts *first = kind == CAU_GAP_VERTEX_FACE ? &vertices : &edges,
 					*second = kind == CAU_GAP_VERTEX_FACE ? &faces : &edges;
 		int32_t kept = 0;
@@ -403,52 +409,52 @@ static void keep(cau_collide *collide, int32_t block)
 static void search_part(void *context, int32_t block)
 {
 	cau_collide *collide = context;
-	cau_collide_slice *slice = &collide->slice[block];
+	cau_collide_slice *slice = &collide->search.slice[block];
 	CAU_ASSERT_INDEX(block, collide->surface.block_count);
 	if (gives_up(collide))
 		return;
 	if (slice->count[0] || slice->count[1])
 		keep(collide, block);
 	int32_t kept[] = {slice->count[0], slice->count[1]};
-	if (collide->is_touched[block])
+	if (collide->search.is_touched[block])
 		look_at_fresh(collide, block);
 	look_at_others(collide, block);
 	for (int kind = 0; kind < 2; kind++)
 		if (slice->count[kind] > kept[kind])
-			cau_collide_sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE,
+			cau_collide_sort(collide->search.list[kind] + (size_t)block * CAU_COLLIDE_SLICE,
 			                 slice->count[kind]);
 	int32_t count = slice->count[0] + slice->count[1];
-	if (atomic_fetch_add(&collide->listed_count, count) + count > collide->most_pairs)
-		collide->fails = true;
+	if (atomic_fetch_add(&collide->search.listed_count, count) + count > collide->most_pairs)
+		collide->search.fails = true;
 }
 
 // Lists the blocks that have a fresh face.
 static void list_touched(cau_collide *collide)
 {
 	parts faces = parts_of(collide, FACES);
-	collide->touched_count = 0;
+	collide->search.touched_count = 0;
 	for (int32_t b = 0; b < collide->surface.block_count; b++) {
 		bool touched = false;
 		for (int32_t i = faces.list->first[b]; i < faces.list->first[b + 1] && !touched; i++)
 			touched = is_fresh(collide, &faces, faces.list->item[i]);
-		collide->is_touched[b] = touched;
+		collide->search.is_touched[b] = touched;
 		if (touched)
-			collide->touched[collide->touched_count++] = b;
+			collide->search.touched[collide->search.touched_count++] = b;
 	}
 }
 
 bool cau_collide_search(cau_collide *collide, cau_pool *pool)
 {
 	list_touched(collide);
-	cau_pool_run(pool, collide->touched_count, box_part, collide);
+	cau_pool_run(pool, collide->search.touched_count, box_part, collide);
 	lay_out(collide, pool);
-	collide->may_give_up = may_give_up(collide);
-	collide->fails = false;
-	collide->listed_count = 0;
+	collide->search.may_give_up = may_give_up(collide);
+	collide->search.fails = false;
+	collide->search.listed_count = 0;
 	cau_pool_run(pool, collide->surface.block_count, search_part, collide);
 	memset(collide->surface.changed, 0, (size_t)collide->tissue->vertex_count);
-	bool room = !collide->fails;
-	if (room || !collide->may_give_up)
+	bool room = !collide->search.fails;
+	if (room || !collide->search.may_give_up)
 		cau_collide_gather(collide);
 	return room;
 }

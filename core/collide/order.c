@@ -82,12 +82,12 @@ void cau_collide_gather(cau_collide *collide)
 	collide->pair_count = 0;
 	for (int32_t b = 0; b < collide->surface.block_count; b++)
 		for (int kind = 0; kind < 2; kind++)
-			for (int32_t k = 0; k < collide->slice[b].count[kind]; k++) {
+			for (int32_t k = 0; k < collide->search.slice[b].count[kind]; k++) {
 				const cau_collide_found *found =
-					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
+					&collide->search.list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
 				if (collide->pair_count == collide->most_pairs)
 					return;
-				collide->apart_m[collide->pair_count] = 0; // the distance is not measured yet
+				collide->seen.apart_m[collide->pair_count] = 0; // the distance is not measured yet
 				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
 				pair->kind = (cau_gap_kind)kind;
 				pair->thickness_m = found->thickness_m;

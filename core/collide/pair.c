@@ -105,8 +105,8 @@ INLINE bool may_touch(const cau_collide *collide, cau_gap_kind kind, const int32
 	for (int i = 0; i < 4; i++) {
 		if (collide->exempt[vertex[i]])
 			return false;
-		corner[i] = cau_vec3_of(collide->anchor + 3 * (size_t)vertex[i]);
-		reach[i >= firsts] = greater(reach[i >= firsts], collide->reach_m[vertex[i]]);
+		corner[i] = cau_vec3_of(collide->range.anchor + 3 * (size_t)vertex[i]);
+		reach[i >= firsts] = greater(reach[i >= firsts], collide->range.reach_m[vertex[i]]);
 	}
 	double whole = collide->thickness_m, may_move = reach[0] + reach[1];
 	if (!is_within(kind, corner, whole + may_move))

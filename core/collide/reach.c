@@ -56,7 +56,7 @@ static ball needed(const cau_collide *collide, const double *x, cau_collide_need
 	if (need == CAU_COLLIDE_PLACE)
 		return (ball){at, 0};
 	double besides = need == CAU_COLLIDE_TICK ? room_of_tick * collide->thickness_m : 0;
-	if (collide->pushed[v])
+	if (collide->filter.pushed[v])
 		return (ball){at, besides + cau_collide_room(collide, v)};
 	cau_vec3 half = cau_scale(0.5, step_of(collide, v));
 	return (ball){cau_add(at, half), besides + cau_length(half)};
@@ -69,16 +69,16 @@ static bool is_enough(const cau_collide *collide, const double *x, cau_collide_n
 	if (collide->exempt[v])
 		return true;
 	ball b = needed(collide, x, need, v);
-	cau_vec3 away = cau_sub(b.middle, cau_vec3_of(collide->anchor + 3 * (size_t)v));
-	double left = share * (collide->reach_m[v] - b.reach_m);
+	cau_vec3 away = cau_sub(b.middle, cau_vec3_of(collide->range.anchor + 3 * (size_t)v));
+	double left = share * (collide->range.reach_m[v] - b.reach_m);
 	return left >= 0 && cau_dot(away, away) <= left * left;
 }
 
 static void anchor(cau_collide *collide, int32_t v, cau_vec3 middle, double reach_m)
 {
 	const double rounding = 1 + 1e-5; // all needed positions are within reach despite rounding
-	cau_vec3_to(middle, collide->anchor + 3 * (size_t)v);
-	collide->reach_m[v] = rounding * reach_m;
+	cau_vec3_to(middle, collide->range.anchor + 3 * (size_t)v);
+	collide->range.reach_m[v] = rounding * reach_m;
 	collide->surface.changed[v] = 1;
 }
 
@@ -93,7 +93,7 @@ static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_ne
 	double besides = ahead * collide->thickness_m;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
-		if (collide->found && is_enough(collide, x, need, v, used_up))
+		if (collide->range.found && is_enough(collide, x, need, v, used_up))
 			continue;
 		ball b = needed(collide, x, need, v);
 		anchor(collide, v, b.middle, b.reach_m + besides);
@@ -113,7 +113,7 @@ static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
 		int32_t v = vertices->item[k];
 		ball b = needed(collide, x, need, v);
 		if (share < 1) { // no step leads farther from x in this case (filter.c)
-			double way = collide->pushed[v] ? b.reach_m : cau_length(step_of(collide, v));
+			double way = collide->filter.pushed[v] ? b.reach_m : cau_length(step_of(collide, v));
 			b = (ball){cau_vec3_of(x + 3 * (size_t)v), share * way};
 		}
 		anchor(collide, v, b.middle, b.reach_m);
@@ -127,9 +127,9 @@ void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau
 	CAU_ASSERT(collide->surface.listed, "%d faces drawn", collide->surface.faces.count);
 	collide->search_count++;
 	anchor_used_up(collide, x, need);
-	if (!collide->found)
+	if (!collide->range.found)
 		look_at_all(collide);
-	collide->found = true;
+	collide->range.found = true;
 	double share = 1;
 	if (cau_collide_search(collide, pool) || search_least(collide, pool, x, need, share))
 		return;
@@ -138,13 +138,13 @@ void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau
 		if (search_least(collide, pool, x, need, share /= 2))
 			return;
 	// if false, even the touching pairs exceed the capacity
-	collide->found = search_least(collide, pool, x, need, 0);
+	collide->range.found = search_least(collide, pool, x, need, 0);
 }
 
 bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	if (!collide->found)
+	if (!collide->range.found)
 		return false;
 	for (int32_t k = 0; k < vertices->count; k++)
 		if (!is_enough(collide, x, need, vertices->item[k], 1))
@@ -155,11 +155,11 @@ bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide
 bool cau_collide_covers_pushed(const cau_collide *collide, const double *x)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	if (!collide->found)
+	if (!collide->range.found)
 		return false;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
-		if (collide->pushed[v] && !is_enough(collide, x, CAU_COLLIDE_STEP, v, 1))
+		if (collide->filter.pushed[v] && !is_enough(collide, x, CAU_COLLIDE_STEP, v, 1))
 			return false;
 	}
 	return true;
@@ -173,8 +173,8 @@ double cau_collide_slack(const cau_collide *collide, const double *x)
 		size_t v = (size_t)vertices->item[k];
 		if (collide->exempt[v])
 			continue;
-		cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * v), cau_vec3_of(collide->anchor + 3 * v));
-		double left = collide->reach_m[v] - sqrt(cau_dot(away, away));
+		cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * v), cau_vec3_of(collide->range.anchor + 3 * v));
+		double left = collide->range.reach_m[v] - sqrt(cau_dot(away, away));
 		least = left < least ? left : least;
 	}
 	return least;
@@ -189,7 +189,7 @@ void cau_collide_forget_dead(cau_collide *collide)
 	const int32_t *vertex[] = {all->triangle, all->tetrahedron, all->link}, corners[] = {3, 4, 2};
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
 		const uint8_t *alive = collide->alive[kind];
-		uint8_t *before = collide->alive_before[kind];
+		uint8_t *before = collide->search.alive_before[kind];
 		if (!alive || memcmp(alive, before, (size_t)count[kind]) == 0)
 			continue;
 		for (int32_t i = 0; i < count[kind]; i++)

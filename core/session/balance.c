@@ -11,7 +11,7 @@ static cau_vec3 elastic_gradient(const cau_session *session, int32_t vertex)
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	// The solver's gradient vector holds a plain sum of the element records here.
 	double g[3];
-	session->solver.kernels->vectors->read(session->solver.gradient, vertex, g);
+	session->solver.kernels->vectors->read(session->solver.iterate.gradient, vertex, g);
 	return cau_vec3_of(g);
 }
 
@@ -68,7 +68,7 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 			double off[3];
 			for (int c = 0; c < 3; c++)
 				off[c] = -row->weight[k] * row->reaction[c];
-			solver->kernels->vectors->add(solver->gradient, row->vertex[k], off);
+			solver->kernels->vectors->add(solver->iterate.gradient, row->vertex[k], off);
 		}
 	}
 	double squared = 0;
@@ -77,13 +77,13 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 	balance->residual_n = sqrt(squared);
 	// The gradient of the elements alone.
 	solver->kernels->sum(&solver->elements, &solver->slots.incidence, 0, tissue->vertex_count,
-	                     solver->gradient);
+	                     solver->iterate.gradient);
 	balance->elastic_j = cau_solver_elastic_energy(solver);
 	cau_vec3 gravity = cau_vec3_of(session->scene->gravity_m_s2);
 	cau_vec3 momentum = {0, 0, 0}, force = {0, 0, 0}, torque = {0, 0, 0};
 	for (int32_t v = 0; v < tissue->vertex_count; v++) {
-		cau_vec3 x = cau_vec3_of(session->position + 3 * (size_t)v);
-		cau_vec3 velocity = cau_vec3_of(session->velocity + 3 * (size_t)v);
+		cau_vec3 x = cau_vec3_of(session->vertices.position + 3 * (size_t)v);
+		cau_vec3 velocity = cau_vec3_of(session->vertices.velocity + 3 * (size_t)v);
 		cau_vec3 f = cau_scale(-1, elastic_gradient(session, v));
 		momentum = cau_add_scaled(momentum, tissue->mass[v], velocity);
 		force = cau_add(force, f);

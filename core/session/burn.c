@@ -20,9 +20,9 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 		cau_heat_grid_advance(&tool->grid, def, &pose, tool->state.jaw, tool->state.energized,
 		                      duration);
 		if (cau_heat_grid_warmest(&tool->grid) > CAU_LIVING_C)
-			tool->state.energy_j +=
-				cau_dissection_expose(&session->dissection, &session->near, session->position,
-			                          &tool->grid, def, &pose, tool->state.jaw, duration);
+			tool->state.energy_j += cau_dissection_expose(&session->dissection, &session->heat.near,
+			                                              session->vertices.position, &tool->grid,
+			                                              def, &pose, tool->state.jaw, duration);
 	}
 	cau_vec3 tip = cau_vec3_of(tool->state.pose.position_m);
 	tool->state.tip_temperature_c = cau_heat_grid_at(&tool->grid, tip);
@@ -44,7 +44,7 @@ void cau_session_take_out(cau_session *session, int32_t first)
 void cau_session_burn(cau_session *session)
 {
 	if (session->tool_count)
-		cau_near_refit(&session->near, session->position);
+		cau_near_refit(&session->heat.near, session->vertices.position);
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		CAU_ASSERT(tool->grid.field[0].temperature != NULL, "tool %d has no heat grid", i);
@@ -53,7 +53,7 @@ void cau_session_burn(cau_session *session)
 		heat_edges(session, tool);
 		cau_dissection_part(&session->dissection, &layers); // section 6.1
 		cau_session_take_out(session, first);
-		cau_shrink_expose(&session->shrink, &session->dissection, first, session->position,
+		cau_shrink_expose(&session->shrink, &session->dissection, first, session->vertices.position,
 		                  &tool->state.definition, &tool->state.pose, tool->state.jaw,
 		                  &session->solver.elements, &session->solver.slots); // eq. 21
 		tool->state.touched_layers = (int32_t)layers;

@@ -73,9 +73,9 @@ cau_status cau_command_check(const cau_session *session, const cau_command *comm
 
 static bool is_added(const cau_session *session, const char *tool)
 {
-	for (int32_t k = 0; k < session->command_count; k++)
-		if (session->command[k].kind == CAU_COMMAND_TOOL_ADD &&
-		    strcmp(session->command[k].as.definition.name, tool) == 0)
+	for (int32_t k = 0; k < session->queue.count; k++)
+		if (session->queue.command[k].kind == CAU_COMMAND_TOOL_ADD &&
+		    strcmp(session->queue.command[k].as.definition.name, tool) == 0)
 			return true;
 	return cau_session_find_tool(session, tool) >= 0;
 }
@@ -112,10 +112,10 @@ cau_status cau_session_may_submit(const cau_session *session, const cau_command 
 		cau_status status = check(session, &commands[*index], error);
 		if (status)
 			return status;
-		if (session->command_count + *index >= session->command_capacity)
+		if (session->queue.count + *index >= session->queue.capacity)
 			return cau_fail(error, CAU_LIMIT, NULL,
 			                "%d commands are waiting already, which is the limit",
-			                session->command_count);
+			                session->queue.count);
 	}
 	return CAU_OK;
 }
@@ -127,11 +127,11 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 		return status;
 	if (acts_at_once(session, command))
 		return CAU_OK;
-	if (session->command_count == session->command_capacity)
+	if (session->queue.count == session->queue.capacity)
 		return cau_fail(error, CAU_LIMIT, NULL,
 		                "%d commands are waiting already, which is the limit",
-		                session->command_count);
-	cau_command *queued = &session->command[session->command_count++];
+		                session->queue.count);
+	cau_command *queued = &session->queue.command[session->queue.count++];
 	*queued = *command;
 	if (queued->kind == CAU_COMMAND_TOOL_ENERGIZE && !queued->as.energized)
 		queued->as.ticks = 0; // only an enable has `ticks`
@@ -239,22 +239,22 @@ static cau_status set_material(cau_session *session, const cau_command *command,
 	session->tissue.layer[index].def = changed;
 	cau_elements_set_materials(&session->solver.elements, &session->solver.slots, &session->tissue,
 	                           session->dissection.alive.element, session->shrink.shrunk);
-	session->solver.conservative =
-		cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+	session->solver.settings.conservative =
+		cau_solver_is_conservative(&session->tissue, session->solver.settings.diagonal);
 	session->energy.stale = true;
 	return cau_matrix_update_refactor(&session->update, &session->dissection.alive, error);
 }
 
 static cau_status set_force(cau_session *session, const cau_command *command, cau_error *error)
 {
-	memset(session->chosen, 0, (size_t)session->tissue.vertex_count);
+	memset(session->vertices.chosen, 0, (size_t)session->tissue.vertex_count);
 	int32_t count =
-		cau_tissue_select(&session->tissue, &command->as.force.selection, session->chosen);
+		cau_tissue_select(&session->tissue, &command->as.force.selection, session->vertices.chosen);
 	if (count <= 0)
 		return cau_fail(error, CAU_NOT_FOUND, "selection", "no vertex lies in this selection");
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-		if (session->chosen[v])
-			memcpy(session->external + 3 * (size_t)v, command->as.force.force_n,
+		if (session->vertices.chosen[v])
+			memcpy(session->vertices.external + 3 * (size_t)v, command->as.force.force_n,
 			       3 * sizeof(double));
 	return CAU_OK;
 }
@@ -286,13 +286,13 @@ static cau_status apply(cau_session *session, const cau_command *command, cau_er
 // many of `kept` remain.
 static int32_t void_older(cau_session *session, const cau_command *command, int32_t kept)
 {
-	CAU_ASSERT(kept >= 0 && kept <= session->command_count, "%d commands kept of %d", kept,
-	           session->command_count);
+	CAU_ASSERT(kept >= 0 && kept <= session->queue.count, "%d commands kept of %d", kept,
+	           session->queue.count);
 	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE)
-		return cau_session_void(session->command, kept, command->tool,
+		return cau_session_void(session->queue.command, kept, command->tool,
 		                        command->as.energized ? CAU_VOID_LIMITS : CAU_VOID_ENABLES);
 	if (command->kind == CAU_COMMAND_TOOL_REMOVE || command->kind == CAU_COMMAND_TOOL_HOLD)
-		return cau_session_void(session->command, kept, command->tool, CAU_VOID_ALL);
+		return cau_session_void(session->queue.command, kept, command->tool, CAU_VOID_ALL);
 	return kept;
 }
 
@@ -302,26 +302,27 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 {
 	cau_status status = CAU_OK;
 	int32_t kept = 0;
-	for (int32_t k = 0; k < session->command_count; k++) {
-		const cau_command command = session->command[k];
+	for (int32_t k = 0; k < session->queue.count; k++) {
+		const cau_command command = session->queue.command[k];
 		if (status || command.tick > session->tick) {
-			session->command[kept++] = command;
+			session->queue.command[kept++] = command;
 			continue;
 		}
 		cau_error refusal = {0};
 		kept = void_older(session, &command, kept);
 		cau_status applied = apply(session, &command, &refusal);
-		if (!applied && cau_session_limit_energy(&command, session->tick, &session->command[kept]))
+		if (!applied &&
+		    cau_session_limit_energy(&command, session->tick, &session->queue.command[kept]))
 			kept++; // the end of the enable takes the queue slot of the enable, or of a command
 			        // before it
 		if (applied == CAU_NUMERICAL || applied == CAU_NO_MEMORY) {
 			status = applied;
 			if (error)
 				*error = refusal;
-		} else if (applied && session->refusal_count < CAU_MAX_REFUSALS) {
-			session->refusal[session->refusal_count++] = refusal;
+		} else if (applied && session->queue.refusal_count < CAU_MAX_REFUSALS) {
+			session->queue.refusal[session->queue.refusal_count++] = refusal;
 		}
 	}
-	session->command_count = kept;
+	session->queue.count = kept;
 	return status;
 }

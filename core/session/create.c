@@ -18,35 +18,37 @@ static cau_status no_memory(cau_error *error)
 
 static cau_status allocate_state(cau_session *session, cau_error *error)
 {
-	CAU_ASSERT(!session->position && session->command_capacity > 0,
-	           "state made twice, or for %d commands", session->command_capacity);
+	CAU_ASSERT(!session->vertices.position && session->queue.capacity > 0,
+	           "state made twice, or for %d commands", session->queue.capacity);
 	size_t n = (size_t)session->tissue.vertex_count;
-	cau_arena *arena = &session->arena;
-	session->position = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
-	session->velocity = cau_arena_array(arena, 3 * n, sizeof(double));
-	session->position_start = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
-	session->external = cau_arena_array(arena, 3 * n, sizeof(double));
+	cau_arena *arena = &session->memory.arena;
+	cau_vertices *vertices = &session->vertices;
+	cau_driven *driven = &session->driven;
+	vertices->position = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
+	vertices->velocity = cau_arena_array(arena, 3 * n, sizeof(double));
+	vertices->start = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
+	vertices->external = cau_arena_array(arena, 3 * n, sizeof(double));
 	session->solver.predicted = cau_arena_array(arena, 3 * n, sizeof(double));
-	session->pinned = cau_arena_copy(arena, session->tissue.pinned, n, 1);
-	session->fixed = cau_arena_copy(arena, session->tissue.pinned, n, 1);
-	session->chosen = cau_arena_array(arena, n, 1);
-	session->drag = cau_arena_array(arena, n, sizeof *session->drag);
-	session->driven = cau_arena_array(arena, n, sizeof *session->driven);
-	session->driven_position = cau_arena_array(arena, 3 * n, sizeof(double));
+	vertices->pinned = cau_arena_copy(arena, session->tissue.pinned, n, 1);
+	vertices->fixed = cau_arena_copy(arena, session->tissue.pinned, n, 1);
+	vertices->chosen = cau_arena_array(arena, n, 1);
+	session->touch.drag = cau_arena_array(arena, n, sizeof *session->touch.drag);
+	driven->vertex = cau_arena_array(arena, n, sizeof *driven->vertex);
+	driven->position = cau_arena_array(arena, 3 * n, sizeof(double));
 	session->tool = cau_arena_array(arena, CAU_MAX_TOOLS, sizeof *session->tool);
-	session->tool_view = cau_arena_array(arena, CAU_MAX_TOOLS, sizeof *session->tool_view);
-	session->command =
-		cau_arena_array(arena, (size_t)session->command_capacity, sizeof *session->command);
-	if (!session->position || !session->velocity || !session->position_start ||
-	    !session->external || !session->solver.predicted || !session->pinned || !session->fixed ||
-	    !session->chosen || !session->drag || !session->driven || !session->driven_position ||
-	    !session->tool || !session->tool_view || !session->command)
+	session->view.tool = cau_arena_array(arena, CAU_MAX_TOOLS, sizeof *session->view.tool);
+	session->queue.command =
+		cau_arena_array(arena, (size_t)session->queue.capacity, sizeof *session->queue.command);
+	if (!vertices->position || !vertices->velocity || !vertices->start || !vertices->external ||
+	    !session->solver.predicted || !vertices->pinned || !vertices->fixed || !vertices->chosen ||
+	    !session->touch.drag || !driven->vertex || !driven->position || !session->tool ||
+	    !session->view.tool || !session->queue.command)
 		return no_memory(error);
-	session->solver.position = session->position;
-	session->solver.position_start = session->position_start;
-	session->solver.external = session->external;
-	session->solver.fixed = session->fixed;
-	session->solver.drag = session->drag;
+	session->solver.position = vertices->position;
+	session->solver.position_start = vertices->start;
+	session->solver.forces.external = vertices->external;
+	session->solver.fixed = vertices->fixed;
+	session->solver.forces.drag = session->touch.drag;
 	session->solver.pool = session->pool;
 	return CAU_OK;
 }
@@ -108,16 +110,17 @@ static cau_status pass_border(const cau_session *session, const cau_session_def 
 		border.bytes = (size_t)(BYTES_OF_VERTEX * border.vertex_count +
 		                        BYTES_OF_ELEMENT * border.element_count);
 	else
-		border.bytes = session->arena.byte_count +
-		               (size_t)((BYTES_OF_FACTOR_ENTRY +
-		                         (session->solver.newton_chosen ? BYTES_OF_NEWTON_ENTRY : 0)) *
-		                        border.factor_entries);
+		border.bytes =
+			session->memory.arena.byte_count +
+			(size_t)((BYTES_OF_FACTOR_ENTRY +
+		              (session->solver.settings.newton_chosen ? BYTES_OF_NEWTON_ENTRY : 0)) *
+		             border.factor_entries);
 	return def->border ? def->border(def->user, &border, error) : CAU_OK;
 }
 
 static cau_status make_solver(cau_session *session, const cau_session_def *def, cau_error *error)
 {
-	cau_arena *arena = &session->arena;
+	cau_arena *arena = &session->memory.arena;
 	cau_step_solver *solver = &session->solver;
 	cau_dissection *dissection = &session->dissection;
 	cau_status status = cau_solver_create(solver, session->scene, &session->tissue, arena, error);
@@ -146,12 +149,12 @@ static cau_status make_solver(cau_session *session, const cau_session_def *def, 
 
 static cau_status make_remainder(cau_session *session, cau_error *error)
 {
-	cau_arena *arena = &session->arena;
-	cau_status status = cau_near_create(&session->near, &session->tissue, arena, error);
-	session->candidate = cau_session_make_reach(arena);
-	session->position_unheld =
+	cau_arena *arena = &session->memory.arena;
+	cau_status status = cau_near_create(&session->heat.near, &session->tissue, arena, error);
+	session->touch.candidate = cau_session_make_reach(arena);
+	session->touch.unheld =
 		cau_arena_array(arena, 3 * (size_t)session->tissue.vertex_count, sizeof(double));
-	if (!status && (!session->candidate || !session->position_unheld))
+	if (!status && (!session->touch.candidate || !session->touch.unheld))
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts");
 	if (!status)
 		status = cau_session_make_cells(session, error);
@@ -166,8 +169,8 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 	if (!status)
 		status = cau_session_make_faces(session, error);
 	if (!status)
-		status =
-			cau_frame_create(&session->frame, &session->tissue, &session->dissection, arena, error);
+		status = cau_frame_create(&session->view.frame, &session->tissue, &session->dissection,
+		                          arena, error);
 	if (!status)
 		cau_session_look_at_vessels(session);
 	return status;
@@ -263,18 +266,18 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 		status = pass_border(session, def, foresee(def->scene), error);
 	if (status)
 		return status;
-	session->scene = cau_arena_copy(&session->arena, def->scene, 1, sizeof *def->scene);
+	session->scene = cau_arena_copy(&session->memory.arena, def->scene, 1, sizeof *def->scene);
 	session->pool = cau_pool_create(def->thread_count);
-	session->command_capacity = def->command_capacity;
+	session->queue.capacity = def->command_capacity;
 	session->faulted = def->unsettled;
 	if (!session->scene || !session->pool)
 		return no_memory(error);
 	session->solver.kernels =
 		cau_kernels_choose(session->scene->precision == CAU_PRECISION_SINGLE, def->instruction_set);
-	status = cau_tissue_make(session->scene, &session->arena, &session->tissue, error);
+	status = cau_tissue_make(session->scene, &session->memory.arena, &session->tissue, error);
 	if (status)
 		return status;
-	session->size_m = cau_session_size(session);
+	session->watch.size_m = cau_session_size(session);
 	status = pass_border(session, def, measure(session, CAU_BUILD_ORDER), error);
 	if (!status)
 		status = allocate_state(session, error);
@@ -333,9 +336,9 @@ void cau_session_destroy(cau_session *session)
 	cau_solver_finish(&session->solver);
 	cau_tissue_finish(&session->tissue);
 	cau_pool_destroy(session->pool);
-	cau_arena_finish(&session->rebuilt_arena);
-	cau_arena_finish(&session->arena);
-	cau_image_release(session->image);
+	cau_arena_finish(&session->memory.rebuilt);
+	cau_arena_finish(&session->memory.arena);
+	cau_image_release(session->memory.image);
 	free(session);
 }
 

@@ -27,7 +27,7 @@ static void add(const cau_session *session, const cau_selection *region, const i
 	for (int i = 0; i < corners; i++) {
 		cau_vec3 corner = cau_vec3_of(session->tissue.rest + 3 * (size_t)vertex[i]);
 		middle = cau_add(middle, cau_scale(1.0 / corners, corner));
-		exposure += (double)session->frame.exposure[vertex[i]] / corners;
+		exposure += (double)session->view.frame.exposure[vertex[i]] / corners;
 	}
 	cau_damage *to = &damage[!is_inside(region, middle)];
 	to->removed_count += !alive;

@@ -69,17 +69,17 @@ cau_status cau_session_make_cells(cau_session *session, cau_error *error)
 	const cau_scene_def *scene = session->scene;
 	if (scene->energy != CAU_ENERGY_TISSUE)
 		return CAU_OK;
-	session->cells = cau_arena_array(&session->arena, 1, sizeof *session->cells);
-	if (!session->cells)
+	session->heat.cells = cau_arena_array(&session->memory.arena, 1, sizeof *session->heat.cells);
+	if (!session->heat.cells)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for cells of tissue");
-	return cau_tissue_cells_create(session->cells, &session->tissue, scene->cell_m, CELLS_MOST,
-	                               scene->ambient_c, &session->arena, error);
+	return cau_tissue_cells_create(session->heat.cells, &session->tissue, scene->cell_m, CELLS_MOST,
+	                               scene->ambient_c, &session->memory.arena, error);
 }
 
 double cau_session_coagulated(const cau_session *session)
 {
 	double volume_m3 = 0;
-	const cau_bioheat *bioheat = session->cells ? &session->cells->bioheat : NULL;
+	const cau_bioheat *bioheat = session->heat.cells ? &session->heat.cells->bioheat : NULL;
 	for (int32_t i = 0; bioheat && i < bioheat->cells.count; i++)
 		if (bioheat->damage[i] >= 1 && !bioheat->cells.severed[i])
 			volume_m3 += cau_cells_volume(&bioheat->cells, i);
@@ -89,7 +89,7 @@ double cau_session_coagulated(const cau_session *session)
 double cau_session_vaporised(const cau_session *session)
 {
 	double volume_m3 = 0;
-	const cau_bioheat *bioheat = session->cells ? &session->cells->bioheat : NULL;
+	const cau_bioheat *bioheat = session->heat.cells ? &session->heat.cells->bioheat : NULL;
 	for (int32_t i = 0; bioheat && i < bioheat->cells.count; i++)
 		if (bioheat->cells.severed[i] && bioheat->water[i] <= burst_share)
 			volume_m3 += cau_cells_volume(&bioheat->cells, i);
@@ -98,22 +98,22 @@ double cau_session_vaporised(const cau_session *session)
 
 double cau_session_vapour(const cau_session *session)
 {
-	return session->cells ? cau_bioheat_vapour(&session->cells->bioheat) : 0;
+	return session->heat.cells ? cau_bioheat_vapour(&session->heat.cells->bioheat) : 0;
 }
 
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger)
 {
-	*ledger = session->cells ? session->cells->bioheat.ledger : (cau_energy_ledger){0};
+	*ledger = session->heat.cells ? session->heat.cells->bioheat.ledger : (cau_energy_ledger){0};
 }
 
 bool cau_session_has_cooled(const cau_session *session)
 {
-	if (!session->cells)
+	if (!session->heat.cells)
 		return true;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		if (fabs(session->tool[i].blade.temperature_c - session->scene->ambient_c) > cold_k)
 			return false;
-	return session->cells->bioheat.cold;
+	return session->heat.cells->bioheat.cold;
 }
 
 // ---- distances from a tool
@@ -179,7 +179,7 @@ static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 {
 	cau_session *session = visit->session;
 	const cau_edge_table *edges = &session->tissue.edges;
-	const cau_cells *grid = &session->cells->bioheat.cells;
+	const cau_cells *grid = &session->heat.cells->bioheat.cells;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k], before = grid->count;
@@ -187,7 +187,7 @@ static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 			    (visit->left <= 0 && !urgent))
 				continue;
 			visit->full = !cau_tissue_cells_fill(
-				session->cells, cau_tissue_cells_element(&session->tissue, p, index));
+				session->heat.cells, cau_tissue_cells_element(&session->tissue, p, index));
 			visit->left -= grid->count - before;
 		}
 }
@@ -197,8 +197,8 @@ static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 static void show_heat(cau_session *session, int32_t edge)
 {
 	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
-	const cau_bioheat *bioheat = &session->cells->bioheat;
-	int32_t cell = cau_tissue_cells_between(session->cells, end[0], end[1]);
+	const cau_bioheat *bioheat = &session->heat.cells->bioheat;
+	int32_t cell = cau_tissue_cells_between(session->heat.cells, end[0], end[1]);
 	if (cell < 0)
 		return;
 	double coagulated = fmin(bioheat->damage[cell], 1) / 2, dried = 1 - bioheat->water[cell];
@@ -210,8 +210,8 @@ static void visit_edge(edge_visit *visit, const cau_tool *tool, int32_t edge)
 {
 	cau_session *session = visit->session;
 	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
-	cau_vec3 a = cau_vec3_of(session->position + 3 * (size_t)end[0]);
-	cau_vec3 b = cau_vec3_of(session->position + 3 * (size_t)end[1]);
+	cau_vec3 a = cau_vec3_of(session->vertices.position + 3 * (size_t)end[0]);
+	cau_vec3 b = cau_vec3_of(session->vertices.position + 3 * (size_t)end[1]);
 	cau_vec3 middle = cau_scale(0.5, cau_add(a, b));
 	double half = cau_length(cau_sub(b, a)) / 2;
 	double distance = hot_distance(tool, middle) - half;
@@ -234,7 +234,7 @@ static edge_visit look_around(cau_session *session, const cau_tool *tool)
 	cau_vec3 center;
 	cau_tool_bound(&tool->state.definition, CAU_PART_HOT, &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
-	const cau_near *near = &session->near;
+	const cau_near *near = &session->heat.near;
 	for (int32_t block = 0; block < near->block_count; block++) {
 		if (!cau_box_meets(&near->edge_box[block], center, radius + filled_m))
 			continue;
@@ -253,7 +253,7 @@ static void follow_element(edge_visit *visit, int32_t element)
 	double temperature[4], warm_c = session->scene->ambient_c + warm_k;
 	CAU_ASSERT(count <= 4, "an element of %d corners", count);
 	for (int i = 0; i < count; i++)
-		temperature[i] = cau_tissue_cells_temperature(session->cells, vertex[i]);
+		temperature[i] = cau_tissue_cells_temperature(session->heat.cells, vertex[i]);
 	for (int i = 0; i < count; i++)
 		for (int j = i + 1; j < count; j++) {
 			if (temperature[i] <= warm_c && temperature[j] <= warm_c)
@@ -271,7 +271,7 @@ static void follow_element(edge_visit *visit, int32_t element)
 // spread farther than 3 mm from the tool. Denatured elements begin to shrink.
 static void follow_heat(cau_session *session)
 {
-	const cau_tissue_cells *cells = session->cells;
+	const cau_tissue_cells *cells = session->heat.cells;
 	edge_visit visit = {.session = session, .left = ADDED_A_TICK};
 	int32_t known = cells->filled_count;
 	for (int32_t k = (int32_t)(session->tick % FOLLOW_TURNS); k < known; k += FOLLOW_TURNS)
@@ -295,16 +295,16 @@ static bool is_in_box(const cau_cells *grid, int32_t cell, const edge_visit *vis
 static double contact_over_length(const cau_session *session, int32_t cell, double distance_m)
 {
 	double side = session->scene->cell_m;
-	return side * side * session->cells->bioheat.cells.fill[cell] / fmax(distance_m, side / 2);
+	return side * side * session->heat.cells->bioheat.cells.fill[cell] / fmax(distance_m, side / 2);
 }
 
 // Adds a cell to the contacts of tool `index`, if its hot part or its sparks reach the cell.
 static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 {
 	const cau_tool *tool = &session->tool[index];
-	cau_bioheat *bioheat = &session->cells->bioheat;
-	cau_current *current = &session->cells->current;
-	cau_vec3 at = cau_tissue_cells_at(session->cells, cell, session->position);
+	cau_bioheat *bioheat = &session->heat.cells->bioheat;
+	cau_current *current = &session->heat.cells->current;
+	cau_vec3 at = cau_tissue_cells_at(session->heat.cells, cell, session->vertices.position);
 	double distance = hot_distance(tool, at);
 	if (distance > touch_m(session, tool))
 		return;
@@ -336,7 +336,8 @@ static bool may_reach(const cau_session *session, const cau_tool *tool, int32_t 
 {
 	double radius, reach = touch_m(session, tool);
 	cau_vec3 middle;
-	cau_tissue_cells_bound(session->cells, element, session->position, &middle, &radius);
+	cau_tissue_cells_bound(session->heat.cells, element, session->vertices.position, &middle,
+	                       &radius);
 	return hot_distance(tool, middle) <= radius + reach;
 }
 
@@ -344,7 +345,7 @@ static bool may_reach(const cau_session *session, const cau_tool *tool, int32_t 
 // one after another, so each element is tested only once.
 static void find_touched(cau_session *session, int32_t index, const edge_visit *visit)
 {
-	cau_tissue_cells *cells = session->cells;
+	cau_tissue_cells *cells = session->heat.cells;
 	const cau_cells *grid = &cells->bioheat.cells;
 	int32_t owner = -1;
 	bool reached = false;
@@ -353,7 +354,7 @@ static void find_touched(cau_session *session, int32_t index, const edge_visit *
 		if (grid->severed[cell] || !is_in_box(grid, cell, visit))
 			continue;
 		if ((uint64_t)cell % STRETCH_TURNS == session->tick % STRETCH_TURNS)
-			cau_tissue_cells_stretch(cells, cell, session->position);
+			cau_tissue_cells_stretch(cells, cell, session->vertices.position);
 		if (cells->owner[cell] != owner) {
 			owner = cells->owner[cell];
 			reached = may_reach(session, &session->tool[index], owner);
@@ -368,7 +369,8 @@ static void find_touched(cau_session *session, int32_t index, const edge_visit *
 // Heats an ultrasonic blade by the friction of the tissue at the blade.
 static void rub(const cau_session *session, cau_tool *tool)
 {
-	double power = session->cells->current.electrode_count ? tool->state.definition.power_w : 0;
+	double power =
+		session->heat.cells->current.electrode_count ? tool->state.definition.power_w : 0;
 	tool->blade.temperature_c += power * session->solver.step_s / tool->blade.heat_capacity_j_k;
 	tool->state.delivered_w = power;
 }
@@ -391,8 +393,8 @@ static bool sparks(const cau_tool *tool)
 static void give_power(cau_session *session, cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;
-	cau_current *current = &session->cells->current;
-	cau_bioheat *bioheat = &session->cells->bioheat;
+	cau_current *current = &session->heat.cells->current;
+	cau_bioheat *bioheat = &session->heat.cells->bioheat;
 	cau_generator generator = {.power_w = def->power_w,
 	                           .peak_v = def->peak_v,
 	                           .current_a = def->current_max_a,
@@ -427,7 +429,7 @@ static void energize(cau_session *session, cau_tool *tool)
 		return;
 	if (tool->state.definition.shape == CAU_TOOL_SHEARS) {
 		rub(session, tool);
-	} else if (session->cells->current.electrode_count) {
+	} else if (session->heat.cells->current.electrode_count) {
 		give_power(session, tool);
 		follow_load(tool);
 	}
@@ -439,7 +441,7 @@ static void energize(cau_session *session, cau_tool *tool)
 // any, and the box of their grid positions.
 static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
 {
-	cau_bioheat *bioheat = &session->cells->bioheat;
+	cau_bioheat *bioheat = &session->heat.cells->bioheat;
 	bool any = false;
 	for (int32_t k = 0; k < bioheat->contact_count; k++) {
 		int32_t cell = bioheat->contact[k].cell;
@@ -469,7 +471,7 @@ static void lose_element(cau_session *session, int32_t element, uint32_t *layers
 static void part(cau_session *session, const int32_t least[3], const int32_t most[3],
                  uint32_t *layers)
 {
-	cau_tissue_cells *cells = session->cells;
+	cau_tissue_cells *cells = session->heat.cells;
 	for (int32_t k = 0; k < cells->filled_count; k++) {
 		int32_t element = cells->filled[k];
 		if (lives(session, element) && cau_tissue_cells_meets(cells, element, least, most) &&
@@ -485,7 +487,7 @@ static void keep_lips(cau_session *session)
 {
 	for (int32_t k = 0; k < session->dissection.removed_count; k++)
 		if (session->dissection.removed[k].kind < CAU_PRIMITIVE_KINDS) {
-			cau_tissue_cells_reassign(session->cells, session->dissection.alive.element);
+			cau_tissue_cells_reassign(session->heat.cells, session->dissection.alive.element);
 			return;
 		}
 }
@@ -494,7 +496,7 @@ static void keep_lips(cau_session *session)
 
 static void begin(cau_session *session)
 {
-	cau_bioheat *bioheat = &session->cells->bioheat;
+	cau_bioheat *bioheat = &session->heat.cells->bioheat;
 	memset(bioheat->power_w, 0, (size_t)bioheat->cells.count * sizeof *bioheat->power_w);
 	bioheat->contact_count = 0;
 }
@@ -505,7 +507,7 @@ static void heat(cau_session *session)
 	_Static_assert((int)CAU_BLADES >= (int)CAU_MAX_TOOLS, "a blade for each tool");
 	for (int32_t i = 0; i < session->tool_count; i++)
 		blade[i] = session->tool[i].blade;
-	bool stepped = cau_bioheat_step(&session->cells->bioheat, blade, session->tool_count,
+	bool stepped = cau_bioheat_step(&session->heat.cells->bioheat, blade, session->tool_count,
 	                                session->solver.step_s);
 	CAU_ASSERT(stepped, "heat needs more than %d parts of a tick", CAU_BIOHEAT_PARTS);
 	(void)stepped;
@@ -536,7 +538,7 @@ void cau_session_operate(cau_session *session)
 		return;
 	}
 	begin(session);
-	cau_near_refit(&session->near, session->position);
+	cau_near_refit(&session->heat.near, session->vertices.position);
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		if (!has_hot_part(tool))

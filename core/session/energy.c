@@ -24,9 +24,9 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error)
 {
 	cau_energy *energy = &session->energy;
 	const cau_step_solver *solver = &session->solver;
-	energy->dirty = cau_arena_array(&session->arena, (size_t)solver->slots.work_count, 1);
-	energy->sum_j =
-		cau_arena_array(&session->arena, SUMS * (size_t)solver->chunk_count, sizeof(double));
+	energy->dirty = cau_arena_array(&session->memory.arena, (size_t)solver->slots.work_count, 1);
+	energy->sum_j = cau_arena_array(&session->memory.arena, SUMS * (size_t)solver->chunks.count,
+	                                sizeof(double));
 	energy->stale = true;
 	if (!energy->dirty || !energy->sum_j)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
@@ -117,7 +117,8 @@ static void share_part(void *context, int32_t index)
 	if (!session->energy.stale && !session->energy.dirty[index])
 		return;
 	keep_polars(&solver->elements, work, &kept);
-	solver->kernels->local(&solver->elements, work, solver->displacement, solver->diagonal);
+	solver->kernels->local(&solver->elements, work, solver->iterate.displacement,
+	                       solver->settings.diagonal);
 	return_polars(&solver->elements, work, &kept);
 }
 
@@ -126,17 +127,18 @@ void cau_session_begin_energy(cau_session *session)
 {
 	cau_energy *energy = &session->energy;
 	cau_step_solver *solver = &session->solver;
-	if (!solver->conservative)
+	if (!solver->settings.conservative)
 		return;
 	bool anew = energy->stale || energy->marked;
 	if (anew) {
 		// After a skipped evaluation no share belongs to the present positions.
-		energy->stale |= solver->spared;
+		energy->stale |= solver->result.spared;
 		cau_solver_displace(solver);
 		cau_pool_run(session->pool, solver->slots.work_count, share_part, session);
 		memset(energy->dirty, 0, (size_t)solver->slots.work_count);
 	}
-	energy->elastic_j = solver->spared && !anew ? energy->end_j : cau_solver_elastic_energy(solver);
+	energy->elastic_j =
+		solver->result.spared && !anew ? energy->end_j : cau_solver_elastic_energy(solver);
 	energy->stale = energy->marked = false;
 }
 
@@ -145,7 +147,7 @@ void cau_session_begin_energy(cau_session *session)
 // Returns the work done at a moved support: the support's motion against the elements' forces.
 static double support_work(const cau_session *session, int32_t vertex, const double move[3])
 {
-	CAU_ASSERT(session->fixed[vertex], "vertex %d is no support", vertex);
+	CAU_ASSERT(session->vertices.fixed[vertex], "vertex %d is no support", vertex);
 	const cau_incidence *incidence = &session->solver.slots.incidence;
 	const cau_elements *elements = &session->solver.elements;
 	double work = 0;
@@ -159,10 +161,10 @@ static double support_work(const cau_session *session, int32_t vertex, const dou
 static void vertex_part(void *context, int32_t chunk)
 {
 	cau_session *session = context;
-	CAU_ASSERT_INDEX(chunk, session->solver.chunk_count);
+	CAU_ASSERT_INDEX(chunk, session->solver.chunks.count);
 	const cau_step_solver *solver = &session->solver;
-	const double *x = session->position, *start = session->position_start;
-	const double *velocity = session->velocity, *force = session->external;
+	const double *x = session->vertices.position, *start = session->vertices.start;
+	const double *velocity = session->vertices.velocity, *force = session->vertices.external;
 	const double *push = session->substep.push; // tools' force in the first substep, or NULL
 	const double *gravity = session->scene->gravity_m_s2;
 	double work = 0, before = 0, after = 0, inertia = 0;
@@ -204,15 +206,15 @@ static double tool_work(const cau_session *session)
 	double work = 0;
 	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
-		cau_vec3 way = cau_sub(cau_contact_point(row, session->position),
-		                       cau_contact_point(row, session->position_start));
+		cau_vec3 way = cau_sub(cau_contact_point(row, session->vertices.position),
+		                       cau_contact_point(row, session->vertices.start));
 		work += cau_dot(cau_vec3_of(row->reaction), way);
 	}
-	for (int32_t k = 0; k < session->solver.drag_count; k++) {
-		const cau_drag *drag = &session->solver.drag[k];
+	for (int32_t k = 0; k < session->solver.forces.drag_count; k++) {
+		const cau_drag *drag = &session->solver.forces.drag[k];
 		for (size_t c = 0, at = 3 * (size_t)drag->vertex; c < 3; c++)
-			work -= drag->coefficient * (session->position[at + c] - drag->target[c]) *
-			        (session->position[at + c] - session->position_start[at + c]);
+			work -= drag->coefficient * (session->vertices.position[at + c] - drag->target[c]) *
+			        (session->vertices.position[at + c] - session->vertices.start[at + c]);
 	}
 	return cau_session_last_share(session) * work;
 }
@@ -220,23 +222,23 @@ static double tool_work(const cau_session *session)
 static void measure_gain(cau_session *session)
 {
 	cau_energy *energy = &session->energy;
-	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
+	cau_pool_run(session->pool, session->solver.chunks.count, vertex_part, session);
 	double of_tools_j = tool_work(session), gain_j = -energy->elastic_j - of_tools_j;
 	double inertia_j = 0, work_j = 0, kinetic_j = 0, touching_j = 0;
 	if (session->solver.collide) {
 		touching_j = session->collide.start_energy_j;
-		gain_j += session->collide.energy_j - touching_j;
+		gain_j += session->collide.result.energy_j - touching_j;
 	}
-	for (int32_t k = 0; k < session->solver.chunk_count; k++) {
+	for (int32_t k = 0; k < session->solver.chunks.count; k++) {
 		const double *sum = energy->sum_j + SUMS * (size_t)k;
 		gain_j += sum[2] - sum[1] - sum[0];
 		work_j += sum[0];
 		kinetic_j += sum[1];
 		inertia_j += sum[3];
 	}
-	energy->end_j = session->solver.spared ? session->solver.objective - inertia_j -
-	                                             cau_solver_viscous_energy(&session->solver)
-	                                       : cau_solver_elastic_energy(&session->solver);
+	energy->end_j = session->solver.result.spared ? session->solver.result.objective - inertia_j -
+	                                                    cau_solver_viscous_energy(&session->solver)
+	                                              : cau_solver_elastic_energy(&session->solver);
 	energy->gain_j = gain_j + energy->end_j;
 	energy->scale_j = energy->elastic_j + kinetic_j + touching_j + fabs(work_j) + fabs(of_tools_j);
 }
@@ -265,11 +267,11 @@ void cau_session_end_energy(cau_session *session)
 {
 	cau_energy *energy = &session->energy;
 	const cau_substep *substep = &session->substep;
-	CAU_ASSERT(!session->solver.conservative || (!energy->stale && !energy->marked),
+	CAU_ASSERT(!session->solver.settings.conservative || (!energy->stale && !energy->marked),
 	           "tick %llu ends with an energy that it did not begin with",
 	           (unsigned long long)session->tick);
 	energy->gain_j = energy->scale_j = 0;
-	if (!session->solver.conservative)
+	if (!session->solver.settings.conservative)
 		return;
 	measure_gain(session);
 	if (substep->count == 2 && !substep->disturbed && energy->gain_j > most_gain * energy->scale_j)

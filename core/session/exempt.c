@@ -37,7 +37,7 @@ static bool exempt_inverted(cau_session *session)
 		return false;
 	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
 		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
-		if (!alive[i] || !cau_session_is_inverted(session->position_start, vertex))
+		if (!alive[i] || !cau_session_is_inverted(session->vertices.start, vertex))
 			continue;
 		for (int k = 0; k < 4; k++)
 			session->collide.exempt[vertex[k]] = 1;
@@ -53,7 +53,7 @@ static bool exempt_thrown(cau_session *session, const double *guess, double most
 	bool any = false;
 	for (int32_t k = 0; k < surface->count; k++) {
 		size_t v = (size_t)surface->item[k];
-		cau_vec3 from = cau_vec3_of(session->position_start + 3 * v);
+		cau_vec3 from = cau_vec3_of(session->vertices.start + 3 * v);
 		if (!(cau_length(cau_sub(cau_vec3_of(guess + 3 * v), from)) > most_m))
 			continue;
 		session->collide.exempt[v] = 1;
@@ -81,7 +81,7 @@ bool cau_session_exempt(cau_session *session, const double *guess, double most_m
 	if (all)
 		cau_collide_forget_crossed(collide);
 	else if (cau_collide_touches_again(collide))
-		cau_collide_exempt_crossed(collide, session->position_start);
+		cau_collide_exempt_crossed(collide, session->vertices.start);
 	session->solver.none_loose = all || count_exempt(session) > held;
 	return !all;
 }

@@ -25,7 +25,7 @@ cau_contact_row cau_session_row_of_hold(const cau_session *session, const cau_gr
 	for (int k = 0; k < 3; k++) {
 		row.vertex[k] = grasp->vertex[k];
 		row.weight[k] = grasp->weight[k];
-		row.free[k] = !session->fixed[grasp->vertex[k]];
+		row.free[k] = !session->vertices.fixed[grasp->vertex[k]];
 	}
 	return row;
 }
@@ -51,10 +51,10 @@ static bool is_drawn(const cau_session *session, int32_t face)
 bool cau_session_hold_is_left(const cau_session *session, const cau_grasp *grasp)
 {
 	if (grasp->face < 0)
-		return !session->fixed[grasp->vertex[0]];
+		return !session->vertices.fixed[grasp->vertex[0]];
 	bool movable = false;
 	for (int k = 0; k < 3; k++)
-		movable |= !session->fixed[grasp->vertex[k]];
+		movable |= !session->vertices.fixed[grasp->vertex[k]];
 	return movable && is_drawn(session, grasp->face);
 }
 
@@ -82,7 +82,7 @@ static cau_vec3 local_point(const holding *h, const int32_t vertex[3], const dou
 	cau_vec3 sum = {0, 0, 0};
 	for (int k = 0; k < 3; k++)
 		sum = cau_add_scaled(sum, weight[k],
-		                     cau_vec3_of(h->session->position + 3 * (size_t)vertex[k]));
+		                     cau_vec3_of(h->session->vertices.position + 3 * (size_t)vertex[k]));
 	return cau_pose_to_local(&h->tool->state.pose, sum);
 }
 
@@ -133,7 +133,7 @@ static void hold_face(holding *h, int32_t face)
 static bool is_held(const holding *h, const int32_t vertex[3])
 {
 	for (int k = 0; k < 3; k++) {
-		if (h->session->fixed[vertex[k]])
+		if (h->session->vertices.fixed[vertex[k]])
 			return true;
 		for (int32_t g = 0; g < h->tool->grasp_count; g++)
 			if (h->tool->grasp[g].face < 0 && h->tool->grasp[g].vertex[0] == vertex[k])
@@ -148,8 +148,9 @@ static bool may_be_between(const holding *h, const int32_t vertex[3])
 	cau_vec3 middle = local_point(h, vertex, third);
 	double radius2 = 0;
 	for (int k = 0; k < 3; k++) {
-		cau_vec3 corner = cau_pose_to_local(
-			&h->tool->state.pose, cau_vec3_of(h->session->position + 3 * (size_t)vertex[k]));
+		cau_vec3 corner =
+			cau_pose_to_local(&h->tool->state.pose,
+		                      cau_vec3_of(h->session->vertices.position + 3 * (size_t)vertex[k]));
 		radius2 = fmax(radius2, cau_dot(cau_sub(corner, middle), cau_sub(corner, middle)));
 	}
 	return cau_length(middle) <= h->reach_m + sqrt(radius2);

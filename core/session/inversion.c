@@ -15,8 +15,9 @@ static const double long_s = 0.5;
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error)
 {
 	cau_inversion *inversion = &session->inversion;
-	inversion->ticks = cau_arena_array(
-		&session->arena, (size_t)session->tissue.tetrahedron_count + 1, sizeof *inversion->ticks);
+	inversion->ticks =
+		cau_arena_array(&session->memory.arena, (size_t)session->tissue.tetrahedron_count + 1,
+	                    sizeof *inversion->ticks);
 	CAU_ASSERT(session->solver.step_s >= long_s / UINT16_MAX, "steps of %g s",
 	           session->solver.step_s);
 	inversion->long_ticks = (uint16_t)ceil(long_s / session->solver.step_s);
@@ -58,7 +59,7 @@ void cau_session_follow_inversion(cau_session *session)
 	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
 		uint16_t *ticks = &inversion->ticks[i];
 		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
-		if (!alive[i] || !cau_session_is_inverted(session->position, vertex))
+		if (!alive[i] || !cau_session_is_inverted(session->vertices.position, vertex))
 			*ticks = 0;
 		else if (*ticks < inversion->long_ticks)
 			++*ticks;

@@ -61,10 +61,10 @@ static bool has_pins(cau_session *session, const cau_command *command)
 {
 	uint8_t pin = command->kind == CAU_COMMAND_PIN;
 	size_t n = (size_t)session->tissue.vertex_count;
-	memset(session->chosen, 0, n);
-	cau_tissue_select(&session->tissue, &command->as.selection, session->chosen);
+	memset(session->vertices.chosen, 0, n);
+	cau_tissue_select(&session->tissue, &command->as.selection, session->vertices.chosen);
 	for (size_t v = 0; v < n; v++)
-		if (session->chosen[v] && session->pinned[v] != pin)
+		if (session->vertices.chosen[v] && session->vertices.pinned[v] != pin)
 			return false;
 	return true;
 }
@@ -73,11 +73,12 @@ static bool has_force(cau_session *session, const cau_command *command)
 {
 	const double *force = command->as.force.force_n;
 	size_t n = (size_t)session->tissue.vertex_count;
-	memset(session->chosen, 0, n);
-	cau_tissue_select(&session->tissue, &command->as.force.selection, session->chosen);
+	memset(session->vertices.chosen, 0, n);
+	cau_tissue_select(&session->tissue, &command->as.force.selection, session->vertices.chosen);
 	for (size_t v = 0; v < n; v++)
 		for (int c = 0; c < 3; c++)
-			if (session->chosen[v] && session->external[3 * v + (size_t)c] != force[c])
+			if (session->vertices.chosen[v] &&
+			    session->vertices.external[3 * v + (size_t)c] != force[c])
 				return false;
 	return true;
 }

@@ -18,13 +18,13 @@ cau_status cau_session_make_collide(cau_session *session, cau_error *error)
 		return CAU_OK;
 	cau_status status =
 		cau_collide_create(collide, &session->tissue, scene->contact_thickness_m,
-	                       scene->contact_friction, scene->step_s, &session->arena, error);
+	                       scene->contact_friction, scene->step_s, &session->memory.arena, error);
 	if (!status)
-		status = cau_solver_make_yield(&session->solver, &session->arena, error);
+		status = cau_solver_make_yield(&session->solver, &session->memory.arena, error);
 	if (status)
 		return status;
-	collide->fixed = session->fixed;
-	collide->start = session->position_start;
+	collide->fixed = session->vertices.fixed;
+	collide->start = session->vertices.start;
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++)
 		collide->alive[kind] = session->dissection.alive.element[kind];
 	session->solver.collide = collide;
@@ -47,7 +47,7 @@ static void go(cau_session *session, double *position)
 	const cau_surface_parts *surface = &collide->surface.vertices;
 	for (int32_t k = 0; k < surface->count; k++) {
 		size_t v = (size_t)surface->item[k];
-		for (size_t i = 3 * v; i < 3 * v + 3 && !session->fixed[v]; i++)
+		for (size_t i = 3 * v; i < 3 * v + 3 && !session->vertices.fixed[v]; i++)
 			position[i] += collide->step[i];
 	}
 }
@@ -59,7 +59,7 @@ static void go_in_legs(cau_session *session, const double *guess, double *at)
 	cau_collide *collide = &session->collide;
 	for (int leg = 0; leg < MOST_LEGS; leg++) {
 		go(session, at);
-		if (!collide->out_of_reach)
+		if (!collide->filter.out_of_reach)
 			return;
 		ask_for(session, at, guess);
 		cau_collide_filter(collide, session->pool, at, true);
@@ -71,12 +71,12 @@ static void stop_guess(cau_session *session, double *guess)
 {
 	cau_step_solver *solver = &session->solver;
 	cau_collide *collide = solver->collide;
-	double *at = solver->position_before; // the solver does not use this array before the solve
-	memcpy(at, session->position_start, 3 * (size_t)session->tissue.vertex_count * sizeof(double));
+	double *at = solver->iterate.before; // the solver does not use this array before the solve
+	memcpy(at, session->vertices.start, 3 * (size_t)session->tissue.vertex_count * sizeof(double));
 	go_in_legs(session, guess, at);
 	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {
 		size_t v = (size_t)collide->surface.vertices.item[k];
-		if (!session->fixed[v])
+		if (!session->vertices.fixed[v])
 			memcpy(guess + 3 * v, at + 3 * v, 3 * sizeof(double));
 	}
 }
@@ -94,9 +94,9 @@ void cau_session_begin_collide(cau_session *session)
 	collide->cut_short_count = cut_short;
 	if (!touches)
 		return;
-	ask_for(session, session->position_start, guess);
-	cau_collide_begin(collide, session->pool, session->position_start);
-	if (cau_collide_filter(collide, session->pool, session->position_start, true))
+	ask_for(session, session->vertices.start, guess);
+	cau_collide_begin(collide, session->pool, session->vertices.start);
+	if (cau_collide_filter(collide, session->pool, session->vertices.start, true))
 		stop_guess(session, guess);
 	// from here on the filter allows short steps only
 	cau_collide_see(collide, session->pool, guess);

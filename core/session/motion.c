@@ -19,10 +19,11 @@ void cau_session_predict(cau_session *session)
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++) {
 			size_t i = 3 * (size_t)v + (size_t)c;
-			double guess = session->position_start[i] + dt * session->velocity[i];
-			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
+			double guess = session->vertices.start[i] + dt * session->vertices.velocity[i];
+			double push = gravity[c] + session->vertices.external[i] / session->tissue.mass[v];
 			session->solver.predicted[i] = guess + dt * dt * push;
-			session->position[i] = session->fixed[v] ? session->position_start[i] : guess;
+			session->vertices.position[i] =
+				session->vertices.fixed[v] ? session->vertices.start[i] : guess;
 		}
 	if (session->substep.count == 1)
 		cau_session_turn_prediction(session);
@@ -41,6 +42,7 @@ void cau_session_update_velocities(cau_session *session)
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++) {
 			size_t i = 3 * (size_t)v + (size_t)c;
-			session->velocity[i] = session->fixed[v] ? 0 : scale * cau_session_way(session, v, c);
+			session->vertices.velocity[i] =
+				session->vertices.fixed[v] ? 0 : scale * cau_session_way(session, v, c);
 		}
 }

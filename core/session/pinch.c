@@ -63,7 +63,7 @@ static double thickness_m(const cau_session *session, const cau_grasp *grasp)
 	const cau_tissue *tissue = &session->tissue;
 	int32_t index = 0;
 	if (grasp->face >= 0)
-		index = session->face_layer[grasp->face];
+		index = session->view.face_layer[grasp->face];
 	else
 		for (; index < tissue->layer_count; index++) {
 			const cau_tissue_layer *layer = &tissue->layer[index];

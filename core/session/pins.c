@@ -16,20 +16,20 @@ cau_status cau_session_rebuild_system(cau_session *session, cau_error *error)
 	cau_solver_finish(solver);
 	memset(&session->update, 0, sizeof session->update);
 	// a system without rows was marked as diagonal; use the scene's choice again
-	solver->diagonal = session->scene->solver == CAU_SOLVER_DIAGONAL;
-	solver->factor_version++;
-	solver->factor_epoch++;
+	solver->settings.diagonal = session->scene->solver == CAU_SOLVER_DIAGONAL;
+	solver->age.version++;
+	solver->age.epoch++;
 	// A pinned vertex has no row any more. From now on nothing writes its part of these arrays.
 	size_t bytes = 4 * (size_t)session->tissue.vertex_count * solver->kernels->vectors->real_bytes;
-	memset(solver->increment, 0, bytes);
-	memset(solver->history.last_increment, 0, bytes);
+	memset(solver->iterate.increment, 0, bytes);
+	memset(solver->anderson.history.last_increment, 0, bytes);
 	memset(session->contact.solution, 0, bytes);
 	// Frees the last rebuilt system. However often pins change, a session holds at most two
 	// systems.
-	cau_arena *arena = &session->rebuilt_arena;
+	cau_arena *arena = &session->memory.rebuilt;
 	cau_arena_finish(arena);
-	cau_status status =
-		cau_system_create(&solver->system, &session->tissue, session->pinned, arena, error);
+	cau_status status = cau_system_create(&solver->system, &session->tissue,
+	                                      session->vertices.pinned, arena, error);
 	if (!status)
 		status = cau_solver_factor(solver, &session->dissection.alive, NULL, arena, error);
 	if (!status)
@@ -43,18 +43,19 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 {
 	CAU_ASSERT(pin == 0 || pin == 1, "pinned: %d", pin);
 	size_t n = (size_t)session->tissue.vertex_count;
-	memset(session->chosen, 0, n);
-	if (cau_tissue_select(&session->tissue, selection, session->chosen) <= 0)
+	cau_vertices *vertices = &session->vertices;
+	memset(vertices->chosen, 0, n);
+	if (cau_tissue_select(&session->tissue, selection, vertices->chosen) <= 0)
 		return cau_fail(error, CAU_NOT_FOUND, "selection", "no vertex lies in this selection");
 	bool changed = false;
 	for (size_t v = 0; v < n; v++)
-		if (session->chosen[v] && session->pinned[v] != pin) {
+		if (vertices->chosen[v] && vertices->pinned[v] != pin) {
 			changed = true;
-			bool was_frozen = session->fixed[v] && !session->pinned[v];
-			session->pinned[v] = (uint8_t)pin;
-			session->fixed[v] = (uint8_t)(pin || !session->dissection.live_elements[v]);
-			session->frozen_count += (session->fixed[v] && !pin) - was_frozen;
-			memset(session->velocity + 3 * v, 0, 3 * sizeof(double));
+			bool was_frozen = vertices->fixed[v] && !vertices->pinned[v];
+			vertices->pinned[v] = (uint8_t)pin;
+			vertices->fixed[v] = (uint8_t)(pin || !session->dissection.live_elements[v]);
+			vertices->frozen_count += (vertices->fixed[v] && !pin) - was_frozen;
+			memset(vertices->velocity + 3 * v, 0, 3 * sizeof(double));
 		}
 	if (!changed)
 		return CAU_OK;

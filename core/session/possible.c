@@ -31,11 +31,11 @@ cau_status cau_session_make_watch(cau_session *session, cau_error *error)
 	cau_watch *watch = &session->watch;
 	watch->chunk_count = (session->tissue.edges.edge_count + EDGES_IN_CHUNK - 1) / EDGES_IN_CHUNK;
 	size_t edge_chunks = (size_t)watch->chunk_count;
-	size_t vertex_chunks = (size_t)session->solver.chunk_count;
-	watch->room_m = cau_arena_array(&session->arena, edge_chunks, sizeof(double));
-	watch->edge = cau_arena_array(&session->arena, edge_chunks, sizeof(int32_t));
-	watch->farthest2_m2 = cau_arena_array(&session->arena, vertex_chunks, sizeof(double));
-	watch->astray = cau_arena_array(&session->arena, vertex_chunks, sizeof(int32_t));
+	size_t vertex_chunks = (size_t)session->solver.chunks.count;
+	watch->room_m = cau_arena_array(&session->memory.arena, edge_chunks, sizeof(double));
+	watch->edge = cau_arena_array(&session->memory.arena, edge_chunks, sizeof(int32_t));
+	watch->farthest2_m2 = cau_arena_array(&session->memory.arena, vertex_chunks, sizeof(double));
+	watch->astray = cau_arena_array(&session->memory.arena, vertex_chunks, sizeof(int32_t));
 	if ((edge_chunks && (!watch->room_m || !watch->edge)) || !watch->farthest2_m2 || !watch->astray)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 	return CAU_OK;
@@ -89,8 +89,8 @@ cau_status cau_session_locate(const cau_session *session, cau_error *error)
 			              reason);
 	int32_t v = 0;
 	for (; v < session->tissue.vertex_count - 1; v++)
-		if (!isfinite(session->position[3 * v] + session->position[3 * v + 1] +
-		              session->position[3 * v + 2]))
+		if (!isfinite(session->vertices.position[3 * v] + session->vertices.position[3 * v + 1] +
+		              session->vertices.position[3 * v + 2]))
 			break;
 	return refuse(session, error, layer_of_vertex(session, v), reason);
 }
@@ -99,8 +99,8 @@ cau_status cau_session_locate(const cau_session *session, cau_error *error)
 static void motion_part(void *context, int32_t chunk)
 {
 	cau_session *session = context;
-	CAU_ASSERT_INDEX(chunk, session->solver.chunk_count);
-	const double *x = session->position, *start = session->position_start;
+	CAU_ASSERT_INDEX(chunk, session->solver.chunks.count);
+	const double *x = session->vertices.position, *start = session->vertices.start;
 	double most = fastest_m_s * session->solver.step_s, farthest2 = 0;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK, astray = -1;
 	if (last > session->tissue.vertex_count)
@@ -111,7 +111,8 @@ static void motion_part(void *context, int32_t chunk)
 			move2 += (x[3 * v + c] - start[3 * v + c]) * (x[3 * v + c] - start[3 * v + c]);
 		farthest2 = move2 > farthest2 ? move2 : farthest2;
 		// true if move2 is not a number; supports may move at any finite speed
-		if (!(move2 <= most * most) && astray < 0 && !(session->fixed[v] && isfinite(move2)))
+		if (!(move2 <= most * most) && astray < 0 &&
+		    !(session->vertices.fixed[v] && isfinite(move2)))
 			astray = v;
 	}
 	session->watch.farthest2_m2[chunk] = farthest2;
@@ -121,8 +122,8 @@ static void motion_part(void *context, int32_t chunk)
 static cau_status refuse_vertex(const cau_session *session, int32_t vertex, cau_error *error)
 {
 	char what[128];
-	const double *x = session->position + 3 * (size_t)vertex;
-	const double *start = session->position_start + 3 * (size_t)vertex;
+	const double *x = session->vertices.position + 3 * (size_t)vertex;
+	const double *start = session->vertices.start + 3 * (size_t)vertex;
 	double move = cau_length(cau_sub(cau_vec3_of(x), cau_vec3_of(start)));
 	if (isfinite(move))
 		snprintf(what, sizeof what, "vertex %d moves at %.4g m/s, faster than sound in tissue",
@@ -163,13 +164,13 @@ static void edge_part(void *context, int32_t chunk)
 	CAU_ASSERT_INDEX(chunk, session->watch.chunk_count);
 	const cau_edge_table *edges = &session->tissue.edges;
 	int32_t first = chunk * EDGES_IN_CHUNK, last = first + EDGES_IN_CHUNK, shortest = -1;
-	double least = INFINITY, whole = most_sizes * session->size_m;
+	double least = INFINITY, whole = most_sizes * session->watch.size_m;
 	if (last > edges->edge_count)
 		last = edges->edge_count;
 	for (int32_t e = first; e < last; e++) {
 		const int32_t *vertex = edges->vertex + 2 * (size_t)e;
 		double most = fmax(most_stretch * length_m(session->tissue.rest, vertex), whole);
-		double room = most - length_m(session->position, vertex);
+		double room = most - length_m(session->vertices.position, vertex);
 		if (room < least && living_layer(session, e)) {
 			least = room;
 			shortest = e;
@@ -186,7 +187,7 @@ static cau_status refuse_edge(const cau_session *session, int32_t edge, cau_erro
 	snprintf(what, sizeof what,
 	         "the edge between vertices %d and %d is %.4g times as long as at rest", vertex[0],
 	         vertex[1],
-	         length_m(session->position, vertex) / length_m(session->tissue.rest, vertex));
+	         length_m(session->vertices.position, vertex) / length_m(session->tissue.rest, vertex));
 	return refuse(session, error, living_layer(session, edge), what);
 }
 
@@ -209,7 +210,7 @@ cau_status cau_session_check_motion(cau_session *session, cau_error *error)
 {
 	cau_watch *watch = &session->watch;
 	double farthest2 = 0;
-	int32_t chunks = session->solver.chunk_count;
+	int32_t chunks = session->solver.chunks.count;
 	cau_pool_run(session->pool, chunks, motion_part, session);
 	for (int32_t k = 0; k < chunks; k++) {
 		if (watch->astray[k] >= 0)

@@ -108,6 +108,6 @@ void cau_session_present(const cau_session *session, cau_scene_def *scene)
 	memcpy(scene->gravity_m_s2, session->scene->gravity_m_s2, sizeof scene->gravity_m_s2);
 	present_layers(session, scene);
 	present_tools(session, scene);
-	for (int32_t k = 0; k < session->command_count; k++)
-		take_command(scene, &session->command[k]);
+	for (int32_t k = 0; k < session->queue.count; k++)
+		take_command(scene, &session->queue.command[k]);
 }

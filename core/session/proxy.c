@@ -85,8 +85,9 @@ bool cau_session_hold_back(cau_session *session, int attempt)
 	// Supports stay where they are led. Frozen vertices return to the tick's start too: while the
 	// freeze of a column is delayed, the step may have moved them.
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count && any; v++)
-		if (!session->pinned[v])
-			memcpy(session->position + 3 * v, session->position_start + 3 * v, 3 * sizeof(double));
+		if (!session->vertices.pinned[v])
+			memcpy(session->vertices.position + 3 * v, session->vertices.start + 3 * v,
+			       3 * sizeof(double));
 	return any;
 }
 

@@ -78,8 +78,9 @@ static void follow(const reach *r, const cau_contact_row *row, passage *p)
 	for (int32_t k = 0; k < 3; k++) {
 		size_t at = 3 * (size_t)row->vertex[k];
 		p->start[k] =
-			cau_pose_to_local(&r->tool->pose_before, cau_vec3_of(session->position_start + at));
-		p->end[k] = cau_pose_to_local(&r->tool->state.pose, cau_vec3_of(session->position + at));
+			cau_pose_to_local(&r->tool->pose_before, cau_vec3_of(session->vertices.start + at));
+		p->end[k] =
+			cau_pose_to_local(&r->tool->state.pose, cau_vec3_of(session->vertices.position + at));
 		p->weight[k] = 1.0 / 3;
 		double way = cau_length(cau_sub(p->end[k], p->start[k]));
 		p->way = way > p->way || isnan(way) ? way : p->way;
@@ -189,10 +190,10 @@ static bool describe_corners(const reach *r, cau_contact_row *row)
 	for (int32_t k = 0; k < 3; k++) {
 		int32_t v = row->vertex[k];
 		CAU_ASSERT_INDEX(v, session->tissue.vertex_count);
-		row->free[k] = !session->fixed[v];
+		row->free[k] = !session->vertices.fixed[v];
 		free_count += row->free[k];
 		cau_vec3 local = cau_pose_to_local(&r->tool->pose_before,
-		                                   cau_vec3_of(session->position_start + 3 * (size_t)v));
+		                                   cau_vec3_of(session->vertices.start + 3 * (size_t)v));
 		cau_vec3_to(cau_pose_to_world(&r->tool->anchor, local), row->no_slip[k]);
 	}
 	return free_count == 0 || free_count == 3;
@@ -201,8 +202,8 @@ static bool describe_corners(const reach *r, cau_contact_row *row)
 // Returns the squared distance, m^2, of two points.
 static double apart2(const reach *r, const cau_contact_row *a, const cau_contact_row *b)
 {
-	cau_vec3 off = cau_sub(cau_contact_point(a, r->session->position_start),
-	                       cau_contact_point(b, r->session->position_start));
+	cau_vec3 off = cau_sub(cau_contact_point(a, r->session->vertices.start),
+	                       cau_contact_point(b, r->session->vertices.start));
 	return cau_dot(off, off);
 }
 
@@ -324,19 +325,19 @@ static bool may_be_met(const reach *r, int32_t face)
 {
 	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;
 	double radius;
-	cau_vec3 middle = middle_of_face(r->session->position_start, vertex, &radius);
+	cau_vec3 middle = middle_of_face(r->session->vertices.start, vertex, &radius);
 	double distance = distance_of(r, &r->tool->pose_before, middle);
 	double beyond = fabs(distance) + 2 * radius;
 	if (distance > radius + r->most_way + r->turning * beyond + 2 * touch_m)
 		return false;
-	middle = middle_of_face(r->session->position, vertex, &radius);
+	middle = middle_of_face(r->session->vertices.position, vertex, &radius);
 	distance = distance_of(r, &r->tool->state.pose, middle);
 	return !(distance > radius + 2 * r->most_way + 2 * touch_m);
 }
 
 static void search_block(reach *r, int32_t block)
 {
-	const cau_near *near = &r->session->near;
+	const cau_near *near = &r->session->heat.near;
 	for (int32_t i = near->face_first[block]; i < near->face_first[block + 1]; i++)
 		if (is_drawn(r->session, near->face[i]) && may_be_met(r, near->face[i]))
 			offer(r, near->face[i]);
@@ -347,7 +348,7 @@ static void search_block(reach *r, int32_t block)
 // a number.
 double cau_session_farthest(const cau_session *session)
 {
-	const double *position = session->position, *start = session->position_start;
+	const double *position = session->vertices.position, *start = session->vertices.start;
 	double most2[4] = {0}, sum[4] = {0};
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		size_t at = 3 * (size_t)v;
@@ -372,7 +373,7 @@ static void find_most_way(reach *r, double reach_m)
 		turn += from->rotation[i] * to->rotation[i];
 	double half_turn = sqrt(fmax(1 - turn * turn, 0));
 	r->turning = 2 * half_turn;
-	r->most_way = r->session->farthest_m + way + 2 * reach_m * half_turn;
+	r->most_way = r->session->touch.farthest_m + way + 2 * reach_m * half_turn;
 }
 
 static int compare(const void *a, const void *b)
@@ -397,7 +398,7 @@ static reach begin(cau_session *session, int32_t index, cau_tool_part part)
 	               .def = &tool->state.definition,
 	               .index = index,
 	               .part = part,
-	               .list = session->candidate};
+	               .list = session->touch.candidate};
 }
 
 bool cau_session_feels_faces(const cau_tool *tool)
@@ -408,8 +409,8 @@ bool cau_session_feels_faces(const cau_tool *tool)
 void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part)
 {
 	reach r = begin(session, index, part);
-	for (int32_t i = 0; i < session->contact.memory_count; i++) {
-		const cau_contact_memory *kept = &session->contact.memory[i];
+	for (int32_t i = 0; i < session->contact.sides.memory_count; i++) {
+		const cau_contact_memory *kept = &session->contact.sides.memory[i];
 		if (kept->tool != index || !kept->pushed || !is_drawn(session, kept->face))
 			continue;
 		cau_candidate c = candidate_of(&r, kept->face);
@@ -425,8 +426,8 @@ void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part)
 	double radius;
 	cau_tool_bound(r.def, part, &center, &radius);
 	find_most_way(&r, cau_length(center) + radius);
-	for (int32_t b = 0; b < session->near.block_count; b++)
-		if (cau_session_may_meet(r.tool, part, &session->near.edge_box[b], r.most_way))
+	for (int32_t b = 0; b < session->heat.near.block_count; b++)
+		if (cau_session_may_meet(r.tool, part, &session->heat.near.edge_box[b], r.most_way))
 			search_block(&r, b);
 	session->contact.tool[index].passing = r.count > 0;
 	qsort(r.list, (size_t)r.count, sizeof *r.list, compare);

@@ -54,7 +54,7 @@ static double largest_move(const cau_session *session)
 {
 	double most = 0;
 	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++)
-		most = fmax(most, fabs(session->position[i] - session->position_start[i]));
+		most = fmax(most, fabs(session->vertices.position[i] - session->vertices.start[i]));
 	return most;
 }
 
@@ -73,8 +73,8 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 	session->solver.accuracy.wanted = 0;
 	cau_status status = CAU_OK;
 	for (int step = 0; step < MOST_STEPS && !status; step++) {
-		memcpy(session->position_start, session->position, n * sizeof(double));
-		memset(session->velocity, 0, n * sizeof(double));
+		memcpy(session->vertices.start, session->vertices.position, n * sizeof(double));
+		memset(session->vertices.velocity, 0, n * sizeof(double));
 		cau_session_predict(session);
 		status = cau_solver_run(&session->solver, error);
 		if (!status)
@@ -83,8 +83,8 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 			break;
 	}
 	session->solver.accuracy.wanted = accuracy;
-	memset(session->velocity, 0, n * sizeof(double));
-	memcpy(session->position_start, session->position, n * sizeof(double));
+	memset(session->vertices.velocity, 0, n * sizeof(double));
+	memcpy(session->vertices.start, session->vertices.position, n * sizeof(double));
 	memcpy(session->scene->gravity_m_s2, gravity, sizeof gravity);
 	return status;
 }

@@ -39,7 +39,7 @@ static const double still_share = 1e-5;
 cau_status cau_session_make_rest(cau_session *session, cau_error *error)
 {
 	size_t n = (size_t)session->tissue.vertex_count;
-	session->rest.from = cau_arena_array(&session->arena, 3 * n, sizeof *session->rest.from);
+	session->rest.from = cau_arena_array(&session->memory.arena, 3 * n, sizeof *session->rest.from);
 	if (!session->rest.from)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 	return CAU_OK;
@@ -106,8 +106,8 @@ static bool is_left_alone(const cau_session *session)
 
 static double most_m(const cau_session *session)
 {
-	CAU_ASSERT(session->size_m >= 0, "a tissue of %g m", session->size_m);
-	return fmin(still_m, still_share * session->size_m);
+	CAU_ASSERT(session->watch.size_m >= 0, "a tissue of %g m", session->watch.size_m);
+	return fmin(still_m, still_share * session->watch.size_m);
 }
 
 // Whether the tick moved a vertex farther than the limit for tissue at rest. possible.c has
@@ -115,7 +115,7 @@ static double most_m(const cau_session *session)
 static bool has_moved(const cau_session *session)
 {
 	double most = most_m(session);
-	for (int32_t chunk = 0; chunk < session->solver.chunk_count; chunk++)
+	for (int32_t chunk = 0; chunk < session->solver.chunks.count; chunk++)
 		if (!(session->watch.farthest2_m2[chunk] <= most * most))
 			return true;
 	return false;
@@ -125,7 +125,7 @@ static bool has_strayed(const cau_session *session)
 {
 	double most = most_m(session);
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
-		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
+		cau_vec3 way = cau_sub(cau_vec3_of(session->vertices.position + 3 * v),
 		                       cau_vec3_of(session->rest.from + 3 * v));
 		if (!(cau_dot(way, way) <= most * most))
 			return true;
@@ -141,10 +141,10 @@ void cau_session_fall_asleep(cau_session *session)
 	if (!is_left_alone(session) || has_moved(session)) {
 		rest->quiet_ticks = 0;
 	} else if (!rest->quiet_ticks || has_strayed(session)) {
-		memcpy(rest->from, session->position, bytes);
+		memcpy(rest->from, session->vertices.position, bytes);
 		rest->quiet_ticks = 1;
 	} else if (++rest->quiet_ticks >= ticks_to_rest(session)) {
-		memset(session->velocity, 0, bytes);
+		memset(session->vertices.velocity, 0, bytes);
 		rest->resting = true;
 	}
 }
@@ -153,12 +153,12 @@ void cau_session_fall_asleep(cau_session *session)
 
 static bool is_disturbed(cau_session *session)
 {
-	CAU_ASSERT(session->driven_count >= 0, "%d vertices led", session->driven_count);
-	if (session->driven_count)
+	CAU_ASSERT(session->driven.count >= 0, "%d vertices led", session->driven.count);
+	if (session->driven.count)
 		return true;
-	for (int32_t k = 0; k < session->command_count; k++)
-		if (session->command[k].tick <= session->tick &&
-		    !cau_session_changes_nothing(session, &session->command[k]))
+	for (int32_t k = 0; k < session->queue.count; k++)
+		if (session->queue.command[k].tick <= session->tick &&
+		    !cau_session_changes_nothing(session, &session->queue.command[k]))
 			return true;
 	return false;
 }
@@ -177,14 +177,14 @@ cau_status cau_session_rest_tick(cau_session *session, cau_error *error)
 	CAU_ASSERT(session->rest.resting, "tick %llu is not at rest",
 	           (unsigned long long)session->tick);
 	cau_step_solver *solver = &session->solver;
-	memset(session->stage_s, 0, sizeof session->stage_s);
-	session->refusal_count = 0;
-	solver->iterations_done = solver->backtracks = 0;
-	solver->residual = solver->accuracy.error = session->energy.gain_j = 0;
+	memset(session->timing.stage_s, 0, sizeof session->timing.stage_s);
+	session->queue.refusal_count = 0;
+	solver->result.iterations = solver->result.backtracks = 0;
+	solver->result.residual = solver->accuracy.error = session->energy.gain_j = 0;
 	cau_dissection_begin(&session->dissection);
 	// Refusals and sequence numbers are reported as in every tick.
 	cau_status status = cau_session_apply_commands(session, error);
-	cau_frame_stand_still(&session->frame);
+	cau_frame_stand_still(&session->view.frame);
 	session->tick++;
 	return status;
 }

@@ -114,6 +114,7 @@ typedef struct cau_contact_watch cau_contact_watch; // contact records of tools:
 
 // Results of the last check of edge lengths (possible.c), and its scratch memory.
 typedef struct cau_watch {
+	double size_m;        // diagonal of the tissue's box at rest: stray.c
 	double left_m;        // least length by which an edge may still grow before it is too long
 	double *farthest2_m2; // by chunk of vertices: squared farthest motion in the tick
 	int32_t *astray;      // by chunk of vertices: a vertex that moved too far, or -1
@@ -122,69 +123,102 @@ typedef struct cau_watch {
 	int32_t *edge;  // by chunk of edges: the edge with that least length
 } cau_watch;
 
-struct cau_session {
+// Memory of a session.
+typedef struct cau_session_memory {
 	cau_arena arena;
-	cau_arena rebuilt_arena; // system that was built when the pins last changed: pins.c
-	cau_image *image;        // share.c: memory shared with other sessions, or NULL
-	cau_scene_def *scene;
-	uint64_t definition_hash;
-	cau_tissue tissue;
-	cau_pool *pool;
-	cau_step_solver solver;
-	cau_matrix_update update;
-	cau_dissection dissection;
-	cau_shrink shrink;
-	cau_near near;
-	cau_tissue_cells *cells; // cells of energy `tissue`; NULL: energy `paper`
-	cau_vessels *vessels;    // the scene's vessels, or NULL if it has none
-	cau_contact_set contact;
-	cau_collide collide;             // meet.c: solver.collide points here, or is NULL
-	struct cau_candidate *candidate; // reach.c: scratch memory
-	double *position_unheld;         // m, (n x 3): touch.c: solution before missed faces were added
-	// touch.c: result of cau_session_farthest after the last solve, and before missed faces were
-	// added
-	double farthest_m, unheld_farthest_m;
-	cau_frame_state frame;
+	cau_arena rebuilt; // system that was built when the pins last changed: pins.c
+	cau_image *image;  // share.c: memory shared with other sessions, or NULL
+} cau_session_memory;
 
-	uint64_t tick;
-	bool faulted;
+// State of the tissue's n vertices.
+typedef struct cau_vertices {
 	double *position, *velocity; // m, m/s, (n x 3)
-	double *position_start;      // m, (n x 3): position at the start of the tick
+	double *start;               // m, (n x 3): position at the start of the tick
 	double *external;            // N, (n x 3): forces set by commands
 	uint8_t *pinned;             // (n): pinned by the scene and by commands
 	uint8_t *fixed;              // (n): 1 for a vertex that is pinned or frozen
 	uint8_t *chosen;             // (n): scratch for selections
-	cau_drag *drag;              // (n): drag of energized tools on vertices
-	cau_inversion inversion;
 	int32_t frozen_count;
+} cau_vertices;
+
+// Where tools heat tissue, and the temperatures of the tissue itself.
+typedef struct cau_heating {
+	cau_near near;
+	cau_tissue_cells *cells; // cells of energy `tissue`; NULL: energy `paper`
+} cau_heating;
+
+// touch.c: search for contact of tools with tissue.
+typedef struct cau_touch {
+	struct cau_candidate *candidate; // reach.c: scratch memory
+	cau_drag *drag;                  // (n): drag of energized tools on vertices
+	double *unheld;                  // m, (n x 3): solution before missed faces were added
+	// Result of cau_session_farthest after the last solve, and before missed faces were added.
+	double farthest_m, unheld_farthest_m;
+} cau_touch;
+
+// drive.c: pinned vertices that the next step moves.
+typedef struct cau_driven {
+	int32_t count;
+	int32_t *vertex;  // (n)
+	double *position; // m, (n x 3), in the order of `vertex`
+} cau_driven;
+
+// command.c: commands that wait for their tick, and the refusals of the last step.
+typedef struct cau_queue {
+	int32_t count, capacity;
+	cau_command *command; // in order of submission
+	int32_t refusal_count;
+	cau_error refusal[CAU_MAX_REFUSALS];
+} cau_queue;
+
+// view.c: arrays of frames and of a session's description.
+typedef struct cau_view {
+	cau_frame_state frame;
+	cau_tool_state *tool; // (CAU_MAX_TOOLS): states for the frame
+	int32_t *face_layer;  // (face_count): layer of each face
+	float *face_texture;  // (face_count x 3 x 2): texture coordinates
+	int32_t fat_first_face[CAU_MAX_LAYERS], fat_face_count[CAU_MAX_LAYERS];
+	uint32_t watched;           // watched channels: CAU_CHANNEL_* bits
+	cau_contact_watch *contact; // tool_contact.c; NULL: the contact was never watched
+} cau_view;
+
+// Times of the stages of a step.
+typedef struct cau_timing {
+	double (*now_s)(void); // NULL: no times are measured
+	double stage_s[CAU_STAGE_COUNT];
+	double stage_start;
+} cau_timing;
+
+struct cau_session {
+	cau_session_memory memory;
+	cau_scene_def *scene;
+	uint64_t definition_hash;
+	cau_tissue tissue;
+	cau_pool *pool;
+	uint64_t tick;
+	bool faulted;
+	cau_vertices vertices;
+	cau_step_solver solver;
+	cau_matrix_update update;
+	cau_dissection dissection;
+	cau_shrink shrink;
+	cau_heating heat;
+	cau_vessels *vessels; // the scene's vessels, or NULL if it has none
+	cau_contact_set contact;
+	cau_collide collide; // meet.c: solver.collide points here, or is NULL
+	cau_touch touch;
+	int32_t tool_count;
+	cau_tool *tool; // (CAU_MAX_TOOLS), of which tool_count are in use
+	cau_driven driven;
+	cau_queue queue;
+	cau_inversion inversion;
 	cau_watch watch;
 	cau_energy energy;
 	cau_rest rest;
 	cau_spin spin;
 	cau_substep substep;
-	double size_m;           // diagonal of the tissue's box at rest
-	int32_t driven_count;    // number of pinned vertices that the next step moves
-	int32_t *driven;         // (n): these vertices
-	double *driven_position; // m, (n x 3), in the order of `driven`
-
-	int32_t tool_count;
-	cau_tool *tool;            // (CAU_MAX_TOOLS), of which tool_count are in use
-	cau_tool_state *tool_view; // (CAU_MAX_TOOLS): states for the frame
-
-	int32_t command_count, command_capacity;
-	cau_command *command; // queued commands, in order of submission
-	int32_t refusal_count;
-	cau_error refusal[CAU_MAX_REFUSALS];
-
-	int32_t *face_layer; // (face_count): layer of each face
-	float *face_texture; // (face_count x 3 x 2): texture coordinates
-	int32_t fat_first_face[CAU_MAX_LAYERS], fat_face_count[CAU_MAX_LAYERS];
-
-	double (*now_s)(void);
-	double stage_s[CAU_STAGE_COUNT];
-	double stage_start;
-	uint32_t watched;                 // watched channels: CAU_CHANNEL_* bits
-	cau_contact_watch *contact_watch; // tool_contact.c; NULL: the contact was never watched
+	cau_view view;
+	cau_timing timing;
 };
 
 // command.c: applies the queued commands whose tick has come.
@@ -219,7 +253,7 @@ bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
 bool cau_layer_has_material(const cau_layer_def *def, const cau_command *command);
 // substep.c. A tick's motion is: begin_substeps; for each substep the prediction, contact and the
 // solve, with next_substep before the second; end_substeps. end_substeps is also called after a
-// failed solve, and has no effect if the tick has one substep. Afterwards position_start is again
+// failed solve, and has no effect if the tick has one substep. Afterwards vertices.start is again
 // the tick's start.
 cau_status cau_session_make_substeps(cau_session *session, cau_error *error);
 void cau_session_begin_substeps(cau_session *session);

@@ -13,16 +13,16 @@ int32_t cau_session_pages(const cau_session *session, cau_pages pages[CAU_IMAGE_
 	pages[count++] = session->solver.sweep.pages;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		pages[count++] = session->tool[i].grid.pages;
-	return count + cau_arena_pages(&session->arena, pages + count, CAU_IMAGE_PARTS - count);
+	return count + cau_arena_pages(&session->memory.arena, pages + count, CAU_IMAGE_PARTS - count);
 }
 
 size_t cau_session_share(cau_session *session)
 {
-	CAU_ASSERT(!session->image, "session '%s' shares already", session->scene->name);
+	CAU_ASSERT(!session->memory.image, "session '%s' shares already", session->scene->name);
 	cau_pages pages[CAU_IMAGE_PARTS];
 	bool made = false;
 	cau_matrix_update_await(&session->update);
 	int32_t count = cau_session_pages(session, pages);
-	session->image = cau_image_of(cau_session_tissue_hash(session), pages, count, &made);
-	return session->image ? cau_image_show(session->image, pages, count, made) : 0;
+	session->memory.image = cau_image_of(cau_session_tissue_hash(session), pages, count, &made);
+	return session->memory.image ? cau_image_show(session->memory.image, pages, count, made) : 0;
 }

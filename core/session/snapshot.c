@@ -62,35 +62,36 @@ static void take_counts(cau_session *session, const snapshot_head *head)
 	session->rest.quiet_ticks = head->quiet_ticks;
 	cau_session_forget_inversion(session);
 	session->inversion.count = head->inverted;
-	session->driven_count = session->refusal_count = 0;
-	session->solver.factor_version = head->factor_version;
-	update->group_count = head->group_count;
-	update->waiting_at_start = head->waiting_at_start;
-	update->longest_wait = head->longest_wait;
-	update->refactorisations = head->refactorisations;
-	accuracy->shallow_steps = head->shallow_steps;
-	accuracy->force_left = head->force_left;
-	memcpy(accuracy->amplification, head->amplification, sizeof head->amplification);
-	memcpy(accuracy->force_before, head->force_before, sizeof head->force_before);
+	session->driven.count = session->queue.refusal_count = 0;
+	session->solver.age.version = head->factor.version;
+	update->group_count = head->factor.group_count;
+	update->waiting_at_start = head->factor.waiting_at_start;
+	update->longest_wait = head->factor.longest_wait;
+	update->refactorisations = head->factor.refactorisations;
+	accuracy->shallow_steps = head->learned.shallow_steps;
+	accuracy->force_left = head->learned.force_left;
+	memcpy(accuracy->amplification, head->learned.amplification,
+	       sizeof head->learned.amplification);
+	memcpy(accuracy->force_before, head->learned.force_before, sizeof head->learned.force_before);
 	memcpy(session->scene->gravity_m_s2, head->gravity_m_s2, sizeof head->gravity_m_s2);
 }
 
 static void take_vertices(cau_session *session, const snapshot_state *state)
 {
 	size_t n = (size_t)session->tissue.vertex_count;
-	memcpy(session->fixed, state->fixed, n);
-	session->frozen_count = 0;
+	memcpy(session->vertices.fixed, state->vertices.fixed, n);
+	session->vertices.frozen_count = 0;
 	for (size_t v = 0; v < n; v++)
-		session->frozen_count += state->fixed[v] && !state->pinned[v];
-	memcpy(session->position, state->position, 3 * n * sizeof(double));
-	memcpy(session->velocity, state->velocity, 3 * n * sizeof(double));
-	memcpy(session->external, state->external, 3 * n * sizeof(double));
-	memcpy(session->solver.system.diagonal, state->diagonal, n * sizeof(double));
+		session->vertices.frozen_count += state->vertices.fixed[v] && !state->vertices.pinned[v];
+	memcpy(session->vertices.position, state->vertices.position, 3 * n * sizeof(double));
+	memcpy(session->vertices.velocity, state->vertices.velocity, 3 * n * sizeof(double));
+	memcpy(session->vertices.external, state->vertices.external, 3 * n * sizeof(double));
+	memcpy(session->solver.system.diagonal, state->vertices.diagonal, n * sizeof(double));
 	if (state->head.quiet_ticks && !state->head.resting)
-		memcpy(session->rest.from, state->quiet_from, 3 * n * sizeof(double));
+		memcpy(session->rest.from, state->vertices.quiet_from, 3 * n * sizeof(double));
 	if (session->scene->contact_thickness_m > 0) {
 		cau_collide_forget(&session->collide);
-		memcpy(session->collide.exempt_before, state->exempt_before, n);
+		memcpy(session->collide.search.exempt_before, state->vertices.exempt_before, n);
 	}
 }
 
@@ -99,31 +100,31 @@ static void take_dissection(cau_session *session, const snapshot_state *state)
 	cau_dissection *dissection = &session->dissection;
 	size_t edges = (size_t)session->tissue.edges.edge_count;
 	size_t doses = (size_t)cau_dissection_dose_count(dissection);
-	memcpy(dissection->exposure, state->exposure, edges * sizeof(double));
-	memcpy(dissection->parted, state->parted, edges * sizeof(uint16_t));
+	memcpy(dissection->exposure, state->dissection.exposure, edges * sizeof(double));
+	memcpy(dissection->parted, state->dissection.parted, edges * sizeof(uint16_t));
 	if (doses) {
-		memcpy(dissection->doses.dose, state->dose, doses * sizeof(double));
-		memcpy(dissection->doses.gone, state->gone, doses);
+		memcpy(dissection->doses.dose, state->dissection.dose, doses * sizeof(double));
+		memcpy(dissection->doses.gone, state->dissection.gone, doses);
 	}
 	cau_dissection_begin(dissection);
 	cau_dissection_recount(dissection);
 	dissection->edges_parted = state->head.edges_parted;
 	dissection->elements_removed = state->head.elements_removed;
 	dissection->tears.elements_torn = state->head.elements_torn;
-	dissection->tears.over_count = state->head.over_count;
-	memcpy(dissection->tears.over, state->over,
-	       (size_t)state->head.over_count * sizeof *state->over);
+	dissection->tears.over_count = state->head.sizes.over;
+	memcpy(dissection->tears.over, state->dissection.over,
+	       (size_t)state->head.sizes.over * sizeof *state->dissection.over);
 }
 
 static void take_cells(cau_session *session, snapshot_state *state)
 {
-	if (!session->cells)
+	if (!session->heat.cells)
 		return;
 	cau_tissue_cells *cells = state->cells;
 	for (int32_t cell = 0; cell < cells->bioheat.cells.count; cell++)
 		if (cells->bioheat.cells.severed[cell])
 			cau_cells_sever(&cells->bioheat.cells, cell);
-	cau_tissue_cells_copy(session->cells, cells);
+	cau_tissue_cells_copy(session->heat.cells, cells);
 }
 
 static void take_vessels(cau_session *session, const snapshot_state *state)
@@ -131,11 +132,11 @@ static void take_vessels(cau_session *session, const snapshot_state *state)
 	cau_vessels *vessels = session->vessels;
 	if (!vessels)
 		return;
-	memcpy(vessels->fusion, state->fusion, (size_t)vessels->station_count * sizeof(double));
-	memcpy(vessels->blood.volume_m3, state->blood_m3,
+	memcpy(vessels->fusion, state->vessels.fusion, (size_t)vessels->station_count * sizeof(double));
+	memcpy(vessels->blood.volume_m3, state->vessels.blood_m3,
 	       (size_t)vessels->blood.vertex_count * sizeof(double));
 	for (int32_t i = 0; i < vessels->vessel_count; i++)
-		vessels->vessel[i].state.shed_m3 = state->shed_m3[i];
+		vessels->vessel[i].state.shed_m3 = state->vessels.shed_m3[i];
 }
 
 static void take_reals(void *const *to, void *const *from, int count, int32_t slots, bool single)
@@ -155,9 +156,9 @@ static void take_elements(cau_session *session, const snapshot_state *state)
 		session->tissue.layer[i].def = state->layer[i];
 	memcpy(session->shrink.shrunk[0], state->shrunk[0], (size_t)session->tissue.triangle_count);
 	memcpy(session->shrink.shrunk[1], state->shrunk[1], (size_t)session->tissue.tetrahedron_count);
-	session->shrink.active_count = state->head.active_count;
+	session->shrink.active_count = state->head.sizes.active;
 	memcpy(session->shrink.active, state->active,
-	       (size_t)state->head.active_count * sizeof *state->active);
+	       (size_t)state->head.sizes.active * sizeof *state->active);
 	cau_elements_set_materials(to, &session->solver.slots, &session->tissue,
 	                           session->dissection.alive.element, session->shrink.shrunk);
 	take_reals(to->sheet.target, from->sheet.target, 3, sheets, to->single);
@@ -170,29 +171,31 @@ static void take_elements(cau_session *session, const snapshot_state *state)
 	memcpy(to->fat.limited, from->fat.limited, (size_t)(fat / CAU_BATCH));
 	memcpy(to->fat.flowed, from->fat.flowed, (size_t)(fat / CAU_BATCH));
 	cau_elements_mark_targets(to, &session->solver.slots);
-	session->solver.conservative =
-		cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+	session->solver.settings.conservative =
+		cau_solver_is_conservative(&session->tissue, session->solver.settings.diagonal);
 }
 
 static void take_contact(cau_session *session, const snapshot_state *state)
 {
 	cau_contact_set *set = &session->contact;
-	size_t count = (size_t)state->head.column_count;
+	size_t count = (size_t)state->head.sizes.columns;
 	size_t bytes =
 		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	cau_contact_clear(set);
-	set->epoch = session->solver.factor_epoch;
-	set->column_count = (int32_t)count;
-	memcpy(set->column_vertex, state->column_vertex, count * sizeof *set->column_vertex);
-	memcpy(set->column_version, state->column_version, count * sizeof *set->column_version);
+	set->columns.epoch = session->solver.age.epoch;
+	set->columns.count = (int32_t)count;
+	memcpy(set->columns.vertex, state->columns.vertex, count * sizeof *set->columns.vertex);
+	memcpy(set->columns.version, state->columns.version, count * sizeof *set->columns.version);
 	for (size_t i = 0; i < count && i < CAU_WHOLE_COLUMNS; i++)
-		memcpy(set->column[i], state->column[i], bytes);
+		memcpy(set->columns.whole[i], state->columns.whole[i], bytes);
 	for (size_t i = 0; i < count; i++)
 		for (size_t k = 0; k <= i; k++)
-			set->inverse[i * CAU_MAX_COLUMNS + k] = set->inverse[k * CAU_MAX_COLUMNS + i] =
-				state->inverse[i * CAU_MAX_COLUMNS + k];
-	set->memory_count = state->head.memory_count;
-	memcpy(set->memory, state->memory, (size_t)set->memory_count * sizeof *set->memory);
+			set->columns.inverse[i * CAU_MAX_COLUMNS + k] =
+				set->columns.inverse[k * CAU_MAX_COLUMNS + i] =
+					state->columns.inverse[i * CAU_MAX_COLUMNS + k];
+	set->sides.memory_count = state->head.sizes.memory;
+	memcpy(set->sides.memory, state->memory,
+	       (size_t)set->sides.memory_count * sizeof *set->sides.memory);
 }
 
 // Takes the tools with their heat grids from `state`.
@@ -200,7 +203,7 @@ static void take_tools(cau_session *session, snapshot_state *state)
 {
 	while (session->tool_count)
 		cau_session_drop_tool(session, session->tool_count - 1);
-	session->tool_count = state->head.tool_count;
+	session->tool_count = state->head.sizes.tools;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		*tool = state->tool[i];
@@ -208,9 +211,9 @@ static void take_tools(cau_session *session, snapshot_state *state)
 		cau_heat_grid_take_over(&tool->grid, &tool->state.definition, &tool->state.pose,
 		                        tool->state.jaw, tool->state.energized);
 	}
-	session->command_count = state->head.command_count;
-	memcpy(session->command, state->command,
-	       (size_t)session->command_count * sizeof *session->command);
+	session->queue.count = state->head.sizes.commands;
+	memcpy(session->queue.command, state->command,
+	       (size_t)session->queue.count * sizeof *session->queue.command);
 }
 
 // ---- the factor
@@ -221,8 +224,8 @@ static void take_tools(cau_session *session, snapshot_state *state)
 static void take_lists(cau_session *session, const snapshot_state *state)
 {
 	cau_matrix_update *update = &session->update;
-	update->waiting_count = state->head.waiting_count;
-	update->operation_count = state->head.operation_count;
+	update->waiting_count = state->head.sizes.waiting;
+	update->operation_count = state->head.sizes.operations;
 	memcpy(update->waiting, state->waiting, (size_t)update->waiting_count * sizeof *state->waiting);
 	memcpy(update->operation, state->operation,
 	       (size_t)update->operation_count * sizeof *state->operation);
@@ -290,8 +293,8 @@ static cau_status replay_factor(cau_session *session, const snapshot_head *head,
 	memset(update->touched, 0, (size_t)solver->sweep.supernode_count);
 	if (!status)
 		cau_sweep_pack(&solver->sweep, solver->factor);
-	if (!status && head->making)
-		cau_matrix_update_start(update, head->swap_tick);
+	if (!status && head->factor.making)
+		cau_matrix_update_start(update, head->factor.swap_tick);
 	return status;
 }
 
@@ -302,8 +305,8 @@ static cau_status take_pins(cau_session *session, const uint8_t *pinned, cau_err
 	size_t n = (size_t)session->tissue.vertex_count;
 	cau_step_solver *solver = &session->solver;
 	bool has_system = solver->factor || session->scene->solver == CAU_SOLVER_DIAGONAL;
-	bool same = has_system && !memcmp(pinned, session->pinned, n);
-	memcpy(session->pinned, pinned, n);
+	bool same = has_system && !memcmp(pinned, session->vertices.pinned, n);
+	memcpy(session->vertices.pinned, pinned, n);
 	return same ? CAU_OK : cau_session_rebuild_system(session, error);
 }
 
@@ -313,7 +316,7 @@ static cau_status take(cau_session *session, snapshot_state *state, cau_error *e
 {
 	cau_matrix_update_stop(&session->update);
 	take_dissection(session, state);
-	cau_status status = take_pins(session, state->pinned, error);
+	cau_status status = take_pins(session, state->vertices.pinned, error);
 	if (status)
 		return status;
 	take_tools(session, state);
@@ -327,7 +330,7 @@ static cau_status take(cau_session *session, snapshot_state *state, cau_error *e
 	session->watch.left_m = 0;
 	session->energy.stale = session->spin.stale = true;
 	status = replay_factor(session, &state->head, error);
-	cau_frame_rebuild(&session->frame, &session->dissection);
+	cau_frame_rebuild(&session->view.frame, &session->dissection);
 	cau_session_look_at_vessels(session);
 	cau_session_renew_scalars(session);
 	cau_session_forget_contact(session);
@@ -357,15 +360,15 @@ uint64_t cau_session_hash(const cau_session *session)
 	const cau_elements *elements = &session->solver.elements;
 	size_t n = (size_t)tissue->vertex_count, edges = (size_t)tissue->edges.edge_count;
 	uint64_t hash = cau_hash_word(CAU_HASH_START, session->tick);
-	hash = cau_hash_bytes(hash, session->position, 3 * n * sizeof(double));
-	hash = cau_hash_bytes(hash, session->velocity, 3 * n * sizeof(double));
+	hash = cau_hash_bytes(hash, session->vertices.position, 3 * n * sizeof(double));
+	hash = cau_hash_bytes(hash, session->vertices.velocity, 3 * n * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.exposure, edges * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.parted, edges * sizeof(uint16_t));
 	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
 	hash = cau_hash_bytes(hash, session->dissection.doses.dose, doses * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.doses.gone, doses);
-	if (session->cells)
-		hash = cau_tissue_cells_hash(session->cells, hash);
+	if (session->heat.cells)
+		hash = cau_tissue_cells_hash(session->heat.cells, hash);
 	if (session->vessels)
 		hash = cau_vessels_hash(session->vessels, hash);
 	const cau_tears *tears = &session->dissection.tears;

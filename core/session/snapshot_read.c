@@ -68,14 +68,14 @@ static void copy_elements(copier *copies, cau_elements *elements)
 
 static void make_columns(copier *copies, const cau_session *session, snapshot_state *state)
 {
-	size_t count = (size_t)state->head.column_count;
+	size_t count = (size_t)state->head.sizes.columns;
 	size_t n = (size_t)session->tissue.vertex_count;
-	state->column_vertex = array(copies, count, sizeof(int32_t));
-	state->column_version = array(copies, count, sizeof(uint64_t));
-	state->column = array(copies, CAU_WHOLE_COLUMNS, sizeof *state->column);
-	state->inverse = array(copies, count * CAU_MAX_COLUMNS, sizeof(double));
+	state->columns.vertex = array(copies, count, sizeof(int32_t));
+	state->columns.version = array(copies, count, sizeof(uint64_t));
+	state->columns.whole = array(copies, CAU_WHOLE_COLUMNS, sizeof *state->columns.whole);
+	state->columns.inverse = array(copies, count * CAU_MAX_COLUMNS, sizeof(double));
 	for (size_t i = 0; i < count && i < CAU_WHOLE_COLUMNS && !copies->missing; i++)
-		state->column[i] = array(copies, n, cau_real_bytes(state->elements.single));
+		state->columns.whole[i] = array(copies, n, cau_real_bytes(state->elements.single));
 }
 
 // Allocates the arrays with the sizes in the head. cau_snapshot_read has compared these sizes with
@@ -87,39 +87,41 @@ static cau_status make_copies(const cau_session *session, snapshot_state *state,
 	const cau_tissue *tissue = &session->tissue;
 	size_t n = (size_t)tissue->vertex_count, edges = (size_t)tissue->edges.edge_count;
 	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
-	state->pinned = array(&copies, n, 1);
-	state->fixed = array(&copies, n, 1);
-	state->exempt_before = array(&copies, n, 1);
-	state->position = array(&copies, 3 * n, sizeof(double));
-	state->velocity = array(&copies, 3 * n, sizeof(double));
-	state->external = array(&copies, 3 * n, sizeof(double));
-	state->quiet_from = array(&copies, 3 * n, sizeof(double));
-	state->diagonal = array(&copies, n, sizeof(double));
-	state->exposure = array(&copies, edges, sizeof(double));
-	state->parted = array(&copies, edges, sizeof(uint16_t));
-	state->dose = array(&copies, doses, sizeof(double));
-	state->gone = array(&copies, doses, 1);
+	state->vertices.pinned = array(&copies, n, 1);
+	state->vertices.fixed = array(&copies, n, 1);
+	state->vertices.exempt_before = array(&copies, n, 1);
+	state->vertices.position = array(&copies, 3 * n, sizeof(double));
+	state->vertices.velocity = array(&copies, 3 * n, sizeof(double));
+	state->vertices.external = array(&copies, 3 * n, sizeof(double));
+	state->vertices.quiet_from = array(&copies, 3 * n, sizeof(double));
+	state->vertices.diagonal = array(&copies, n, sizeof(double));
+	state->dissection.exposure = array(&copies, edges, sizeof(double));
+	state->dissection.parted = array(&copies, edges, sizeof(uint16_t));
+	state->dissection.dose = array(&copies, doses, sizeof(double));
+	state->dissection.gone = array(&copies, doses, 1);
 	state->shrunk[0] = array(&copies, (size_t)tissue->triangle_count, 1);
 	state->shrunk[1] = array(&copies, (size_t)tissue->tetrahedron_count, 1);
-	state->active = array(&copies, (size_t)head->active_count, sizeof *state->active);
-	state->command = array(&copies, (size_t)head->command_count, sizeof *state->command);
-	state->waiting = array(&copies, (size_t)head->waiting_count, sizeof *state->waiting);
-	state->operation = array(&copies, (size_t)head->operation_count, sizeof *state->operation);
-	state->tool = array(&copies, (size_t)head->tool_count, sizeof *state->tool);
-	state->memory = array(&copies, (size_t)head->memory_count, sizeof *state->memory);
-	state->over = array(&copies, (size_t)head->over_count, sizeof *state->over);
+	state->active = array(&copies, (size_t)head->sizes.active, sizeof *state->active);
+	state->command = array(&copies, (size_t)head->sizes.commands, sizeof *state->command);
+	state->waiting = array(&copies, (size_t)head->sizes.waiting, sizeof *state->waiting);
+	state->operation = array(&copies, (size_t)head->sizes.operations, sizeof *state->operation);
+	state->tool = array(&copies, (size_t)head->sizes.tools, sizeof *state->tool);
+	state->memory = array(&copies, (size_t)head->sizes.memory, sizeof *state->memory);
+	state->dissection.over =
+		array(&copies, (size_t)head->sizes.over, sizeof *state->dissection.over);
 	state->layer = array(&copies, (size_t)tissue->layer_count, sizeof *state->layer);
 	for (int32_t i = 0; i < tissue->layer_count && state->layer; i++)
 		state->layer[i] = tissue->layer[i].def;
 	state->elements = session->solver.elements;
 	copy_elements(&copies, &state->elements);
-	state->cells = session->cells ? array(&copies, 1, sizeof *state->cells) : NULL;
+	state->cells = session->heat.cells ? array(&copies, 1, sizeof *state->cells) : NULL;
 	if (state->cells &&
-	    cau_tissue_cells_create_like(state->cells, session->cells, &state->copies, error))
+	    cau_tissue_cells_create_like(state->cells, session->heat.cells, &state->copies, error))
 		copies.missing = true;
 	if (session->vessels) {
-		state->fusion = array(&copies, (size_t)session->vessels->station_count, sizeof(double));
-		state->blood_m3 = array(&copies, n, sizeof(double));
+		state->vessels.fusion =
+			array(&copies, (size_t)session->vessels->station_count, sizeof(double));
+		state->vessels.blood_m3 = array(&copies, n, sizeof(double));
 	}
 	make_columns(&copies, session, state);
 	return copies.missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore") : CAU_OK;
@@ -127,7 +129,7 @@ static cau_status make_copies(const cau_session *session, snapshot_state *state,
 
 void cau_snapshot_drop(snapshot_state *state)
 {
-	for (int32_t i = 0; i < state->head.tool_count && state->tool; i++)
+	for (int32_t i = 0; i < state->head.sizes.tools && state->tool; i++)
 		cau_heat_grid_finish(&state->tool[i].grid);
 	cau_arena_finish(&state->copies);
 	*state = (snapshot_state){0};
@@ -142,18 +144,18 @@ static cau_status check_head(const cau_session *session, const snapshot_head *he
 	if (head->single != session->solver.elements.single)
 		return corrupt(error, "the snapshot has another precision than the session");
 	if (head->definition_hash != session->definition_hash ||
-	    head->vertex_count != session->tissue.vertex_count ||
-	    head->edge_count != session->tissue.edges.edge_count)
+	    head->sizes.vertices != session->tissue.vertex_count ||
+	    head->sizes.edges != session->tissue.edges.edge_count)
 		return corrupt(error, "the snapshot is of another scene or mesh");
-	if (head->command_count > session->command_capacity ||
-	    head->active_count > session->shrink.active_capacity ||
-	    head->over_count > cau_tears_capacity(&session->tissue) ||
-	    head->waiting_count > update->waiting_capacity ||
-	    head->waiting_at_start > head->waiting_count ||
+	if (head->sizes.commands > session->queue.capacity ||
+	    head->sizes.active > session->shrink.active_capacity ||
+	    head->sizes.over > cau_tears_capacity(&session->tissue) ||
+	    head->sizes.waiting > update->waiting_capacity ||
+	    head->factor.waiting_at_start > head->sizes.waiting ||
 	    head->inverted > session->tissue.tetrahedron_count || (head->resting && !head->quiet_ticks))
 		return corrupt(error, "a count is outside its range");
-	if (head->making &&
-	    (session->scene->solver == CAU_SOLVER_DIAGONAL || head->swap_tick < head->tick))
+	if (head->factor.making &&
+	    (session->scene->solver == CAU_SOLVER_DIAGONAL || head->factor.swap_tick < head->tick))
 		return corrupt(error, "it has a factor under way, which this session cannot have");
 	return CAU_OK;
 }
@@ -166,19 +168,19 @@ static bool is_near(const cau_session *session, const snapshot_state *state, int
 {
 	const double rounding = 1 + 1e-9;
 	double most = rounding * cau_session_farthest_from_rest(session);
-	cau_vec3 at = cau_vec3_of(state->position + 3 * (size_t)vertex);
+	cau_vec3 at = cau_vec3_of(state->vertices.position + 3 * (size_t)vertex);
 	cau_vec3 way = cau_sub(at, cau_vec3_of(session->tissue.rest + 3 * (size_t)vertex));
-	cau_vec3 velocity = cau_vec3_of(state->velocity + 3 * (size_t)vertex);
+	cau_vec3 velocity = cau_vec3_of(state->vertices.velocity + 3 * (size_t)vertex);
 	return cau_length(way) <= most && cau_length(velocity) * session->solver.step_s <= 2 * most;
 }
 
 static bool are_vertices_right(const cau_session *session, const snapshot_state *state)
 {
 	int32_t free_count = 0;
-	for (int32_t v = 0; v < state->head.vertex_count; v++) {
-		if ((state->pinned[v] && !state->fixed[v]) || !is_near(session, state, v))
+	for (int32_t v = 0; v < state->head.sizes.vertices; v++) {
+		if ((state->vertices.pinned[v] && !state->vertices.fixed[v]) || !is_near(session, state, v))
 			return false;
-		free_count += !state->pinned[v];
+		free_count += !state->vertices.pinned[v];
 	}
 	return free_count > 0;
 }
@@ -196,9 +198,10 @@ static uint8_t *find_alive(const cau_session *session, const snapshot_state *sta
 		alive[kind] = next;
 		next += cau_tissue_element_count(&session->tissue, kind);
 	}
-	const uint8_t *gone = cau_dissection_dose_count(&session->dissection) ? state->gone : NULL;
+	const uint8_t *gone =
+		cau_dissection_dose_count(&session->dissection) ? state->dissection.gone : NULL;
 	if (marks)
-		cau_dissection_find_alive(&session->tissue, state->parted, gone, alive);
+		cau_dissection_find_alive(&session->tissue, state->dissection.parted, gone, alive);
 	return marks;
 }
 
@@ -214,17 +217,17 @@ static bool takes(uint8_t *const alive[CAU_ELEMENT_KINDS], int32_t kind, int32_t
 // Checks the lists, and marks the listed elements in `alive`. Afterwards `alive` is scratch memory.
 static bool are_lists_right(const snapshot_state *state, uint8_t *const alive[CAU_ELEMENT_KINDS])
 {
-	for (int32_t k = 0; k < state->head.waiting_count; k++)
+	for (int32_t k = 0; k < state->head.sizes.waiting; k++)
 		if (!takes(alive, state->waiting[k].kind, state->waiting[k].element) ||
 		    (k && state->waiting[k].tick < state->waiting[k - 1].tick))
 			return false;
-	for (int32_t k = 0; k < state->head.operation_count; k++)
+	for (int32_t k = 0; k < state->head.sizes.operations; k++)
 		if (!takes(alive, state->operation[k].kind, state->operation[k].element) ||
-		    state->operation[k].group >= state->head.group_count ||
+		    state->operation[k].group >= state->head.factor.group_count ||
 		    (k && state->operation[k].group < state->operation[k - 1].group))
 			return false;
-	for (int32_t k = 1; k < state->head.over_count; k++)
-		if (state->over[k].place <= state->over[k - 1].place)
+	for (int32_t k = 1; k < state->head.sizes.over; k++)
+		if (state->dissection.over[k].place <= state->dissection.over[k - 1].place)
 			return false;
 	return true;
 }
@@ -239,7 +242,7 @@ static int compare_shrinking(const void *a, const void *b)
 
 static bool is_shrinkage_right(const snapshot_state *state)
 {
-	for (int32_t k = 0; k < state->head.active_count; k++) {
+	for (int32_t k = 0; k < state->head.sizes.active; k++) {
 		const cau_shrinking *active = &state->active[k];
 		if (!state->shrunk[active->kind][active->element])
 			return false;
@@ -248,7 +251,7 @@ static bool is_shrinkage_right(const snapshot_state *state)
 			if (!(active->from[i] > 0 && active->to[i] > 0))
 				return false;
 	}
-	size_t count = (size_t)state->head.active_count;
+	size_t count = (size_t)state->head.sizes.active;
 	cau_shrinking *sorted = malloc((count + 1) * sizeof *sorted);
 	if (!sorted)
 		return false;
@@ -266,7 +269,7 @@ static bool moves_a_pin(const cau_session *session, const snapshot_state *state,
 {
 	const cau_vectors *vectors = session->solver.kernels->vectors;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-		if (state->pinned[v] && vectors->at(state->column[column], v) != 0)
+		if (state->vertices.pinned[v] && vectors->at(state->columns.whole[column], v) != 0)
 			return true;
 	return false;
 }
@@ -276,9 +279,9 @@ static bool are_columns_right(const cau_session *session, const snapshot_state *
 {
 	uint8_t *taken = calloc((size_t)session->tissue.vertex_count + 1, 1);
 	bool right = taken != NULL;
-	for (int32_t k = 0; k < state->head.column_count && right; k++) {
-		int32_t vertex = state->column_vertex[k];
-		right = !state->pinned[vertex] && !taken[vertex] &&
+	for (int32_t k = 0; k < state->head.sizes.columns && right; k++) {
+		int32_t vertex = state->columns.vertex[k];
+		right = !state->vertices.pinned[vertex] && !taken[vertex] &&
 		        (k >= CAU_WHOLE_COLUMNS || !moves_a_pin(session, state, k));
 		taken[vertex] = 1;
 	}
@@ -288,7 +291,7 @@ static bool are_columns_right(const cau_session *session, const snapshot_state *
 
 static bool are_sides_right(const snapshot_state *state)
 {
-	for (int32_t k = 0; k < state->head.memory_count; k++) {
+	for (int32_t k = 0; k < state->head.sizes.memory; k++) {
 		const cau_contact_memory *memory = &state->memory[k], *before = memory - 1;
 		if (!memory->above)
 			return false;
@@ -398,9 +401,9 @@ static cau_status check_records(const cau_session *session, const snapshot_state
 			if (cau_material_check(layer->kind, cau_layer_material(layer, m), "material", &why))
 				status = corrupt(error, why.reason);
 	}
-	for (int32_t i = 0; i < state->head.tool_count && !status; i++)
+	for (int32_t i = 0; i < state->head.sizes.tools && !status; i++)
 		status = check_tool(session, state, i, error);
-	for (int32_t i = 0; i < state->head.command_count && !status; i++)
+	for (int32_t i = 0; i < state->head.sizes.commands && !status; i++)
 		status = check_command(session, &state->command[i], error);
 	return status;
 }
@@ -408,7 +411,7 @@ static cau_status check_records(const cau_session *session, const snapshot_state
 static cau_status make_grids(const cau_session *session, snapshot_state *state, cau_error *error)
 {
 	cau_status status = CAU_OK;
-	for (int32_t i = 0; i < state->head.tool_count && !status; i++) {
+	for (int32_t i = 0; i < state->head.sizes.tools && !status; i++) {
 		cau_tool *tool = &state->tool[i];
 		status =
 			cau_heat_grid_create(&tool->grid, &tool->state.definition, session->scene->ambient_c,

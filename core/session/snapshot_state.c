@@ -20,62 +20,71 @@ static uint64_t build_hash(void)
 
 static int32_t kept_columns(const cau_session *session)
 {
-	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_COLUMNS + 1);
-	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
-	                                                              : 0;
+	CAU_ASSERT_INDEX(session->contact.columns.count, CAU_MAX_COLUMNS + 1);
+	return session->contact.columns.epoch == session->solver.age.epoch
+	           ? session->contact.columns.count
+	           : 0;
 }
 
-static void view_counts(const cau_session *session, snapshot_head *head)
+static snapshot_sizes view_sizes(const cau_session *session)
+{
+	return (snapshot_sizes){.vertices = session->tissue.vertex_count,
+	                        .edges = session->tissue.edges.edge_count,
+	                        .tools = session->tool_count,
+	                        .commands = session->queue.count,
+	                        .active = session->shrink.active_count,
+	                        .columns = kept_columns(session),
+	                        .memory = session->contact.sides.memory_count,
+	                        .over = session->dissection.tears.over_count,
+	                        .waiting = session->update.waiting_count,
+	                        .operations = session->update.operation_count};
+}
+
+static snapshot_factor view_factor(const cau_session *session)
 {
 	const cau_matrix_update *update = &session->update;
-	head->vertex_count = session->tissue.vertex_count;
-	head->edge_count = session->tissue.edges.edge_count;
-	head->tool_count = session->tool_count;
-	head->command_count = session->command_count;
-	head->active_count = session->shrink.active_count;
-	head->column_count = kept_columns(session);
-	head->memory_count = session->contact.memory_count;
-	head->over_count = session->dissection.tears.over_count;
-	head->waiting_count = update->waiting_count;
-	head->operation_count = update->operation_count;
-	head->group_count = update->group_count;
-	head->waiting_at_start = update->making ? update->waiting_at_start : 0;
-	head->refactorisations = update->refactorisations;
-	head->inverted = session->inversion.count;
-	head->edges_parted = session->dissection.edges_parted;
-	head->elements_removed = session->dissection.elements_removed;
-	head->elements_torn = session->dissection.tears.elements_torn;
-	head->quiet_ticks = session->rest.quiet_ticks;
+	return (snapshot_factor){.swap_tick = update->making ? update->swap_tick : 0,
+	                         .longest_wait = update->longest_wait,
+	                         .version = session->solver.age.version,
+	                         .group_count = update->group_count,
+	                         .waiting_at_start = update->making ? update->waiting_at_start : 0,
+	                         .refactorisations = update->refactorisations,
+	                         .making = update->making};
 }
 
 static void view_head(const cau_session *session, snapshot_head *head)
 {
 	const cau_accuracy *accuracy = &session->solver.accuracy;
+	const cau_dissection *dissection = &session->dissection;
 	*head = (snapshot_head){.version = CAU_SNAPSHOT_VERSION,
 	                        .single = session->solver.elements.single,
 	                        .build = build_hash(),
 	                        .definition_hash = session->definition_hash,
 	                        .tick = session->tick,
-	                        .swap_tick = session->update.making ? session->update.swap_tick : 0,
-	                        .longest_wait = session->update.longest_wait,
-	                        .factor_version = session->solver.factor_version,
-	                        .making = session->update.making,
+	                        .sizes = view_sizes(session),
+	                        .factor = view_factor(session),
+	                        .inverted = session->inversion.count,
+	                        .edges_parted = dissection->edges_parted,
+	                        .elements_removed = dissection->elements_removed,
+	                        .elements_torn = dissection->tears.elements_torn,
+	                        .quiet_ticks = session->rest.quiet_ticks,
 	                        .faulted = session->faulted,
 	                        .resting = session->rest.resting,
-	                        .shallow_steps = accuracy->shallow_steps,
-	                        .accuracy = accuracy->wanted,
-	                        .force_left = accuracy->force_left};
-	view_counts(session, head);
+	                        .learned = {.shallow_steps = accuracy->shallow_steps,
+	                                    .accuracy = accuracy->wanted,
+	                                    .force_left = accuracy->force_left}};
 	snprintf(head->instruction_set, sizeof head->instruction_set, "%s",
 	         session->solver.kernels->instruction_set);
 	memcpy(head->gravity_m_s2, session->scene->gravity_m_s2, sizeof head->gravity_m_s2);
-	memcpy(head->amplification, accuracy->amplification, sizeof head->amplification);
-	memcpy(head->force_before, accuracy->force_before, sizeof head->force_before);
+	memcpy(head->learned.amplification, accuracy->amplification,
+	       sizeof head->learned.amplification);
+	memcpy(head->learned.force_before, accuracy->force_before, sizeof head->learned.force_before);
 }
 
 bool cau_snapshot_is_exact(const cau_session *session, const snapshot_head *head)
 {
-	return head->build == build_hash() && head->accuracy == session->solver.accuracy.wanted &&
+	return head->build == build_hash() &&
+	       head->learned.accuracy == session->solver.accuracy.wanted &&
 	       !strcmp(head->instruction_set, session->solver.kernels->instruction_set);
 }
 
@@ -90,25 +99,25 @@ static void pass_counts(snapshot_archive *archive, snapshot_head *head)
 		int32_t *count;
 		int64_t most;
 	} counts[] = {
-		{"vertices", &head->vertex_count, MOST_COUNTED},
-		{"edges", &head->edge_count, MOST_COUNTED},
-		{"tools", &head->tool_count, CAU_MAX_TOOLS},
-		{"commands", &head->command_count, MOST_COUNTED},
-		{"shrinking elements", &head->active_count, MOST_COUNTED},
-		{"columns", &head->column_count, CAU_MAX_COLUMNS},
-		{"faces at tools", &head->memory_count, CAU_MAX_MEMORY},
-		{"stretched elements", &head->over_count, MOST_COUNTED},
-		{"waiting elements", &head->waiting_count, MOST_COUNTED},
-		{"factor operations", &head->operation_count, CAU_DOWNDATES_AT_MOST},
-		{"operation groups", &head->group_count, CAU_DOWNDATES_AT_MOST},
-		{"waiting elements at the start", &head->waiting_at_start, MOST_COUNTED},
-		{"refactorisations", &head->refactorisations, MOST_COUNTED},
+		{"vertices", &head->sizes.vertices, MOST_COUNTED},
+		{"edges", &head->sizes.edges, MOST_COUNTED},
+		{"tools", &head->sizes.tools, CAU_MAX_TOOLS},
+		{"commands", &head->sizes.commands, MOST_COUNTED},
+		{"shrinking elements", &head->sizes.active, MOST_COUNTED},
+		{"columns", &head->sizes.columns, CAU_MAX_COLUMNS},
+		{"faces at tools", &head->sizes.memory, CAU_MAX_MEMORY},
+		{"stretched elements", &head->sizes.over, MOST_COUNTED},
+		{"waiting elements", &head->sizes.waiting, MOST_COUNTED},
+		{"factor operations", &head->sizes.operations, CAU_DOWNDATES_AT_MOST},
+		{"operation groups", &head->factor.group_count, CAU_DOWNDATES_AT_MOST},
+		{"waiting elements at the start", &head->factor.waiting_at_start, MOST_COUNTED},
+		{"refactorisations", &head->factor.refactorisations, MOST_COUNTED},
 		{"inverted elements", &head->inverted, MOST_COUNTED},
 		{"parted edges", &head->edges_parted, MOST_COUNTED},
 		{"removed elements", &head->elements_removed, MOST_COUNTED},
 		{"torn elements", &head->elements_torn, MOST_COUNTED},
 		{"quiet ticks", &head->quiet_ticks, MOST_COUNTED},
-		{"shallow steps", &head->shallow_steps, MOST_COUNTED},
+		{"shallow steps", &head->learned.shallow_steps, MOST_COUNTED},
 	};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
 		cau_snapshot_ints(archive, counts[i].what, counts[i].count, 1, 0, counts[i].most);
@@ -131,20 +140,22 @@ void cau_snapshot_pass_head(snapshot_archive *archive, snapshot_head *head)
 	uint64_t *words[] = {&head->build, &head->definition_hash};
 	for (size_t i = 0; i < sizeof words / sizeof *words; i++)
 		cau_snapshot_words(archive, "hash", words[i], 1, UINT64_MAX);
-	uint64_t *ticks[] = {&head->tick, &head->swap_tick, &head->longest_wait, &head->factor_version};
+	uint64_t *ticks[] = {&head->tick, &head->factor.swap_tick, &head->factor.longest_wait,
+	                     &head->factor.version};
 	for (size_t i = 0; i < sizeof ticks / sizeof *ticks; i++)
 		cau_snapshot_words(archive, "tick", ticks[i], 1, UINT64_MAX / 2);
 	pass_counts(archive, head);
-	bool *flags[] = {&head->making, &head->faulted, &head->resting};
+	bool *flags[] = {&head->factor.making, &head->faulted, &head->resting};
 	for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
 		cau_snapshot_bool(archive, "flag", flags[i]);
 	cau_snapshot_doubles(archive, "gravity", head->gravity_m_s2, 3, -most_gravity, most_gravity);
-	cau_snapshot_doubles(archive, "accuracy", &head->accuracy, 1, 0, 1);
-	cau_snapshot_doubles(archive, "amplification", head->amplification, CAU_ACCURACY_DEPTHS,
+	cau_snapshot_doubles(archive, "accuracy", &head->learned.accuracy, 1, 0, 1);
+	cau_snapshot_doubles(archive, "amplification", head->learned.amplification, CAU_ACCURACY_DEPTHS,
 	                     least_learned, most_learned);
-	cau_snapshot_doubles(archive, "force_left", &head->force_left, 1, least_learned, most_learned);
-	cau_snapshot_doubles(archive, "force_before", head->force_before[0], 3 * CAU_ACCURACY_TOOLS,
-	                     -most_learned, most_learned);
+	cau_snapshot_doubles(archive, "force_left", &head->learned.force_left, 1, least_learned,
+	                     most_learned);
+	cau_snapshot_doubles(archive, "force_before", head->learned.force_before[0],
+	                     3 * CAU_ACCURACY_TOOLS, -most_learned, most_learned);
 }
 
 // ---- the arrays
@@ -154,38 +165,38 @@ void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapsho
 	cau_session *own = (cau_session *)(uintptr_t)session; // the view is only read: see the header
 	for (int32_t i = 0; i < session->tissue.layer_count; i++)
 		layer[i] = session->tissue.layer[i].def;
-	*state = (snapshot_state){.pinned = own->pinned,
-	                          .fixed = own->fixed,
-	                          .position = own->position,
-	                          .velocity = own->velocity,
-	                          .external = own->external,
-	                          .diagonal = own->solver.system.diagonal,
-	                          .exposure = own->dissection.exposure,
-	                          .parted = own->dissection.parted,
-	                          .dose = own->dissection.doses.dose,
-	                          .gone = own->dissection.doses.gone,
+	*state = (snapshot_state){.vertices = {.pinned = own->vertices.pinned,
+	                                       .fixed = own->vertices.fixed,
+	                                       .position = own->vertices.position,
+	                                       .velocity = own->vertices.velocity,
+	                                       .external = own->vertices.external,
+	                                       .diagonal = own->solver.system.diagonal,
+	                                       .quiet_from = own->rest.from,
+	                                       .exempt_before = own->collide.search.exempt_before},
+	                          .dissection = {.exposure = own->dissection.exposure,
+	                                         .parted = own->dissection.parted,
+	                                         .dose = own->dissection.doses.dose,
+	                                         .gone = own->dissection.doses.gone,
+	                                         .over = own->dissection.tears.over},
 	                          .shrunk = {own->shrink.shrunk[0], own->shrink.shrunk[1]},
 	                          .active = own->shrink.active,
-	                          .command = own->command,
+	                          .command = own->queue.command,
 	                          .layer = layer,
 	                          .elements = own->solver.elements,
 	                          .waiting = own->update.waiting,
 	                          .operation = own->update.operation,
 	                          .tool = own->tool,
-	                          .memory = own->contact.memory,
-	                          .over = own->dissection.tears.over,
-	                          .column_vertex = own->contact.column_vertex,
-	                          .column_version = own->contact.column_version,
-	                          .column = own->contact.column,
-	                          .inverse = own->contact.inverse,
-	                          .quiet_from = own->rest.from,
-	                          .exempt_before = own->collide.exempt_before,
-	                          .cells = own->cells};
+	                          .memory = own->contact.sides.memory,
+	                          .columns = {.vertex = own->contact.columns.vertex,
+	                                      .version = own->contact.columns.version,
+	                                      .whole = own->contact.columns.whole,
+	                                      .inverse = own->contact.columns.inverse},
+	                          .cells = own->heat.cells};
 	if (own->vessels) {
-		state->fusion = own->vessels->fusion;
-		state->blood_m3 = own->vessels->blood.volume_m3;
+		state->vessels.fusion = own->vessels->fusion;
+		state->vessels.blood_m3 = own->vessels->blood.volume_m3;
 		for (int32_t i = 0; i < own->vessels->vessel_count; i++)
-			state->shed_m3[i] = own->vessels->vessel[i].state.shed_m3;
+			state->vessels.shed_m3[i] = own->vessels->vessel[i].state.shed_m3;
 	}
 	view_head(session, &state->head);
 }
@@ -195,17 +206,21 @@ static void pass_vertices(snapshot_archive *archive, const cau_session *session,
 {
 	static const double farthest_m = 1e6, fastest_m_s = 1e9, most_force_n = 1e6;
 	size_t n = (size_t)session->tissue.vertex_count;
-	cau_snapshot_octets(archive, "pinned vertex", state->pinned, n, 1);
-	cau_snapshot_octets(archive, "fixed vertex", state->fixed, n, 1);
-	cau_snapshot_doubles(archive, "position", state->position, 3 * n, -farthest_m, farthest_m);
-	cau_snapshot_doubles(archive, "velocity", state->velocity, 3 * n, -fastest_m_s, fastest_m_s);
-	cau_snapshot_doubles(archive, "force", state->external, 3 * n, -most_force_n, most_force_n);
-	cau_snapshot_doubles(archive, "diagonal", state->diagonal, n, 1e-30, SNAPSHOT_ANY);
+	cau_snapshot_octets(archive, "pinned vertex", state->vertices.pinned, n, 1);
+	cau_snapshot_octets(archive, "fixed vertex", state->vertices.fixed, n, 1);
+	cau_snapshot_doubles(archive, "position", state->vertices.position, 3 * n, -farthest_m,
+	                     farthest_m);
+	cau_snapshot_doubles(archive, "velocity", state->vertices.velocity, 3 * n, -fastest_m_s,
+	                     fastest_m_s);
+	cau_snapshot_doubles(archive, "force", state->vertices.external, 3 * n, -most_force_n,
+	                     most_force_n);
+	cau_snapshot_doubles(archive, "diagonal", state->vertices.diagonal, n, 1e-30, SNAPSHOT_ANY);
 	if (state->head.quiet_ticks && !state->head.resting)
-		cau_snapshot_doubles(archive, "position at rest", state->quiet_from, 3 * n, -farthest_m,
-		                     farthest_m);
+		cau_snapshot_doubles(archive, "position at rest", state->vertices.quiet_from, 3 * n,
+		                     -farthest_m, farthest_m);
 	if (session->scene->contact_thickness_m > 0)
-		cau_snapshot_octets(archive, "vertex excluded from contact", state->exempt_before, n, 1);
+		cau_snapshot_octets(archive, "vertex excluded from contact", state->vertices.exempt_before,
+		                    n, 1);
 }
 
 static void pass_dissection(snapshot_archive *archive, const cau_session *session,
@@ -214,16 +229,16 @@ static void pass_dissection(snapshot_archive *archive, const cau_session *sessio
 	const cau_tissue *tissue = &session->tissue;
 	size_t edges = (size_t)tissue->edges.edge_count;
 	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
-	cau_snapshot_doubles(archive, "exposure", state->exposure, edges, 0, SNAPSHOT_ANY);
-	cau_snapshot_shorts(archive, "parted edge", state->parted, edges,
+	cau_snapshot_doubles(archive, "exposure", state->dissection.exposure, edges, 0, SNAPSHOT_ANY);
+	cau_snapshot_shorts(archive, "parted edge", state->dissection.parted, edges,
 	                    (uint16_t)((1u << tissue->layer_count) - 1));
-	cau_snapshot_doubles(archive, "dose", state->dose, doses, 0, SNAPSHOT_ANY);
-	cau_snapshot_octets(archive, "parted element", state->gone, doses, 1);
-	for (int32_t i = 0; i < state->head.over_count && !archive->wrong; i++) {
-		cau_snapshot_ints(archive, "stretched element", &state->over[i].place, 1, 0,
+	cau_snapshot_doubles(archive, "dose", state->dissection.dose, doses, 0, SNAPSHOT_ANY);
+	cau_snapshot_octets(archive, "parted element", state->dissection.gone, doses, 1);
+	for (int32_t i = 0; i < state->head.sizes.over && !archive->wrong; i++) {
+		cau_snapshot_ints(archive, "stretched element", &state->dissection.over[i].place, 1, 0,
 		                  (int64_t)cau_tears_capacity(tissue) - 1);
-		cau_snapshot_ints(archive, "ticks of a stretched element", &state->over[i].counted, 1, 0,
-		                  INT32_MAX / 2);
+		cau_snapshot_ints(archive, "ticks of a stretched element",
+		                  &state->dissection.over[i].counted, 1, 0, INT32_MAX / 2);
 	}
 }
 
@@ -236,7 +251,7 @@ static void pass_shrinking(snapshot_archive *archive, const cau_session *session
 	                  (size_t)session->tissue.tetrahedron_count};
 	for (int k = 0; k < 2; k++)
 		cau_snapshot_octets(archive, "shrunk element", state->shrunk[k], count[k], 1);
-	for (int32_t i = 0; i < state->head.active_count && !archive->wrong; i++) {
+	for (int32_t i = 0; i < state->head.sizes.active && !archive->wrong; i++) {
 		cau_shrinking *active = &state->active[i];
 		cau_snapshot_ints(archive, "kind of a shrinking element", &active->kind, 1,
 		                  CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON);
@@ -310,13 +325,13 @@ static void pass_element(snapshot_archive *archive, const cau_session *session, 
 static void pass_update(snapshot_archive *archive, const cau_session *session,
                         snapshot_state *state)
 {
-	for (int32_t i = 0; i < state->head.waiting_count && !archive->wrong; i++) {
+	for (int32_t i = 0; i < state->head.sizes.waiting && !archive->wrong; i++) {
 		cau_waiting *waiting = &state->waiting[i];
 		pass_element(archive, session, "waiting element", &waiting->kind, &waiting->element);
 		cau_snapshot_words(archive, "tick of a waiting element", &waiting->tick, 1,
 		                   state->head.tick);
 	}
-	for (int32_t i = 0; i < state->head.operation_count && !archive->wrong; i++) {
+	for (int32_t i = 0; i < state->head.sizes.operations && !archive->wrong; i++) {
 		cau_operation *operation = &state->operation[i];
 		pass_element(archive, session, "factor operation", &operation->kind, &operation->element);
 		cau_snapshot_ints(archive, "operation group", &operation->group, 1, 0,
@@ -329,16 +344,16 @@ static void pass_update(snapshot_archive *archive, const cau_session *session,
 static void pass_columns(snapshot_archive *archive, const cau_session *session,
                          snapshot_state *state)
 {
-	int32_t count = state->head.column_count;
-	cau_snapshot_ints(archive, "vertex of a column", state->column_vertex, (size_t)count, 0,
+	int32_t count = state->head.sizes.columns;
+	cau_snapshot_ints(archive, "vertex of a column", state->columns.vertex, (size_t)count, 0,
 	                  session->tissue.vertex_count - 1);
-	cau_snapshot_words(archive, "version of a column", state->column_version, (size_t)count,
-	                   state->head.factor_version);
+	cau_snapshot_words(archive, "version of a column", state->columns.version, (size_t)count,
+	                   state->head.factor.version);
 	for (int32_t i = 0; i < count && i < CAU_WHOLE_COLUMNS; i++)
-		cau_snapshot_reals(archive, "column", state->column[i], state->elements.single,
+		cau_snapshot_reals(archive, "column", state->columns.whole[i], state->elements.single,
 		                   (size_t)session->tissue.vertex_count);
 	for (int32_t i = 0; i < count; i++) {
-		double *row = state->inverse + (size_t)i * CAU_MAX_COLUMNS;
+		double *row = state->columns.inverse + (size_t)i * CAU_MAX_COLUMNS;
 		cau_snapshot_doubles(archive, "compliance", row, (size_t)i, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 		cau_snapshot_doubles(archive, "compliance", row + i, 1, 1e-30, SNAPSHOT_ANY);
 	}
@@ -347,10 +362,10 @@ static void pass_columns(snapshot_archive *archive, const cau_session *session,
 static void pass_memory(snapshot_archive *archive, const cau_session *session,
                         snapshot_state *state)
 {
-	for (int32_t i = 0; i < state->head.memory_count && !archive->wrong; i++) {
+	for (int32_t i = 0; i < state->head.sizes.memory && !archive->wrong; i++) {
 		cau_contact_memory *memory = &state->memory[i];
 		cau_snapshot_ints(archive, "tool at a face", &memory->tool, 1, 0,
-		                  (int64_t)state->head.tool_count - 1);
+		                  (int64_t)state->head.sizes.tools - 1);
 		cau_snapshot_ints(archive, "face at a tool", &memory->face, 1, 0,
 		                  (int64_t)session->tissue.faces.face_count - 1);
 		cau_snapshot_ints(archive, "pushed face", &memory->pushed, 1, 0, 1);
@@ -424,11 +439,11 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 static void pass_vessels(snapshot_archive *archive, const cau_vessels *vessels,
                          snapshot_state *state)
 {
-	cau_snapshot_doubles(archive, "seal of a vessel", state->fusion, (size_t)vessels->station_count,
-	                     0, SNAPSHOT_ANY);
-	cau_snapshot_doubles(archive, "blood at a vertex", state->blood_m3,
+	cau_snapshot_doubles(archive, "seal of a vessel", state->vessels.fusion,
+	                     (size_t)vessels->station_count, 0, SNAPSHOT_ANY);
+	cau_snapshot_doubles(archive, "blood at a vertex", state->vessels.blood_m3,
 	                     (size_t)vessels->blood.vertex_count, 0, SNAPSHOT_ANY);
-	cau_snapshot_doubles(archive, "blood of a vessel", state->shed_m3,
+	cau_snapshot_doubles(archive, "blood of a vessel", state->vessels.shed_m3,
 	                     (size_t)vessels->vessel_count, 0, SNAPSHOT_ANY);
 }
 
@@ -448,15 +463,15 @@ void cau_snapshot_pass_state(snapshot_archive *archive, const cau_session *sessi
 		pass_cells(archive, state->cells);
 	if (session->vessels)
 		pass_vessels(archive, session->vessels, state);
-	for (int32_t i = 0; i < state->head.command_count && !archive->wrong; i++)
+	for (int32_t i = 0; i < state->head.sizes.commands && !archive->wrong; i++)
 		cau_snapshot_pass_command(archive, &state->command[i]);
-	for (int32_t i = 0; i < state->head.tool_count && !archive->wrong; i++)
+	for (int32_t i = 0; i < state->head.sizes.tools && !archive->wrong; i++)
 		cau_snapshot_pass_tool(archive, session, &state->tool[i]);
 }
 
 void cau_snapshot_pass_grids(snapshot_archive *archive, snapshot_state *state)
 {
-	for (int32_t i = 0; i < state->head.tool_count && !archive->wrong; i++)
+	for (int32_t i = 0; i < state->head.sizes.tools && !archive->wrong; i++)
 		cau_snapshot_pass_grid(archive, &state->tool[i].grid);
 }
 

@@ -20,64 +20,94 @@ enum {
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };
 
+// Sizes of the arrays.
+typedef struct snapshot_sizes {
+	int32_t vertices, edges, tools, commands, active, columns, memory, over, waiting, operations;
+} snapshot_sizes;
+
+// The matrix update and the present factor (solve/matrix_update.h).
+typedef struct snapshot_factor {
+	uint64_t swap_tick, longest_wait, version;
+	int32_t group_count, waiting_at_start, refactorisations;
+	bool making;
+} snapshot_factor;
+
+// Values that the solver learned from steps (solve/accuracy.h).
+typedef struct snapshot_learned {
+	int32_t shallow_steps;
+	double accuracy, amplification[CAU_ACCURACY_DEPTHS], force_left;
+	double force_before[CAU_ACCURACY_TOOLS][3];
+} snapshot_learned;
+
 typedef struct snapshot_head {
 	uint32_t version;
 	bool single;
 	char instruction_set[CAU_SNAPSHOT_ISA_BYTES];
 	uint64_t build;           // hash of the compiler's version and the build date
 	uint64_t definition_hash; // hash of the session's definition: create.c
-	uint64_t tick, swap_tick, longest_wait, factor_version;
-	int32_t vertex_count, edge_count;
-	int32_t tool_count, command_count, active_count, column_count, memory_count, over_count;
-	int32_t waiting_count, operation_count, group_count, waiting_at_start;
-	int32_t refactorisations, inverted, edges_parted, elements_removed, elements_torn, quiet_ticks;
-	bool making, faulted, resting;
+	uint64_t tick;
+	snapshot_sizes sizes;
+	snapshot_factor factor;
+	int32_t inverted, edges_parted, elements_removed, elements_torn, quiet_ticks;
+	bool faulted, resting;
 	double gravity_m_s2[3];
-	// From here on: values that the solver learned from steps (solve/accuracy.h).
-	int32_t shallow_steps;
-	double accuracy, amplification[CAU_ACCURACY_DEPTHS], force_left;
-	double force_before[CAU_ACCURACY_TOOLS][3];
+	snapshot_learned learned;
 } snapshot_head;
+
+// The vertices, sizes.vertices in number.
+typedef struct snapshot_vertices {
+	// 1 for a pinned vertex; 1 for a pinned or frozen vertex.
+	uint8_t *pinned, *fixed;
+	double *position, *velocity, *external; // (n x 3)
+	double *diagonal;                       // N/m, (n): matrix A of the diagonal solver
+	double *quiet_from;                     // m, (n x 3): positions when the quiet ticks began
+	// (n): 1 for a vertex that was excluded from contact. Only with a contact thickness.
+	uint8_t *exempt_before;
+} snapshot_vertices;
+
+// Exposure of the tissue to heat, and its parted edges and elements.
+typedef struct snapshot_dissection {
+	double *exposure; // (sizes.edges): exposure of each edge
+	uint16_t *parted; // (sizes.edges): a bit for each layer in which the edge has parted
+	double *dose;     // (dose_count): exposure of each element, if elements part one by one
+	uint8_t *gone;    // (dose_count): 1 for a parted element
+	cau_over *over;   // (sizes.over): elements loaded above their tear limit
+} snapshot_dissection;
+
+// The columns of contact (solve/contact.h), sizes.columns in number.
+typedef struct snapshot_columns {
+	int32_t *vertex;   // vertex of each column
+	uint64_t *version; // factor version of each column
+	cau_reals **whole; // the columns themselves, at most CAU_WHOLE_COLUMNS
+	double *inverse;   // compliance matrix S of the columns, (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS)
+} snapshot_columns;
+
+// The vessels, if the scene has any.
+typedef struct snapshot_vessels {
+	double *fusion;                  // (station_count): seal of each station
+	double *blood_m3;                // (sizes.vertices): blood on the tissue
+	double shed_m3[CAU_MAX_VESSELS]; // blood shed by each vessel
+} snapshot_vessels;
 
 // The arrays. For writing they are the session's own; for reading, copies of the same sizes.
 typedef struct snapshot_state {
 	snapshot_head head;
-	// (vertex_count): 1 for a pinned vertex; 1 for a pinned or frozen vertex.
-	uint8_t *pinned, *fixed;
-	double *position, *velocity, *external; // (vertex_count x 3)
-	double *diagonal;                       // N/m, (vertex_count): matrix A of the diagonal solver
-	double *exposure;                       // (edge_count): exposure of each edge
-	// (edge_count): a bit for each layer in which the edge has parted.
-	uint16_t *parted;
-	// (dose_count): exposure of each element, if elements part one by one.
-	double *dose;
-	uint8_t *gone;         // (dose_count): 1 for a parted element
+	snapshot_vertices vertices;
+	snapshot_dissection dissection;
 	uint8_t *shrunk[2];    // by triangle, by tetrahedron: 1 for a shrunk element
-	cau_shrinking *active; // (active_count): elements that are shrinking
-	cau_command *command;  // (command_count): queued commands
+	cau_shrinking *active; // (sizes.active): elements that are shrinking
+	cau_command *command;  // (sizes.commands): queued commands
 	cau_layer_def *layer;  // (layer_count): the layers' materials
 	// The elements' targets, rotations, plastic strain and marks.
 	cau_elements elements;
-	// (waiting_count): removed elements that are still in the factor.
-	cau_waiting *waiting;
-	cau_operation *operation;   // (operation_count): elements removed from the factor
-	cau_tool *tool;             // (tool_count): the tools
-	cau_contact_memory *memory; // (memory_count): faces that tools pushed
-	cau_over *over;             // (over_count): elements loaded above their tear limit
-	int32_t *column_vertex;     // (column_count): vertex of each contact column
-	uint64_t *column_version;   // (column_count): factor version of each contact column
-	cau_reals **column;         // the columns themselves, at most CAU_WHOLE_COLUMNS
-	// Compliance matrix S of the columns, (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS).
-	double *inverse;
-	// m, (vertex_count x 3): positions when the quiet ticks began.
-	double *quiet_from;
-	// (vertex_count): 1 for a vertex that was excluded from contact. Only with a contact thickness.
-	uint8_t *exempt_before;
-	cau_tissue_cells *cells;         // the cells, with energy `tissue`
-	double *fusion;                  // (station_count): seal of each station, with vessels
-	double *blood_m3;                // (vertex_count): blood on the tissue, with vessels
-	double shed_m3[CAU_MAX_VESSELS]; // blood shed by each vessel, with vessels
-	cau_arena copies;                // for reading: the memory of all copies
+	cau_waiting *waiting;       // (sizes.waiting): removed elements that are still in the factor
+	cau_operation *operation;   // (sizes.operations): elements removed from the factor
+	cau_tool *tool;             // (sizes.tools): the tools
+	cau_contact_memory *memory; // (sizes.memory): faces that tools pushed
+	snapshot_columns columns;
+	cau_tissue_cells *cells; // the cells, with energy `tissue`
+	snapshot_vessels vessels;
+	cau_arena copies; // for reading: the memory of all copies
 } snapshot_state;
 
 // Returns the session's present state in *state. The arrays are borrowed, and writing does not

@@ -57,7 +57,7 @@ cau_status cau_session_check_sound(const cau_session *session, cau_error *error)
 	cau_status status = CAU_OK;
 	if (session->tool_count < 0 || session->tool_count > CAU_MAX_TOOLS)
 		return unsound(error, "", "is beyond the largest number of tools");
-	if (session->command_count < 0 || session->command_count > session->command_capacity)
+	if (session->queue.count < 0 || session->queue.count > session->queue.capacity)
 		return unsound(error, "", "has more waiting commands than the queue can hold");
 	for (int32_t i = 0; i < session->tool_count && !status; i++)
 		status = check_tool(&session->tool[i], error);

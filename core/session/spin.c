@@ -32,9 +32,9 @@ cau_status cau_session_make_spin(cau_session *session, cau_error *error)
 {
 	size_t n = (size_t)session->tissue.vertex_count;
 	cau_spin *spin = &session->spin;
-	spin->piece = cau_arena_array(&session->arena, n, sizeof *spin->piece);
-	spin->member = cau_arena_array(&session->arena, n, sizeof *spin->member);
-	spin->first = cau_arena_array(&session->arena, n + 1, sizeof *spin->first);
+	spin->piece = cau_arena_array(&session->memory.arena, n, sizeof *spin->piece);
+	spin->member = cau_arena_array(&session->memory.arena, n, sizeof *spin->member);
+	spin->first = cau_arena_array(&session->memory.arena, n + 1, sizeof *spin->first);
 	spin->stale = true;
 	if (!spin->piece || !spin->member || !spin->first)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
@@ -129,7 +129,7 @@ static bool is_free(const cau_session *session, int32_t piece)
 	if (spin->first[piece + 1] - spin->first[piece] < 3)
 		return false;
 	for (int32_t k = spin->first[piece]; k < spin->first[piece + 1]; k++)
-		if (session->fixed[spin->member[k]])
+		if (session->vertices.fixed[spin->member[k]])
 			return false;
 	return true;
 }
@@ -242,9 +242,9 @@ static void measure_motion(const cau_session *session, int32_t first, int32_t la
 		size_t v = (size_t)session->spin.member[k];
 		out->mass += mass[v];
 		out->centre =
-			cau_add_scaled(out->centre, mass[v], cau_vec3_of(session->position_start + 3 * v));
+			cau_add_scaled(out->centre, mass[v], cau_vec3_of(session->vertices.start + 3 * v));
 		out->velocity =
-			cau_add_scaled(out->velocity, mass[v], cau_vec3_of(session->velocity + 3 * v));
+			cau_add_scaled(out->velocity, mass[v], cau_vec3_of(session->vertices.velocity + 3 * v));
 	}
 	CAU_ASSERT(out->mass > 0, "a piece of %g kg", out->mass);
 	out->centre = cau_scale(1 / out->mass, out->centre);
@@ -252,8 +252,8 @@ static void measure_motion(const cau_session *session, int32_t first, int32_t la
 	for (int32_t k = first; k < last; k++) {
 		size_t v = (size_t)session->spin.member[k];
 		double r[3], u[3];
-		cau_vec3_to(cau_sub(cau_vec3_of(session->position_start + 3 * v), out->centre), r);
-		cau_vec3_to(cau_sub(cau_vec3_of(session->velocity + 3 * v), out->velocity), u);
+		cau_vec3_to(cau_sub(cau_vec3_of(session->vertices.start + 3 * v), out->centre), r);
+		cau_vec3_to(cau_sub(cau_vec3_of(session->vertices.velocity + 3 * v), out->velocity), u);
 		for (int i = 0; i < 3; i++) {
 			out->kinetic_j += mass[v] * u[i] * u[i] / 2;
 			for (int j = 0; j < 3; j++) {
@@ -316,8 +316,8 @@ static void turn_piece(cau_session *session, int32_t first, int32_t last)
 		return;
 	for (int32_t k = first; k < last; k++) {
 		size_t v = (size_t)session->spin.member[k];
-		cau_vec3 start = cau_vec3_of(session->position_start + 3 * v);
-		cau_vec3 velocity = cau_vec3_of(session->velocity + 3 * v);
+		cau_vec3 start = cau_vec3_of(session->vertices.start + 3 * v);
+		cau_vec3 velocity = cau_vec3_of(session->vertices.velocity + 3 * v);
 		cau_vec3 guess = cau_add_scaled(start, dt, velocity);
 		cau_vec3 pushed = cau_sub(cau_vec3_of(session->solver.predicted + 3 * v), guess);
 		cau_vec3 centre = cau_add_scaled(m.centre, dt, m.velocity);
@@ -325,7 +325,7 @@ static void turn_piece(cau_session *session, int32_t first, int32_t last)
 		cau_vec3_to(cau_add(target, pushed), session->solver.predicted + 3 * v);
 		cau_vec3 before = apply(p, cau_sub(start, m.centre));
 		before = cau_add_scaled(before, dt, cau_sub(velocity, m.velocity));
-		cau_vec3_to(cau_add(centre, apply(r, before)), session->position + 3 * v);
+		cau_vec3_to(cau_add(centre, apply(r, before)), session->vertices.position + 3 * v);
 	}
 }
 
@@ -346,14 +346,16 @@ static void measure_ending(const cau_session *session, int32_t first, int32_t la
 		size_t v = (size_t)session->spin.member[k];
 		double m = session->tissue.mass[v];
 		mass += m;
-		out->centre = cau_add_scaled(out->centre, m, cau_vec3_of(session->position + 3 * v));
+		out->centre =
+			cau_add_scaled(out->centre, m, cau_vec3_of(session->vertices.position + 3 * v));
 	}
 	CAU_ASSERT(mass > 0, "a piece of %g kg", mass);
 	out->centre = cau_scale(1 / mass, out->centre);
 	for (int32_t k = first; k < last; k++) {
 		size_t v = (size_t)session->spin.member[k];
 		double m = session->tissue.mass[v], r[3];
-		cau_vec3 at = cau_vec3_of(session->position + 3 * v), arm = cau_sub(at, out->centre);
+		cau_vec3 at = cau_vec3_of(session->vertices.position + 3 * v),
+				 arm = cau_sub(at, out->centre);
 		cau_vec3 way = cau_sub(at, cau_vec3_of(session->substep.base + 3 * v));
 		out->momentum = cau_add_scaled(out->momentum, m / h, cau_cross(arm, way));
 		cau_vec3_to(arm, r);
@@ -386,7 +388,7 @@ static void keep_momentum(cau_session *session, int32_t first, int32_t last)
 	for (int32_t k = first; k < last; k++) {
 		size_t v = (size_t)session->spin.member[k];
 		double *base = session->substep.base + 3 * v;
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), end.centre);
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), end.centre);
 		cau_vec3_to(cau_add(cau_vec3_of(base), cau_cross(more, arm)), base);
 	}
 }
@@ -413,7 +415,7 @@ void cau_session_turn_prediction(cau_session *session)
 void cau_session_keep_momentum(cau_session *session)
 {
 	const cau_collide *collide = session->solver.collide;
-	if (!session->contact.row_count && !session->solver.drag_count &&
-	    !(collide && collide->touching_count))
+	if (!session->contact.row_count && !session->solver.forces.drag_count &&
+	    !(collide && collide->result.touching_count))
 		turn_pieces(session, keep_momentum);
 }

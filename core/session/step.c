@@ -9,18 +9,18 @@
 
 void cau_session_stage_begin(cau_session *session)
 {
-	if (session->now_s)
-		session->stage_start = session->now_s();
+	if (session->timing.now_s)
+		session->timing.stage_start = session->timing.now_s();
 }
 
 void cau_session_stage_end(cau_session *session, int stage)
 {
 	CAU_ASSERT_INDEX(stage, CAU_STAGE_COUNT);
-	if (!session->now_s)
+	if (!session->timing.now_s)
 		return;
-	double now = session->now_s();
-	session->stage_s[stage] += now - session->stage_start;
-	session->stage_start = now;
+	double now = session->timing.now_s();
+	session->timing.stage_s[stage] += now - session->timing.stage_start;
+	session->timing.stage_start = now;
 }
 
 typedef struct settling {
@@ -35,7 +35,7 @@ static void settle_part(void *context, int32_t index)
 	CAU_ASSERT_INDEX(index, solver->slots.work_count);
 	atomic_fetch_add(&work->inverted,
 	                 solver->kernels->settle(&solver->elements, &solver->slots.work[index],
-	                                         solver->displacement));
+	                                         solver->iterate.displacement));
 }
 
 // Computes plastic flow and counts the inverted tetrahedra (plasticity_kernel.h).
@@ -57,13 +57,13 @@ static void freeze_isolated(cau_session *session)
 	if (!session->dissection.removed_count)
 		return;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-		if (!session->fixed[v] && !session->dissection.live_elements[v]) {
-			session->fixed[v] = 1;
-			session->frozen_count++;
-			CAU_ASSERT(session->frozen_count <= session->tissue.vertex_count,
-			           "%d vertices frozen of %d", session->frozen_count,
+		if (!session->vertices.fixed[v] && !session->dissection.live_elements[v]) {
+			session->vertices.fixed[v] = 1;
+			session->vertices.frozen_count++;
+			CAU_ASSERT(session->vertices.frozen_count <= session->tissue.vertex_count,
+			           "%d vertices frozen of %d", session->vertices.frozen_count,
 			           session->tissue.vertex_count);
-			memset(session->velocity + 3 * (size_t)v, 0, 3 * sizeof(double));
+			memset(session->vertices.velocity + 3 * (size_t)v, 0, 3 * sizeof(double));
 		}
 	cau_session_drop_frozen_grasps(session);
 }
@@ -123,7 +123,7 @@ static bool hold(cau_session *session, int rounds, cau_status *status, cau_error
 		if (round == rounds)
 			return true;
 		solver->contact = &session->contact;
-		solver->objective = cau_solver_evaluate(solver);
+		solver->result.objective = cau_solver_evaluate(solver);
 		*status = descend(session, error);
 	}
 	session->contact.crossing = !*status && cau_session_find_thrown(session);
@@ -136,7 +136,7 @@ static void begin_again(cau_session *session)
 	cau_session_begin_collide(session);
 	cau_session_find_contacts(session);
 	solver->contact = session->contact.row_count ? &session->contact : NULL;
-	solver->objective = cau_solver_evaluate(solver);
+	solver->result.objective = cau_solver_evaluate(solver);
 }
 
 // Whether a tool has open jaws. Tissue between open jaws cannot leave one jaw without entering the
@@ -166,7 +166,7 @@ static cau_status solve(cau_session *session, cau_error *error)
 		if (!session->contact.crossing)
 			break;
 		cau_session_let_through(session);
-		solver->objective = cau_solver_evaluate(solver);
+		solver->result.objective = cau_solver_evaluate(solver);
 		cau_solver_displace(solver);
 		break;
 	}
@@ -179,9 +179,9 @@ static void begin_tick(cau_session *session)
 	CAU_ASSERT(!session->faulted, "tick %llu of a faulted session",
 	           (unsigned long long)session->tick);
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	memcpy(session->position_start, session->position, bytes);
-	memset(session->stage_s, 0, sizeof session->stage_s);
-	session->refusal_count = 0;
+	memcpy(session->vertices.start, session->vertices.position, bytes);
+	memset(session->timing.stage_s, 0, sizeof session->timing.stage_s);
+	session->queue.refusal_count = 0;
 	cau_session_begin_substeps(session);
 	cau_dissection_begin(&session->dissection);
 }
@@ -191,8 +191,8 @@ static cau_status fault(cau_session *session, cau_status status)
 	CAU_ASSERT(status != CAU_OK, "a fault without a reason at tick %llu",
 	           (unsigned long long)session->tick);
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	memcpy(session->position, session->position_start, bytes);
-	memset(session->velocity, 0, bytes);
+	memcpy(session->vertices.position, session->vertices.start, bytes);
+	memset(session->vertices.velocity, 0, bytes);
 	session->faulted = true;
 	return status;
 }
@@ -201,9 +201,10 @@ static cau_status fault(cau_session *session, cau_status status)
 static void end_solve_stages(cau_session *session)
 {
 	cau_session_stage_end(session, CAU_STAGE_GLOBAL);
-	session->stage_s[CAU_STAGE_LOCAL] = session->solver.local_s;
-	session->stage_s[CAU_STAGE_CONTACT] = session->solver.contact_s;
-	session->stage_s[CAU_STAGE_GLOBAL] -= session->solver.local_s + session->solver.contact_s;
+	session->timing.stage_s[CAU_STAGE_LOCAL] = session->solver.result.local_s;
+	session->timing.stage_s[CAU_STAGE_CONTACT] = session->solver.result.contact_s;
+	session->timing.stage_s[CAU_STAGE_GLOBAL] -=
+		session->solver.result.local_s + session->solver.result.contact_s;
 }
 
 // Computes the tick's motion, in one or two substeps (substep.c).
@@ -269,7 +270,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	end_solve_stages(session);
 	cau_session_read_contact(session); // tool_contact.c
 	cau_session_tear(session);         // tear.c
-	if (session->cells)
+	if (session->heat.cells)
 		cau_session_operate(session); // electrosurgery.c
 	else
 		cau_session_burn(session); // eq. 18-21: burn.c
@@ -278,11 +279,11 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	freeze_isolated(session);
 	cau_session_stop_strays(session); // stray.c
 	cau_session_stage_end(session, CAU_STAGE_DISSECT);
-	cau_frame_update(&session->frame, &session->dissection, session->position_start,
-	                 session->position); // frame/frame_state.c
-	cau_session_bleed(session);          // bleed.c
-	cau_session_show_scalars(session);   // view.c
-	cau_session_fall_asleep(session);    // rest.c
+	cau_frame_update(&session->view.frame, &session->dissection, session->vertices.start,
+	                 session->vertices.position); // frame/frame_state.c
+	cau_session_bleed(session);                   // bleed.c
+	cau_session_show_scalars(session);            // view.c
+	cau_session_fall_asleep(session);             // rest.c
 	cau_session_stage_end(session, CAU_STAGE_FRAME);
 	session->tick++;
 	return CAU_OK;

@@ -55,8 +55,8 @@ int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, ca
 int32_t cau_session_waiting(const cau_session *session, const char *tool)
 {
 	int32_t count = 0;
-	for (int32_t k = 0; k < session->command_count; k++)
-		count += is_about(&session->command[k], tool);
+	for (int32_t k = 0; k < session->queue.count; k++)
+		count += is_about(&session->queue.command[k], tool);
 	return count;
 }
 
@@ -81,8 +81,8 @@ static void disturb(cau_session *session)
 
 static void take_out(cau_session *session, const char *tool, cau_void which)
 {
-	session->command_count =
-		cau_session_void(session->command, session->command_count, tool, which);
+	session->queue.count =
+		cau_session_void(session->queue.command, session->queue.count, tool, which);
 }
 
 void cau_session_energy_off(cau_session *session, const char *tool, uint64_t sequence)
@@ -144,8 +144,9 @@ const char *cau_session_heats_beyond(const cau_session *session, const char *con
 		if (session->tool[i].state.energized &&
 		    !is_among(session->tool[i].state.name, allowed, count))
 			return session->tool[i].state.name;
-	for (int32_t k = 0; k < session->command_count; k++)
-		if (is_enable(&session->command[k]) && !is_among(session->command[k].tool, allowed, count))
-			return session->command[k].tool;
+	for (int32_t k = 0; k < session->queue.count; k++)
+		if (is_enable(&session->queue.command[k]) &&
+		    !is_among(session->queue.command[k].tool, allowed, count))
+			return session->queue.command[k].tool;
 	return NULL;
 }

@@ -30,32 +30,33 @@ double cau_session_size(const cau_session *session)
 
 double cau_session_farthest_from_rest(const cau_session *session)
 {
-	CAU_ASSERT(session->size_m > 0, "tissue of %g m", session->size_m);
-	return farthest_sizes * session->size_m;
+	CAU_ASSERT(session->watch.size_m > 0, "tissue of %g m", session->watch.size_m);
+	return farthest_sizes * session->watch.size_m;
 }
 
 static void stop(cau_session *session, size_t vertex, cau_vec3 way)
 {
-	CAU_ASSERT(!session->fixed[vertex], "vertex %zu is stopped twice", vertex);
-	double *position = session->position + 3 * vertex;
+	CAU_ASSERT(!session->vertices.fixed[vertex], "vertex %zu is stopped twice", vertex);
+	double *position = session->vertices.position + 3 * vertex;
 	cau_vec3 rest = cau_vec3_of(session->tissue.rest + 3 * vertex);
 	double reach_m = cau_session_farthest_from_rest(session);
 	cau_vec3_to(cau_add_scaled(rest, reach_m / cau_length(way), way), position);
-	memset(session->velocity + 3 * vertex, 0, 3 * sizeof(double));
-	session->fixed[vertex] = 1;
-	session->frozen_count++;
+	memset(session->vertices.velocity + 3 * vertex, 0, 3 * sizeof(double));
+	session->vertices.fixed[vertex] = 1;
+	session->vertices.frozen_count++;
 }
 
 void cau_session_stop_strays(cau_session *session)
 {
-	CAU_ASSERT(session->frozen_count <= session->tissue.vertex_count, "%d vertices frozen of %d",
-	           session->frozen_count, session->tissue.vertex_count);
+	CAU_ASSERT(session->vertices.frozen_count <= session->tissue.vertex_count,
+	           "%d vertices frozen of %d", session->vertices.frozen_count,
+	           session->tissue.vertex_count);
 	bool stopped = false;
 	double reach_m = cau_session_farthest_from_rest(session);
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
-		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
+		cau_vec3 way = cau_sub(cau_vec3_of(session->vertices.position + 3 * v),
 		                       cau_vec3_of(session->tissue.rest + 3 * v));
-		if (session->fixed[v] || cau_dot(way, way) <= reach_m * reach_m)
+		if (session->vertices.fixed[v] || cau_dot(way, way) <= reach_m * reach_m)
 			continue;
 		stop(session, v, way);
 		stopped = true;

@@ -38,9 +38,9 @@ cau_status cau_session_make_substeps(cau_session *session, cau_error *error)
 	cau_substep *substep = &session->substep;
 	substep->count = has_two(session) ? 2 : 1;
 	if (has_two(session)) {
-		substep->tick_start = cau_arena_array(&session->arena, 3 * n, sizeof(double));
-		substep->base = cau_arena_array(&session->arena, 3 * n, sizeof(double));
-		substep->push = cau_arena_array(&session->arena, 3 * n, sizeof(double));
+		substep->tick_start = cau_arena_array(&session->memory.arena, 3 * n, sizeof(double));
+		substep->base = cau_arena_array(&session->memory.arena, 3 * n, sizeof(double));
+		substep->push = cau_arena_array(&session->memory.arena, 3 * n, sizeof(double));
 		if (!substep->tick_start || !substep->base || !substep->push)
 			return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 	}
@@ -66,7 +66,7 @@ static void note_disturbance(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++)
 		any = any || session->contact.tool[i].held_back;
 	if (collide)
-		any = any || collide->held_back || collide->cut_short_count > 0;
+		any = any || collide->filter.held_back || collide->cut_short_count > 0;
 	session->substep.disturbed = session->substep.disturbed || any;
 }
 
@@ -108,7 +108,7 @@ static void stay_at_tools(const cau_session *session, double *place, double *bas
 		if (row->attached || !(push > 0))
 			continue;
 		const cau_tool *tool = &session->tool[row->tool];
-		cau_vec3 start = cau_contact_point(row, session->position_start);
+		cau_vec3 start = cau_contact_point(row, session->vertices.start);
 		cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
 		cau_vec3 carried = cau_sub(cau_pose_to_world(&tool->state.pose, local), start);
 		cau_vec3 of_tool = cau_scale(1 / length_s, carried);
@@ -116,7 +116,8 @@ static void stay_at_tools(const cau_session *session, double *place, double *bas
 		double parting = cau_dot(cau_sub(velocity, of_tool), n);
 		cau_vec3 change = cau_scale(-fmax(parting, 0), n);
 		if (sticks && cau_length(cau_add_scaled(reaction, -push, n)) > 0) {
-			cau_vec3 mean = velocity_at(row, session->position, session->position_start, length_s);
+			cau_vec3 mean =
+				velocity_at(row, session->vertices.position, session->vertices.start, length_s);
 			cau_vec3 other = cau_sub(mean, velocity);
 			change = cau_add(change, cau_add_scaled(other, -cau_dot(other, n), n));
 		}
@@ -134,15 +135,15 @@ static void carry_on(cau_session *session)
 	double rest_s = (1 - CAU_SDIRK2_GAMMA) * session->solver.step_s;
 	size_t n = 3 * (size_t)session->tissue.vertex_count;
 	for (size_t i = 0; i < n; i++) { // v + q a1 is (predicted - base) / h
-		double before = session->velocity[i], start = session->position_start[i];
-		double speed = (session->position[i] - start) / h;
+		double before = session->vertices.velocity[i], start = session->vertices.start[i];
+		double speed = (session->vertices.position[i] - start) / h;
 		double carried = before + rest_s * (speed - before) / h;
 		predicted[i] = h * carried;
 		substep->base[i] = 0;
 	}
 	stay_at_tools(session, predicted, substep->base, false);
 	for (size_t i = 0; i < n; i++) {
-		double start = session->position_start[i], way = session->position[i] - start;
+		double start = session->vertices.start[i], way = session->vertices.position[i] - start;
 		double carried = predicted[i] - substep->base[i];
 		substep->base[i] = start + rest_s * (way / h);
 		predicted[i] = substep->base[i] + carried;
@@ -170,32 +171,33 @@ static void keep_pushes(cau_session *session)
 		for (int32_t k = 0; k < row->corner_count; k++)
 			add_push(push, row->vertex[k], first * row->weight[k], row->reaction);
 	}
-	for (int32_t k = 0; k < session->solver.drag_count; k++) {
-		const cau_drag *drag = &session->solver.drag[k];
+	for (int32_t k = 0; k < session->solver.forces.drag_count; k++) {
+		const cau_drag *drag = &session->solver.forces.drag[k];
 		double away[3];
 		for (int c = 0; c < 3; c++)
-			away[c] = session->position[3 * (size_t)drag->vertex + (size_t)c] - drag->target[c];
+			away[c] =
+				session->vertices.position[3 * (size_t)drag->vertex + (size_t)c] - drag->target[c];
 		add_push(push, drag->vertex, -first * drag->coefficient, away);
 	}
 }
 
 static void keep_statistics(cau_substep *substep, const cau_step_solver *solver)
 {
-	substep->iterations = solver->iterations_done;
-	substep->backtracks = solver->backtracks;
-	substep->local_s = solver->local_s;
-	substep->contact_s = solver->contact_s;
-	substep->residual = solver->residual;
+	substep->iterations = solver->result.iterations;
+	substep->backtracks = solver->result.backtracks;
+	substep->local_s = solver->result.local_s;
+	substep->contact_s = solver->result.contact_s;
+	substep->residual = solver->result.residual;
 	substep->error = solver->accuracy.error;
 }
 
 static void add_statistics(const cau_substep *substep, cau_step_solver *solver)
 {
-	solver->iterations_done += substep->iterations;
-	solver->backtracks += substep->backtracks;
-	solver->local_s += substep->local_s;
-	solver->contact_s += substep->contact_s;
-	solver->residual = fmax(solver->residual, substep->residual);
+	solver->result.iterations += substep->iterations;
+	solver->result.backtracks += substep->backtracks;
+	solver->result.local_s += substep->local_s;
+	solver->result.contact_s += substep->contact_s;
+	solver->result.residual = fmax(solver->result.residual, substep->residual);
 	// An error of x2 is larger in v2 by 1 / gamma.
 	solver->accuracy.error = fmax(solver->accuracy.error, substep->error) / CAU_SDIRK2_GAMMA;
 }
@@ -213,8 +215,8 @@ void cau_session_next_substep(cau_session *session)
 	keep_statistics(substep, &session->solver);
 	substep->touching_j = session->solver.collide ? session->collide.start_energy_j : 0;
 	cau_contact_remember(&session->contact);
-	memcpy(substep->tick_start, session->position_start, bytes);
-	memcpy(session->position_start, session->position, bytes);
+	memcpy(substep->tick_start, session->vertices.start, bytes);
+	memcpy(session->vertices.start, session->vertices.position, bytes);
 	substep->index = 1;
 	substep->part = 1 - CAU_SDIRK2_GAMMA;
 	substep->length_s = substep->part * session->solver.step_s;
@@ -228,19 +230,20 @@ void cau_session_predict_on(cau_session *session)
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++) {
 			size_t i = 3 * (size_t)v + (size_t)c;
-			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
+			double push = gravity[c] + session->vertices.external[i] / session->tissue.mass[v];
 			session->solver.predicted[i] += h * h * push;
 			// The guess is s2 with the first substep's acceleration in place of the second's. If
 			// there is any contact, that would lead too far, so the guess follows the first
 			// substep's velocity.
 			double speed = (substep->base[i] - substep->tick_start[i]) / rest_s;
-			double rate = (speed - session->velocity[i]) / h;
-			if (session->fixed[v])
+			double rate = (speed - session->vertices.velocity[i]) / h;
+			if (session->vertices.fixed[v])
 				continue;
 			if (session->solver.collide || session->contact.row_count)
-				session->position[i] += rest_s * speed;
+				session->vertices.position[i] += rest_s * speed;
 			else
-				session->position[i] = session->solver.predicted[i] + h * h * (rate - push);
+				session->vertices.position[i] =
+					session->solver.predicted[i] + h * h * (rate - push);
 		}
 }
 
@@ -253,10 +256,10 @@ void cau_session_end_substeps(cau_session *session)
 		return;
 	note_disturbance(session);
 	if (!substep->disturbed)
-		stay_at_tools(session, session->position, substep->base, true);
+		stay_at_tools(session, session->vertices.position, substep->base, true);
 	add_statistics(substep, &session->solver);
 	session->collide.start_energy_j = substep->touching_j;
-	memcpy(session->position_start, substep->tick_start,
+	memcpy(session->vertices.start, substep->tick_start,
 	       3 * (size_t)session->tissue.vertex_count * sizeof(double));
 	if (!substep->disturbed)
 		cau_session_keep_momentum(session); // spin.c
@@ -270,7 +273,7 @@ void cau_session_end_substeps(cau_session *session)
 void cau_session_take_mean(cau_session *session, double share)
 {
 	cau_substep *substep = &session->substep;
-	const double *x = session->position, *start = session->position_start;
+	const double *x = session->vertices.position, *start = session->vertices.start;
 	CAU_ASSERT(substep->count == 2 && share >= 0 && share <= 1, "a share of %g of %d substeps",
 	           share, substep->count);
 	for (size_t i = 0; i < 3 * (size_t)session->tissue.vertex_count; i++) {
@@ -285,6 +288,6 @@ double cau_session_way(const cau_session *session, int32_t vertex, int c)
 	const cau_substep *substep = &session->substep;
 	size_t i = 3 * (size_t)vertex + (size_t)c;
 	if (substep->count == 1)
-		return session->position[i] - session->position_start[i];
-	return (session->position[i] - substep->base[i]) / CAU_SDIRK2_GAMMA;
+		return session->vertices.position[i] - session->vertices.start[i];
+	return (session->vertices.position[i] - substep->base[i]) / CAU_SDIRK2_GAMMA;
 }

@@ -15,7 +15,7 @@ static bool has_converged(const cau_session *session)
 void cau_session_tear(cau_session *session)
 {
 	int32_t first = session->dissection.removed_count;
-	cau_dissection_tear(&session->dissection, session->position, has_converged(session),
+	cau_dissection_tear(&session->dissection, session->vertices.position, has_converged(session),
 	                    session->pool);
 	cau_session_take_out(session, first);
 }

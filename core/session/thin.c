@@ -58,7 +58,7 @@ static int32_t part_touching(const cau_session *session, cau_touching *list, int
 	for (int32_t i = 0; i < count; i++) {
 		cau_touching each = list[i];
 		CAU_ASSERT_INDEX(each.vertex, session->tissue.vertex_count);
-		if (each.gap > touching_m || !session->frame.vertex_visible[each.vertex])
+		if (each.gap > touching_m || !session->view.frame.vertex_visible[each.vertex])
 			continue;
 		list[i] = list[touching];
 		list[touching++] = each;

@@ -30,7 +30,7 @@ struct cau_contact_watch {
 
 void cau_session_watch_contact(cau_session *session, bool watched)
 {
-	cau_contact_watch *watch = session->contact_watch;
+	cau_contact_watch *watch = session->view.contact;
 	cau_error error;
 	if (!watched || watch) {
 		if (!watched && watch) // the old records must not be shown when contact is watched again
@@ -44,21 +44,21 @@ void cau_session_watch_contact(cau_session *session, bool watched)
 		free(watch);
 		return;
 	}
-	session->contact_watch = watch;
+	session->view.contact = watch;
 }
 
 void cau_session_unwatch_contact(cau_session *session)
 {
-	if (session->contact_watch)
-		cau_tangent_finish(&session->contact_watch->tangent);
-	free(session->contact_watch);
-	session->contact_watch = NULL;
+	if (session->view.contact)
+		cau_tangent_finish(&session->view.contact->tangent);
+	free(session->view.contact);
+	session->view.contact = NULL;
 }
 
 void cau_session_forget_contact(cau_session *session)
 {
-	if (session->contact_watch)
-		memset(session->contact_watch->record, 0, sizeof session->contact_watch->record);
+	if (session->view.contact)
+		memset(session->view.contact->record, 0, sizeof session->view.contact->record);
 }
 
 // ---- compliance
@@ -111,7 +111,7 @@ static void choose(const cau_session *session, int32_t index, bool held, carried
 // Returns the motion of the tissue under a load.
 static cau_tangent_answer answer_of(cau_session *session, const carried *by)
 {
-	cau_contact_watch *watch = session->contact_watch;
+	cau_contact_watch *watch = session->view.contact;
 	const cau_contact_set *set = &session->contact;
 	int32_t loads = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
@@ -134,7 +134,7 @@ static cau_vec3 normal_of(const cau_contact_plane *plane)
 // Returns the speed of the tissue at a constraint, along a direction.
 static double speed_of(const cau_session *session, const cau_contact_row *row, cau_vec3 along)
 {
-	cau_vec3 velocity = cau_contact_point(row, session->velocity);
+	cau_vec3 velocity = cau_contact_point(row, session->vertices.velocity);
 	return cau_dot(velocity, along);
 }
 
@@ -291,8 +291,8 @@ static void show_nothing(const cau_tool_state *state, cau_tool_contact *record)
 
 void cau_session_read_contact(cau_session *session)
 {
-	cau_contact_watch *watch = session->contact_watch;
-	if (!watch || !(session->watched & CAU_CHANNEL_TOOL_CONTACT))
+	cau_contact_watch *watch = session->view.contact;
+	if (!watch || !(session->view.watched & CAU_CHANNEL_TOOL_CONTACT))
 		return;
 	if (session->contact.row_count)
 		cau_tangent_begin(&watch->tangent, &session->solver);
@@ -305,8 +305,8 @@ void cau_session_read_contact(cau_session *session)
 
 const cau_tool_contact *cau_session_show_contact(const cau_session *session)
 {
-	cau_contact_watch *watch = session->contact_watch;
-	if (!watch || !(session->watched & CAU_CHANNEL_TOOL_CONTACT))
+	cau_contact_watch *watch = session->view.contact;
+	if (!watch || !(session->view.watched & CAU_CHANNEL_TOOL_CONTACT))
 		return NULL;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_contact *record = &watch->record[i];

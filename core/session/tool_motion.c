@@ -44,7 +44,7 @@ void cau_session_drop_tool(cau_session *session, int32_t index)
 	CAU_ASSERT_INDEX(index, session->tool_count);
 	cau_heat_grid_finish(&session->tool[index].grid);
 	session->tool_count--;
-	session->contact.memory_count = 0; // the remembered faces refer to tools by index
+	session->contact.sides.memory_count = 0; // the remembered faces refer to tools by index
 	memmove(&session->tool[index], &session->tool[index + 1],
 	        (size_t)(session->tool_count - index) * sizeof *session->tool);
 }

@@ -13,7 +13,7 @@ static const double drag_share = 0.25;
 // off, and with energy `tissue` always, because there the tissue is removed instead.
 static cau_tool_part pushing_part(const cau_session *session, const cau_tool *tool)
 {
-	return tool->state.energized && !session->cells ? CAU_PART_COLD : CAU_PART_BOTH;
+	return tool->state.energized && !session->heat.cells ? CAU_PART_COLD : CAU_PART_BOTH;
 }
 
 static cau_contact_row contact_row(const cau_session *session, const cau_tool *tool, int32_t index,
@@ -22,9 +22,9 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	CAU_ASSERT_INDEX(index, session->tool_count);
 	cau_contact_row row = cau_contact_at_vertex(vertex, index);
-	row.free[0] = !session->fixed[vertex];
+	row.free[0] = !session->vertices.fixed[vertex];
 	cau_vec3 side;
-	cau_vec3 start = cau_vec3_of(session->position_start + 3 * (size_t)vertex);
+	cau_vec3 start = cau_vec3_of(session->vertices.start + 3 * (size_t)vertex);
 	cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
 	cau_vec3_to(cau_pose_to_world(&tool->anchor, local), row.no_slip[0]);
 	double start_m = cau_tool_distance(&tool->state.definition, tool->state.jaw,
@@ -40,7 +40,7 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 // Whether a vertex is left over: it is fixed, and its last element was removed.
 static bool is_left_over(const cau_session *session, int32_t vertex)
 {
-	return session->fixed[vertex] && !session->dissection.live_elements[vertex];
+	return session->vertices.fixed[vertex] && !session->dissection.live_elements[vertex];
 }
 
 static bool is_grasped(const cau_tool *tool, int32_t vertex)
@@ -64,10 +64,10 @@ static double least_gap(const cau_session *session, const cau_tool *tool, int32_
 	cau_tool_part part = pushing_part(session, tool);
 	size_t at = 3 * (size_t)vertex;
 	double least = cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part,
-	                                    cau_vec3_of(session->position + at), NULL);
+	                                    cau_vec3_of(session->vertices.position + at), NULL);
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
-	cau_vec3 start = cau_vec3_of(session->position_start + at);
-	double way = cau_length(cau_sub(cau_vec3_of(session->position + at), start));
+	cau_vec3 start = cau_vec3_of(session->vertices.start + at);
+	double way = cau_length(cau_sub(cau_vec3_of(session->vertices.position + at), start));
 	if (least > 2 * margin_m + way) // the start is not nearer than the margin either
 		return least;
 	double was =
@@ -106,14 +106,14 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 	cau_vec3 center;
 	cau_tool_bound(def, pushing_part(session, tool), &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
-	for (int32_t b = 0; b < session->near.block_count; b++) {
-		const cau_box *box = &session->near.vertex_box[b];
+	for (int32_t b = 0; b < session->heat.near.block_count; b++) {
+		const cau_box *box = &session->heat.near.vertex_box[b];
 		if (!cau_box_meets(box, center, radius + margin) ||
 		    !cau_session_may_meet(tool, pushing_part(session, tool), box, margin + in_float_m))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
-			int32_t v = session->near.vertex[i];
+			int32_t v = session->heat.near.vertex[i];
 			if (is_left_over(session, v) || is_grasped(tool, v))
 				continue;
 			double gap = least_gap(session, tool, v, margin);
@@ -145,18 +145,19 @@ static void add_drag(cau_session *session, int32_t index)
 	cau_step_solver *solver = &session->solver;
 	double radius;
 	cau_vec3 center;
-	if (!tool->state.energized || session->cells || def->drag_ns_m == 0)
+	if (!tool->state.energized || session->heat.cells || def->drag_ns_m == 0)
 		return;
 	cau_tool_bound(def, CAU_PART_HOT, &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
-	for (int32_t b = 0; b < session->near.block_count; b++) {
-		if (!cau_box_meets(&session->near.vertex_box[b], center, radius))
+	for (int32_t b = 0; b < session->heat.near.block_count; b++) {
+		if (!cau_box_meets(&session->heat.near.vertex_box[b], center, radius))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
-			int32_t v = session->near.vertex[i];
-			cau_vec3 x = cau_vec3_of(session->position_start + 3 * (size_t)v);
-			if (session->fixed[v] || solver->drag_count == session->tissue.vertex_count ||
+			int32_t v = session->heat.near.vertex[i];
+			cau_vec3 x = cau_vec3_of(session->vertices.start + 3 * (size_t)v);
+			if (session->vertices.fixed[v] ||
+			    solver->forces.drag_count == session->tissue.vertex_count ||
 			    cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, CAU_PART_HOT, x,
 			                         NULL) > 0)
 				continue;
@@ -165,7 +166,7 @@ static void add_drag(cau_session *session, int32_t index)
 			                 .coefficient = fmin(def->drag_ns_m / session->substep.length_s, most)};
 			cau_vec3 local = cau_pose_to_local(&tool->pose_before, x);
 			cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), drag.target);
-			solver->drag[solver->drag_count++] = drag;
+			solver->forces.drag[solver->forces.drag_count++] = drag;
 		}
 	}
 }
@@ -206,14 +207,14 @@ void cau_session_find_contacts(cau_session *session)
 {
 	cau_contact_clear(&session->contact);
 	session->contact.left_out_count = 0;
-	session->contact.begun_count = -1;
+	session->contact.begun.count = -1;
 	session->contact.torn = session->dissection.tears.elements_torn > 0;
 	session->contact.let_through = false;
-	session->solver.drag_count = 0;
+	session->solver.forces.drag_count = 0;
 	if (!session->tool_count)
 		return;
-	cau_near_refit(&session->near, session->position);
-	cau_near_cover(&session->near, session->position_start);
+	cau_near_refit(&session->heat.near, session->vertices.position);
+	cau_near_cover(&session->heat.near, session->vertices.start);
 	describe_tools(session);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		add_attachments(session, i);
@@ -231,13 +232,13 @@ static void keep_unheld(cau_session *session, int32_t rows)
 {
 	cau_contact_set *set = &session->contact;
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	set->begun_count = rows;
-	memcpy(session->position_unheld, session->position, bytes);
-	session->unheld_farthest_m = session->farthest_m;
+	set->begun.count = rows;
+	memcpy(session->touch.unheld, session->vertices.position, bytes);
+	session->touch.unheld_farthest_m = session->touch.farthest_m;
 	for (int32_t i = 0; i < rows; i++)
-		memcpy(set->begun_reaction[i], set->row[i].reaction, sizeof set->begun_reaction[i]);
+		memcpy(set->begun.reaction[i], set->row[i].reaction, sizeof set->begun.reaction[i]);
 	for (int32_t i = 0; i < set->tool_count; i++)
-		memcpy(set->begun_offset[i], set->tool[i].offset, sizeof set->begun_offset[i]);
+		memcpy(set->begun.offset[i], set->tool[i].offset, sizeof set->begun.offset[i]);
 }
 
 static const double missed_m = 1e-4; // a face deeper than this at its constraint is not held yet
@@ -249,14 +250,14 @@ bool cau_session_find_missed(cau_session *session)
 	cau_contact_set *set = &session->contact;
 	int32_t rows = set->row_count, feeling = 0;
 	cau_session_take_poses(session);
-	bool first = set->begun_count < 0;
-	set->touched_count = 0;
+	bool first = set->begun.count < 0;
+	set->sides.touched_count = 0;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		feeling += cau_session_feels_faces(&session->tool[i]);
 	if (!feeling)
 		return false;
-	cau_near_refit(&session->near, session->position);
-	session->farthest_m = cau_session_farthest(session);
+	cau_near_refit(&session->heat.near, session->vertices.position);
+	session->touch.farthest_m = cau_session_farthest(session);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		if (cau_session_feels_faces(&session->tool[i]))
 			cau_session_reach(session, i, pushing_part(session, &session->tool[i]));
@@ -276,7 +277,7 @@ bool cau_session_find_missed(cau_session *session)
 bool cau_session_find_thrown(cau_session *session)
 {
 	double room = 0;
-	if (session->contact.begun_count < 0)
+	if (session->contact.begun.count < 0)
 		return false;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
@@ -285,7 +286,7 @@ bool cau_session_find_thrown(cau_session *session)
 		double way = cau_length(cau_sub(cau_vec3_of(tool->anchor.position_m), from));
 		room = fmax(room, way + 2 * tool->state.definition.hot_radius_m);
 	}
-	bool thrown = !(session->farthest_m <= session->unheld_farthest_m + room);
+	bool thrown = !(session->touch.farthest_m <= session->touch.unheld_farthest_m + room);
 	for (int32_t i = 0; i < session->tool_count && thrown; i++)
 		session->contact.tool[i].passing = true;
 	return thrown;
@@ -295,13 +296,13 @@ void cau_session_let_through(cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	CAU_ASSERT_INDEX(set->begun_count, set->row_count + 1);
-	memcpy(session->position, session->position_unheld, bytes);
-	set->row_count = set->begun_count;
+	CAU_ASSERT_INDEX(set->begun.count, set->row_count + 1);
+	memcpy(session->vertices.position, session->touch.unheld, bytes);
+	set->row_count = set->begun.count;
 	for (int32_t i = 0; i < set->row_count; i++)
-		memcpy(set->row[i].reaction, set->begun_reaction[i], sizeof set->row[i].reaction);
+		memcpy(set->row[i].reaction, set->begun.reaction[i], sizeof set->row[i].reaction);
 	for (int32_t i = 0; i < set->tool_count; i++)
-		memcpy(set->tool[i].offset, set->begun_offset[i], sizeof set->tool[i].offset);
+		memcpy(set->tool[i].offset, set->begun.offset[i], sizeof set->tool[i].offset);
 	cau_session_take_poses(session);
 	set->let_through = true;
 }
@@ -370,10 +371,11 @@ void cau_session_read_forces(cau_session *session)
 		CAU_ASSERT_INDEX(row->tool, session->tool_count);
 		cau_tool *tool = &session->tool[row->tool];
 		cau_vec3 reaction = cau_vec3_of(row->reaction);
-		add_force(&tool->state, cau_scale(-1, reaction), cau_contact_point(row, session->position));
+		add_force(&tool->state, cau_scale(-1, reaction),
+		          cau_contact_point(row, session->vertices.position));
 		tool->state.contact_vertices += !row->attached && cau_dot(reaction, reaction) > 0;
 		if (row->attached && (row->slipping || bears_too_much(row)))
-			slip(tool, row, session->position);
+			slip(tool, row, session->vertices.position);
 	}
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_state *state = &session->tool[i].state;
@@ -395,11 +397,11 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 	tool->state.grasping = true;
 	tool->grasp_count = 0;
 	for (int32_t i = 0; i < session->tissue.vertex_count; i++) {
-		int32_t v = session->near.vertex[i];
+		int32_t v = session->heat.near.vertex[i];
 		double across;
-		cau_vec3 local =
-			cau_pose_to_local(&tool->state.pose, cau_vec3_of(session->position + 3 * (size_t)v));
-		if (session->fixed[v] || tool->grasp_count == CAU_MAX_GRASPED ||
+		cau_vec3 local = cau_pose_to_local(&tool->state.pose,
+		                                   cau_vec3_of(session->vertices.position + 3 * (size_t)v));
+		if (session->vertices.fixed[v] || tool->grasp_count == CAU_MAX_GRASPED ||
 		    !cau_tool_between_jaws(def, tool->state.jaw, local, &across))
 			continue;
 		cau_grasp grasp = cau_session_hold_vertex(v);

@@ -17,8 +17,8 @@ static void describe_layers(const cau_session *session, cau_session_info *info)
 		out->kind = layer->def.kind;
 		out->element_count = layer->triangle_count + layer->tetrahedron_count + layer->link_count;
 		if (layer->def.kind == CAU_LAYER_FAT) {
-			out->first_face = session->fat_first_face[i];
-			out->face_count = session->fat_face_count[i];
+			out->first_face = session->view.fat_first_face[i];
+			out->face_count = session->view.fat_face_count[i];
 		} else {
 			out->first_face = layer->first_triangle;
 			out->face_count = layer->triangle_count;
@@ -40,9 +40,9 @@ void cau_session_describe(const cau_session *session, cau_session_info *info)
 		.edge_count = tissue->edges.edge_count,
 		.layer_count = tissue->layer_count,
 		.face = tissue->faces.vertex,
-		.face_layer = session->face_layer,
+		.face_layer = session->view.face_layer,
 		.rest_position = tissue->rest,
-		.texture = session->face_texture,
+		.texture = session->view.face_texture,
 		.tetrahedron = tissue->tetrahedron,
 		.link = tissue->link,
 		.instruction_set = session->solver.kernels->instruction_set,
@@ -59,23 +59,23 @@ cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 	const cau_tissue *tissue = &session->tissue;
 	const cau_face_table *faces = &tissue->faces;
 	size_t count = (size_t)faces->face_count;
-	session->face_layer = cau_arena_array(&session->arena, count, sizeof(int32_t));
-	session->face_texture = cau_arena_array(&session->arena, 6 * count, sizeof(float));
-	if (!session->face_layer || !session->face_texture)
+	session->view.face_layer = cau_arena_array(&session->memory.arena, count, sizeof(int32_t));
+	session->view.face_texture = cau_arena_array(&session->memory.arena, 6 * count, sizeof(float));
+	if (!session->view.face_layer || !session->view.face_texture)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the faces");
-	memcpy(session->face_texture, tissue->texture,
+	memcpy(session->view.face_texture, tissue->texture,
 	       6 * (size_t)tissue->triangle_count * sizeof(float));
 	for (int32_t f = 0; f < faces->face_count; f++) {
 		if (f < faces->triangle_count) {
-			session->face_layer[f] = tissue->triangle_layer[f];
+			session->view.face_layer[f] = tissue->triangle_layer[f];
 			continue;
 		}
 		int32_t layer = tissue->tetrahedron_layer[faces->owner[2 * (size_t)f]];
 		CAU_ASSERT(layer >= 0 && tissue->layer[layer].def.kind == CAU_LAYER_FAT,
 		           "face %d of fat is in layer %d", f, layer);
-		session->face_layer[f] = layer;
-		if (!session->fat_face_count[layer]++)
-			session->fat_first_face[layer] = f;
+		session->view.face_layer[f] = layer;
+		if (!session->view.fat_face_count[layer]++)
+			session->view.fat_first_face[layer] = f;
 	}
 	return CAU_OK;
 }
@@ -84,34 +84,36 @@ cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 
 static void make_stress(cau_session *session)
 {
-	cau_frame_stress(&session->frame, &session->tissue, &session->dissection, session->position);
+	cau_frame_stress(&session->view.frame, &session->tissue, &session->dissection,
+	                 session->vertices.position);
 }
 
 static void heat_vertices(cau_session *session)
 {
 	for (int32_t i = 0; i < session->tool_count; i++)
-		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
+		cau_frame_heat(&session->view.frame, &session->heat.near, &session->tool[i].grid,
+		               session->vertices.position);
 }
 
 // Shows the cells' temperatures. With energy `tissue` the tools' heat grids stay at ambient.
 static void heat_by_cells(cau_session *session)
 {
-	for (int32_t v = 0; session->cells && v < session->tissue.vertex_count; v++)
-		cau_frame_heat_vertex(&session->frame, v,
-		                      (float)cau_tissue_cells_temperature(session->cells, v));
+	for (int32_t v = 0; session->heat.cells && v < session->tissue.vertex_count; v++)
+		cau_frame_heat_vertex(&session->view.frame, v,
+		                      (float)cau_tissue_cells_temperature(session->heat.cells, v));
 }
 
 static void make_temperature(cau_session *session)
 {
-	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
-	cau_near_refit(&session->near, session->position);
+	cau_frame_cool(&session->view.frame, &session->tissue, session->scene->ambient_c);
+	cau_near_refit(&session->heat.near, session->vertices.position);
 	heat_vertices(session);
 	heat_by_cells(session);
 }
 
 static void follow_temperature(cau_session *session)
 {
-	cau_frame_cool_heated(&session->frame);
+	cau_frame_cool_heated(&session->view.frame);
 	heat_vertices(session);
 	heat_by_cells(session);
 }
@@ -119,7 +121,7 @@ static void follow_temperature(cau_session *session)
 static void make_blood(cau_session *session)
 {
 	for (int32_t v = 0; session->vessels && v < session->tissue.vertex_count; v++)
-		session->frame.blood[v] = (float)cau_blood_depth(&session->vessels->blood, v);
+		session->view.frame.blood[v] = (float)cau_blood_depth(&session->vessels->blood, v);
 }
 
 // How a watched scalar is computed: `make` from the state alone, `follow` after a step from such a
@@ -142,39 +144,39 @@ static bool is_watched(uint32_t channels, int scalar)
 
 static bool is_made(const cau_session *session, int scalar)
 {
-	return !sources[scalar].make || is_watched(session->watched, scalar);
+	return !sources[scalar].make || is_watched(session->view.watched, scalar);
 }
 
 void cau_session_show_scalars(cau_session *session)
 {
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
-		if (is_watched(session->watched, scalar))
+		if (is_watched(session->view.watched, scalar))
 			sources[scalar].follow(session);
 }
 
 void cau_session_renew_scalars(cau_session *session)
 {
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
-		if (is_watched(session->watched, scalar))
+		if (is_watched(session->view.watched, scalar))
 			sources[scalar].make(session);
 }
 
 void cau_session_watch(cau_session *session, uint32_t channels)
 {
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
-		if (is_watched(channels & ~session->watched, scalar))
+		if (is_watched(channels & ~session->view.watched, scalar))
 			sources[scalar].make(session);
 	cau_session_watch_contact(session, (channels & CAU_CHANNEL_TOOL_CONTACT) != 0);
-	session->watched = channels;
+	session->view.watched = channels;
 }
 
 static void fill_statistics(const cau_session *session, cau_statistics *statistics)
 {
 	const cau_step_solver *solver = &session->solver;
 	*statistics = (cau_statistics){
-		.iterations = solver->iterations_done,
-		.residual = solver->residual,
-		.backtracks = solver->backtracks,
+		.iterations = solver->result.iterations,
+		.residual = solver->result.residual,
+		.backtracks = solver->result.backtracks,
 		.inverted = session->inversion.count,
 		.edges_parted = session->dissection.edges_parted,
 		.elements_removed = session->dissection.elements_removed,
@@ -186,13 +188,13 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.contacts = session->contact.row_count,
 		.contacts_left_out = session->contact.left_out_count,
 		.touching_cut_short = session->collide.cut_short_count,
-		.frozen_vertices = session->frozen_count,
+		.frozen_vertices = session->vertices.frozen_count,
 		.energy_gain_j = session->energy.gain_j,
 		.energy_scale_j = session->energy.scale_j,
 		.error = solver->accuracy.error,
 		.resting = session->rest.resting,
 	};
-	memcpy(statistics->seconds, session->stage_s, sizeof session->stage_s);
+	memcpy(statistics->seconds, session->timing.stage_s, sizeof session->timing.stage_s);
 	memcpy(statistics->long_inverted, session->inversion.long_count,
 	       sizeof statistics->long_inverted);
 }
@@ -202,24 +204,25 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 	*frame = (cau_frame){
 		.tick = session->tick,
 		.time_s = (double)session->tick * session->solver.step_s,
-		.position = session->position,
-		.velocity = session->velocity,
-		.moved_count = session->frame.moved_count,
-		.moved = session->frame.moved,
+		.position = session->vertices.position,
+		.velocity = session->vertices.velocity,
+		.moved_count = session->view.frame.moved_count,
+		.moved = session->view.frame.moved,
 		.face_mask = session->dissection.face_mask,
-		.mask_changed_count = session->frame.mask_changed_count,
-		.mask_changed = session->frame.mask_changed,
-		.vertex_visible = session->frame.vertex_visible,
+		.mask_changed_count = session->view.frame.mask_changed_count,
+		.mask_changed = session->view.frame.mask_changed,
+		.vertex_visible = session->view.frame.vertex_visible,
 		.tool_count = session->tool_count,
-		.tools = session->tool_view,
-		.refusal_count = session->refusal_count,
-		.refusals = session->refusal,
+		.tools = session->view.tool,
+		.refusal_count = session->queue.refusal_count,
+		.refusals = session->queue.refusal,
 	};
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
-		frame->scalar[scalar] = is_made(session, scalar) ? session->frame.scalar[scalar] : NULL;
+		frame->scalar[scalar] =
+			is_made(session, scalar) ? session->view.frame.scalar[scalar] : NULL;
 	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	for (int32_t i = 0; i < session->tool_count; i++)
-		session->tool_view[i] = session->tool[i].state;
+		session->view.tool[i] = session->tool[i].state;
 	for (int32_t i = 0; session->vessels && i < session->vessels->vessel_count; i++)
 		frame->vessels[frame->vessel_count++] = &session->vessels->vessel[i].state;
 	frame->contacts = cau_session_show_contact(session);
@@ -228,7 +231,7 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 
 void cau_session_set_clock(cau_session *session, double (*now_s)(void))
 {
-	session->now_s = session->solver.now_s = now_s;
+	session->timing.now_s = session->solver.now_s = now_s;
 }
 
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,

@@ -92,7 +92,7 @@ static void measure_part(void *context, int32_t chunk)
 {
 	cau_step_solver *solver = context;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
-	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
+	CAU_ASSERT_INDEX(chunk, solver->chunks.count);
 	if (last > solver->tissue->vertex_count)
 		last = solver->tissue->vertex_count;
 	solver->kernels->vectors->measure(solver, first, last,
@@ -134,16 +134,16 @@ static trial measure(cau_step_solver *solver)
 	cau_accuracy *accuracy = &solver->accuracy;
 	double total[SUMS] = {0};
 	trial of = {0};
-	cau_pool_run(solver->pool, solver->chunk_count, measure_part, solver);
-	for (int32_t chunk = 0; chunk <= solver->chunk_count; chunk++) {
+	cau_pool_run(solver->pool, solver->chunks.count, measure_part, solver);
+	for (int32_t chunk = 0; chunk <= solver->chunks.count; chunk++) {
 		const double *sums =
-			chunk < solver->chunk_count ? accuracy->sums + SUMS * (size_t)chunk : total;
+			chunk < solver->chunks.count ? accuracy->sums + SUMS * (size_t)chunk : total;
 		if (!(sums[0] > 0))
 			continue;
 		of.all = lengths_of(sums, accuracy->wanted); // after the loop, of.all is over all vertices
 		of.length = fmax(of.length, of.all.trial / of.all.allowed);
 		of.told = fmax(of.told, of.all.trial / of.all.told);
-		for (int k = 0; k < SUMS && chunk < solver->chunk_count; k++)
+		for (int k = 0; k < SUMS && chunk < solver->chunks.count; k++)
 			total[k] += sums[k];
 	}
 	of.mass = total[0];

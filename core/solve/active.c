@@ -32,7 +32,7 @@ typedef struct active {
 static cau_contact_row *row_of(const active *a, int32_t i)
 {
 	CAU_ASSERT_INDEX(i, a->count);
-	return &a->set->row[a->set->active_row[i]];
+	return &a->set->row[a->set->active.row[i]];
 }
 
 static cau_vec3 get(const over_rows *v, int32_t i)
@@ -78,8 +78,8 @@ static bool choose(active *a)
 			continue;
 		if (a->count == CAU_MAX_ACTIVE)
 			return false;
-		set->active_sticks[a->count] = sticks(a, row, reaction);
-		set->active_row[a->count++] = i;
+		set->active.sticks[a->count] = sticks(a, row, reaction);
+		set->active.row[a->count++] = i;
 	}
 	return a->count > 0;
 }
@@ -103,7 +103,7 @@ static void find_left(active *a, const cau_step_solver *solver)
 		cau_vec3 apart, slip, normal = cau_vec3_of(row->normal);
 		cau_contact_motion(a->set, solver, row, &apart, &slip);
 		cau_vec3 off = cau_scale(row->gap + cau_dot(apart, normal), normal);
-		if (a->set->active_sticks[i])
+		if (a->set->active.sticks[i])
 			off = cau_add(off, tangent_of(row, slip));
 		put(&a->left, i, cau_scale(-1, off));
 	}
@@ -114,7 +114,7 @@ static void keep_free(const active *a, over_rows *v)
 {
 	for (int32_t i = 0; i < a->count; i++) {
 		cau_vec3 normal = cau_vec3_of(row_of(a, i)->normal);
-		if (!a->set->active_sticks[i])
+		if (!a->set->active.sticks[i])
 			put(v, i, cau_scale(cau_dot(get(v, i), normal), normal));
 	}
 }
@@ -193,7 +193,7 @@ static double part_of_row(const active *a, int32_t i)
 	double push = cau_dot(now, normal), more = cau_dot(change, normal);
 	double part = more < -push ? -push / more : 1, room = cau_contact_bears(a->set, row) - push;
 	part = more > room ? fmax(room, 0) / more : part;
-	if (!a->set->active_sticks[i])
+	if (!a->set->active.sticks[i])
 		return part;
 	double bears = friction_of(a, row) * friction_of(a, row);
 	cau_vec3 along = tangent_of(row, now), by = tangent_of(row, change);
@@ -245,9 +245,9 @@ static void take(const active *a, double part)
 
 void cau_active_solve(cau_contact_set *set, const cau_step_solver *solver)
 {
-	active a = {.set = set, .between = set->active};
+	active a = {.set = set, .between = set->active.between};
 	bool stopped = true;
-	CAU_ASSERT(set->column_count > 0, "%d columns", set->column_count);
+	CAU_ASSERT(set->columns.count > 0, "%d columns", set->columns.count);
 	for (int round = 0; round < MOST_ROUNDS && stopped && choose(&a); round++) {
 		find_between(&a);
 		find_left(&a, solver);

@@ -24,8 +24,8 @@ static int64_t chunk_reals(const cau_step_solver *solver, int32_t chunk, int64_t
 
 void cau_anderson_start(cau_step_solver *solver)
 {
-	solver->history.count = 0;
-	solver->history.newest = -1;
+	solver->anderson.history.count = 0;
+	solver->anderson.history.newest = -1;
 }
 
 static void column_part(void *context, int32_t chunk)
@@ -33,8 +33,8 @@ static void column_part(void *context, int32_t chunk)
 	const mix *work = context;
 	const cau_step_solver *solver = work->solver;
 	int64_t first, n = chunk_reals(solver, chunk, &first);
-	solver->kernels->add_column(&solver->history, first, n,
-	                            solver->chunk_dot + (size_t)chunk * (2 * CAU_ANDERSON_WINDOW));
+	solver->kernels->add_column(&solver->anderson.history, first, n,
+	                            solver->chunks.dot + (size_t)chunk * (2 * CAU_ANDERSON_WINDOW));
 }
 
 static void combine_part(void *context, int32_t chunk)
@@ -42,7 +42,7 @@ static void combine_part(void *context, int32_t chunk)
 	const mix *work = context;
 	const cau_step_solver *solver = work->solver;
 	int64_t first, n = chunk_reals(solver, chunk, &first);
-	solver->kernels->combine(&solver->history, first, n, work->weight);
+	solver->kernels->combine(&solver->anderson.history, first, n, work->weight);
 }
 
 // Solves the small symmetric system by Gaussian elimination with diagonal pivots. Its entries are
@@ -82,39 +82,39 @@ static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
 static void weigh(mix *work)
 {
 	cau_step_solver *solver = work->solver;
-	cau_history *history = &solver->history;
+	cau_history *history = &solver->anderson.history;
 	history->newest = (history->newest + 1) % CAU_ANDERSON_WINDOW;
 	CAU_ASSERT_INDEX(history->newest, CAU_ANDERSON_WINDOW);
 	if (history->count < CAU_ANDERSON_WINDOW)
 		history->count++;
-	cau_pool_run(solver->pool, solver->chunk_count, column_part, work);
+	cau_pool_run(solver->pool, solver->chunks.count, column_part, work);
 	double b[CAU_ANDERSON_WINDOW] = {0}, a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW];
 	for (int32_t j = 0; j < history->count; j++) {
 		double product = 0;
-		for (int32_t c = 0; c < solver->chunk_count; c++) {
-			const double *dot = solver->chunk_dot + (size_t)c * (2 * CAU_ANDERSON_WINDOW);
+		for (int32_t c = 0; c < solver->chunks.count; c++) {
+			const double *dot = solver->chunks.dot + (size_t)c * (2 * CAU_ANDERSON_WINDOW);
 			product += dot[j];
 			b[j] += dot[CAU_ANDERSON_WINDOW + j];
 		}
-		solver->anderson_product[history->newest][j] = product;
-		solver->anderson_product[j][history->newest] = product;
+		solver->anderson.product[history->newest][j] = product;
+		solver->anderson.product[j][history->newest] = product;
 	}
-	memcpy(a, solver->anderson_product, sizeof a);
+	memcpy(a, solver->anderson.product, sizeof a);
 	least_squares(a, b, history->count, work->weight);
 }
 
 bool cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
 {
 	CAU_ASSERT(iteration >= 0, "iteration %d", iteration);
-	CAU_ASSERT(iteration > 0 || !solver->history.count, "the first iteration has %d columns",
-	           solver->history.count);
+	CAU_ASSERT(iteration > 0 || !solver->anderson.history.count,
+	           "the first iteration has %d columns", solver->anderson.history.count);
 	mix work = {.solver = solver};
-	solver->history.increment = solver->increment;
-	solver->history.gradient = solver->gradient;
+	solver->anderson.history.increment = solver->iterate.increment;
+	solver->anderson.history.gradient = solver->iterate.gradient;
 	if (iteration > 0)
 		weigh(&work);
-	cau_pool_run(solver->pool, solver->chunk_count, combine_part, &work);
-	return solver->history.count > 0;
+	cau_pool_run(solver->pool, solver->chunks.count, combine_part, &work);
+	return solver->anderson.history.count > 0;
 }
 
 static void swap(cau_reals **a, cau_reals **b)
@@ -126,8 +126,8 @@ static void swap(cau_reals **a, cau_reals **b)
 
 void cau_anderson_keep(cau_step_solver *solver)
 {
-	CAU_ASSERT(solver->history.increment == solver->increment,
-	           "what is kept was not mixed, with %d columns", solver->history.count);
-	swap(&solver->increment, &solver->history.last_increment);
-	swap(&solver->gradient, &solver->history.last_gradient);
+	CAU_ASSERT(solver->anderson.history.increment == solver->iterate.increment,
+	           "what is kept was not mixed, with %d columns", solver->anderson.history.count);
+	swap(&solver->iterate.increment, &solver->anderson.history.last_increment);
+	swap(&solver->iterate.gradient, &solver->anderson.history.last_gradient);
 }

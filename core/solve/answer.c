@@ -8,20 +8,20 @@
 // over all columns handles two at a time (find_used).
 static bool all_are_used(const cau_contact_set *set)
 {
-	CAU_ASSERT(set->used_count <= set->column_count, "%d of %d columns are used", set->used_count,
-	           set->column_count);
-	return set->used_count == set->column_count;
+	CAU_ASSERT(set->columns.used_count <= set->columns.count, "%d of %d columns are used",
+	           set->columns.used_count, set->columns.count);
+	return set->columns.used_count == set->columns.count;
 }
 
 // answer += weight * s
 static void add_weighted(const cau_contact_set *set, double *answer, double weight, const double *s)
 {
 	if (all_are_used(set))
-		for (int32_t c = 0; c < set->column_count; c++)
+		for (int32_t c = 0; c < set->columns.count; c++)
 			answer[c] += weight * s[c];
 	else
-		for (int32_t i = 0; i < set->used_count; i++)
-			answer[set->used[i]] += weight * s[set->used[i]];
+		for (int32_t i = 0; i < set->columns.used_count; i++)
+			answer[set->columns.used[i]] += weight * s[set->columns.used[i]];
 }
 
 void cau_contact_find_answer(cau_contact_set *set, int32_t row)
@@ -30,18 +30,18 @@ void cau_contact_find_answer(cau_contact_set *set, int32_t row)
 	if (of->answer < 0 || of->answer == CAU_MAX_POINT_ROWS)
 		return;
 	double *answer = set->answer + (size_t)of->answer * CAU_MAX_COLUMNS;
-	for (int32_t i = 0; i < set->used_count; i++)
-		answer[set->used[i]] = 0;
+	for (int32_t i = 0; i < set->columns.used_count; i++)
+		answer[set->columns.used[i]] = 0;
 	for (int32_t k = 0; k < of->corner_count; k++)
 		if (of->column[k] >= 0 && of->weight[k] != 0)
 			add_weighted(set, answer, of->weight[k],
-			             set->inverse + (size_t)of->column[k] * CAU_MAX_COLUMNS);
+			             set->columns.inverse + (size_t)of->column[k] * CAU_MAX_COLUMNS);
 }
 
 const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row)
 {
 	if (row->answer < 0)
-		return set->inverse + (size_t)row->column[0] * CAU_MAX_COLUMNS;
+		return set->columns.inverse + (size_t)row->column[0] * CAU_MAX_COLUMNS;
 	return set->answer + (size_t)row->answer * CAU_MAX_COLUMNS;
 }
 
@@ -57,11 +57,11 @@ void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3
 	const double *answer = cau_contact_answer(set, row);
 	double *step = set->step;
 	if (all_are_used(set))
-		for (int32_t c = 0; c < set->column_count; c++)
+		for (int32_t c = 0; c < set->columns.count; c++)
 			move_vertex(step, c, answer[c], by);
 	else
-		for (int32_t i = 0; i < set->used_count; i++)
-			move_vertex(step, set->used[i], answer[set->used[i]], by);
+		for (int32_t i = 0; i < set->columns.used_count; i++)
+			move_vertex(step, set->columns.used[i], answer[set->columns.used[i]], by);
 }
 
 double cau_contact_slips_at(const cau_contact_set *set, const cau_contact_row *row)

@@ -8,7 +8,7 @@
 
 static void read_step(cau_step_solver *solver, int32_t vertex)
 {
-	solver->kernels->vectors->read(solver->trial_increment, vertex,
+	solver->kernels->vectors->read(solver->iterate.trial, vertex,
 	                               solver->collide->step + 3 * (size_t)vertex);
 }
 
@@ -18,12 +18,12 @@ static bool passes(cau_step_solver *solver, const double *from)
 {
 	cau_collide *collide = solver->collide;
 	double longest =
-		solver->kernels->vectors->longest(solver->trial_increment, solver->tissue->vertex_count);
+		solver->kernels->vectors->longest(solver->iterate.trial, solver->tissue->vertex_count);
 	if (!cau_collide_foresee(collide, longest))
 		return false;
-	for (int32_t k = 0; k < collide->unclear_count; k++)
+	for (int32_t k = 0; k < collide->filter.unclear_count; k++)
 		for (int i = 0; i < 4; i++)
-			read_step(solver, collide->pair[collide->unclear[k]].vertex[i]);
+			read_step(solver, collide->pair[collide->filter.unclear[k]].vertex[i]);
 	return cau_collide_lets_pass(collide, from, longest);
 }
 
@@ -52,13 +52,13 @@ static bool shorten(cau_step_solver *solver)
 	const cau_vectors *vectors = solver->kernels->vectors;
 	int32_t n = solver->tissue->vertex_count;
 	double most = much_longer * cau_collide_most_step(solver->collide);
-	if (!(vectors->longest(solver->trial_increment, n) > most))
+	if (!(vectors->longest(solver->iterate.trial, n) > most))
 		return false;
-	double longest = longest_drawn(solver, solver->trial_increment);
+	double longest = longest_drawn(solver, solver->iterate.trial);
 	if (!(longest > most))
 		return false;
-	solver->kernels->add_scaled(solver->trial_increment, most / longest - 1,
-	                            solver->trial_increment, 4 * (int64_t)n);
+	solver->kernels->add_scaled(solver->iterate.trial, most / longest - 1, solver->iterate.trial,
+	                            4 * (int64_t)n);
 	return true;
 }
 
@@ -67,11 +67,11 @@ bool cau_solver_let_go(cau_step_solver *solver)
 	cau_collide *collide = solver->collide;
 	const cau_surface_parts *surface = &collide->surface.vertices;
 	double step = cau_collide_most_step(collide), way[3];
-	if (!(longest_drawn(solver, solver->increment) > solver->iterations * step))
+	if (!(longest_drawn(solver, solver->iterate.increment) > solver->settings.iterations * step))
 		return false;
 	for (int32_t k = 0; k < surface->count; k++) {
 		int32_t v = surface->item[k];
-		solver->kernels->vectors->read(solver->increment, v, way);
+		solver->kernels->vectors->read(solver->iterate.increment, v, way);
 		if (!collide->exempt[v] && cau_length(cau_vec3_of(way)) > much_longer * step)
 			cau_collide_let_go(collide, v);
 	}
@@ -94,10 +94,10 @@ static bool filter(cau_step_solver *solver, const double *from)
 	for (int32_t k = 0; k < surface->count; k++) {
 		int32_t v = surface->item[k];
 		double change[3];
-		vectors->read(solver->trial_increment, v, change);
+		vectors->read(solver->iterate.trial, v, change);
 		for (int c = 0; c < 3; c++)
 			change[c] = collide->step[3 * (size_t)v + (size_t)c] - change[c];
-		vectors->add(solver->trial_increment, v, change);
+		vectors->add(solver->iterate.trial, v, change);
 	}
 	return true;
 }
@@ -106,7 +106,7 @@ bool cau_solver_keep_apart(cau_step_solver *solver, const double *from)
 {
 	bool shorter = shorten(solver), changed = filter(solver, from);
 	if (shorter && !changed) {
-		solver->collide->held_back = true;
+		solver->collide->filter.held_back = true;
 		solver->collide->held_back_count++;
 	}
 	return shorter || changed;

@@ -16,20 +16,21 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error)
 {
 	size_t n = (size_t)tissue->vertex_count, columns = CAU_MAX_COLUMNS;
-	set->inverse = cau_arena_array(arena, columns * columns, sizeof(double));
+	set->columns.inverse = cau_arena_array(arena, columns * columns, sizeof(double));
 	set->answer = cau_arena_array(arena, (CAU_MAX_POINT_ROWS + 1) * columns, sizeof(double));
 	set->step = cau_arena_array(arena, 3 * columns, sizeof(double));
 	set->change = cau_arena_array(arena, 3 * columns, sizeof(double));
-	set->hold = cau_arena_array(arena, CAU_MAX_HELD * CAU_MAX_HELD, sizeof(double));
+	set->holds.factor = cau_arena_array(arena, CAU_MAX_HELD * CAU_MAX_HELD, sizeof(double));
 	set->before = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
 	set->unit = cau_arena_array(arena, 4 * n, vectors->real_bytes);
 	set->solution = cau_arena_array(arena, 4 * n, vectors->real_bytes);
-	set->active = cau_arena_array(arena, CAU_MAX_ACTIVE * CAU_MAX_ACTIVE, sizeof(double));
-	bool missing = !set->active || !set->inverse || !set->answer || !set->step || !set->change ||
-	               !set->hold || !set->before || !set->unit || !set->solution;
+	set->active.between = cau_arena_array(arena, CAU_MAX_ACTIVE * CAU_MAX_ACTIVE, sizeof(double));
+	bool missing = !set->active.between || !set->columns.inverse || !set->answer || !set->step ||
+	               !set->change || !set->holds.factor || !set->before || !set->unit ||
+	               !set->solution;
 	for (int32_t k = 0; k < CAU_WHOLE_COLUMNS && !missing; k++) {
-		set->column[k] = cau_arena_array(arena, n, vectors->real_bytes);
-		missing = !set->column[k];
+		set->columns.whole[k] = cau_arena_array(arena, n, vectors->real_bytes);
+		missing = !set->columns.whole[k];
 	}
 	return missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts") : CAU_OK;
 }
@@ -50,15 +51,15 @@ double cau_contact_slack(double start_m, double step_s)
 
 static bool is_corner(const cau_contact_set *set, int32_t vertex)
 {
-	for (int32_t i = 0; i < set->corner_count; i++)
-		if (set->corner[i] == vertex)
+	for (int32_t i = 0; i < set->columns.corner_count; i++)
+		if (set->columns.corner[i] == vertex)
 			return true;
 	return false;
 }
 
 void cau_contact_clear(cau_contact_set *set)
 {
-	set->row_count = set->corner_count = set->face_count = set->point_count = 0;
+	set->row_count = set->columns.corner_count = set->face_count = set->point_count = 0;
 }
 
 // ---- sides of faces
@@ -75,17 +76,17 @@ void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t
 {
 	CAU_ASSERT_INDEX(tool, set->tool_count);
 	CAU_ASSERT(above == 1 || above == -1, "side %d of face %d", above, face);
-	if (set->touched_count == CAU_MAX_MEMORY)
+	if (set->sides.touched_count == CAU_MAX_MEMORY)
 		set->left_out_count++;
 	else
-		set->touched[set->touched_count++] =
+		set->sides.touched[set->sides.touched_count++] =
 			(cau_contact_memory){.tool = tool, .face = face, .pushed = pushed, .above = above};
 }
 
 static void keep(cau_contact_set *set, const cau_contact_memory *memory)
 {
-	if (set->memory_count < CAU_MAX_MEMORY)
-		set->memory[set->memory_count++] = *memory;
+	if (set->sides.memory_count < CAU_MAX_MEMORY)
+		set->sides.memory[set->sides.memory_count++] = *memory;
 }
 
 // Remembers the face of a constraint, and the point at which it was pushed.
@@ -94,55 +95,58 @@ static void keep_pushed(cau_contact_set *set, const cau_contact_row *row)
 	cau_contact_memory memory = {
 		.tool = row->tool, .face = row->face, .pushed = 1, .above = row->above};
 	int32_t at = 0;
-	while (at < set->memory_count && compare_memory(&set->memory[at], &memory) != 0)
+	while (at < set->sides.memory_count && compare_memory(&set->sides.memory[at], &memory) != 0)
 		at++;
-	if (at == set->memory_count)
+	if (at == set->sides.memory_count)
 		keep(set, &memory);
 	cau_vec3 reaction = cau_vec3_of(row->reaction);
-	if (at == set->memory_count || !(cau_dot(reaction, reaction) > 0))
+	if (at == set->sides.memory_count || !(cau_dot(reaction, reaction) > 0))
 		return; // the list is full, or the constraint did not push
-	cau_contact_memory *kept = &set->memory[at];
+	cau_contact_memory *kept = &set->sides.memory[at];
 	if (kept->point_count < CAU_MAX_POINTS)
 		memcpy(kept->point[kept->point_count++], row->weight, sizeof row->weight);
 }
 
 void cau_contact_remember(cau_contact_set *set)
 {
-	set->memory_count = 0;
+	set->sides.memory_count = 0;
 	if (set->let_through)
 		return;
 	for (int32_t i = 0; i < set->row_count; i++)
 		if (set->row[i].corner_count == 3 && !set->row[i].attached)
 			keep_pushed(set, &set->row[i]);
-	int32_t pushed_count = set->memory_count;
-	for (int32_t i = 0; i < set->touched_count; i++) {
+	int32_t pushed_count = set->sides.memory_count;
+	for (int32_t i = 0; i < set->sides.touched_count; i++) {
 		int32_t k = 0;
-		while (k < pushed_count && compare_memory(&set->memory[k], &set->touched[i]) != 0)
+		while (k < pushed_count &&
+		       compare_memory(&set->sides.memory[k], &set->sides.touched[i]) != 0)
 			k++;
 		if (k == pushed_count)
-			keep(set, &set->touched[i]);
+			keep(set, &set->sides.touched[i]);
 	}
-	qsort(set->memory, (size_t)set->memory_count, sizeof *set->memory, compare_memory);
+	qsort(set->sides.memory, (size_t)set->sides.memory_count, sizeof *set->sides.memory,
+	      compare_memory);
 	int32_t kept = 0; // keep only one entry of a face that was touched in several rounds
-	for (int32_t i = 0; i < set->memory_count; i++)
-		if (!kept || compare_memory(&set->memory[kept - 1], &set->memory[i]) != 0)
-			set->memory[kept++] = set->memory[i];
-	set->memory_count = kept;
+	for (int32_t i = 0; i < set->sides.memory_count; i++)
+		if (!kept || compare_memory(&set->sides.memory[kept - 1], &set->sides.memory[i]) != 0)
+			set->sides.memory[kept++] = set->sides.memory[i];
+	set->sides.memory_count = kept;
 }
 
 void cau_contact_forget(cau_contact_set *set, int32_t tool)
 {
 	int32_t kept = 0;
-	for (int32_t i = 0; i < set->memory_count; i++)
-		if (set->memory[i].tool != tool)
-			set->memory[kept++] = set->memory[i];
-	set->memory_count = kept;
+	for (int32_t i = 0; i < set->sides.memory_count; i++)
+		if (set->sides.memory[i].tool != tool)
+			set->sides.memory[kept++] = set->sides.memory[i];
+	set->sides.memory_count = kept;
 }
 
 const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t tool, int32_t face)
 {
 	cau_contact_memory key = {.tool = tool, .face = face};
-	return bsearch(&key, set->memory, (size_t)set->memory_count, sizeof key, compare_memory);
+	return bsearch(&key, set->sides.memory, (size_t)set->sides.memory_count, sizeof key,
+	               compare_memory);
 }
 
 // ---- constraints
@@ -159,13 +163,13 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 		if (row->free[k] && !is_corner(set, row->vertex[k]))
 			added[count++] = row->vertex[k];
 	bool point = row->corner_count > 1;
-	if (set->row_count == CAU_MAX_CONTACTS || set->corner_count + count > CAU_MAX_COLUMNS ||
+	if (set->row_count == CAU_MAX_CONTACTS || set->columns.corner_count + count > CAU_MAX_COLUMNS ||
 	    (point && set->point_count == CAU_MAX_POINT_ROWS)) {
 		set->left_out_count++;
 		return false;
 	}
-	memcpy(set->corner + set->corner_count, added, (size_t)count * sizeof *added);
-	set->corner_count += count;
+	memcpy(set->columns.corner + set->columns.corner_count, added, (size_t)count * sizeof *added);
+	set->columns.corner_count += count;
 	set->row[set->row_count] = *row;
 	set->row[set->row_count++].answer = point ? set->point_count++ : -1;
 	set->face_count += row->corner_count == 3 && !row->attached;
@@ -289,7 +293,8 @@ static void spread_part(void *context, int32_t chunk)
 	const spread *work = context;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	solver->kernels->spread(solver->increment, work->column, work->load, work->count, first, last);
+	solver->kernels->spread(solver->iterate.increment, work->column, work->load, work->count, first,
+	                        last);
 }
 
 static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
@@ -297,16 +302,16 @@ static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
 	spread work;
 	work.solver = solver;
 	work.count = 0;
-	CAU_ASSERT_INDEX(set->column_count, CAU_WHOLE_COLUMNS + 1);
-	for (int32_t c = 0; c < set->column_count; c++) {
+	CAU_ASSERT_INDEX(set->columns.count, CAU_WHOLE_COLUMNS + 1);
+	for (int32_t c = 0; c < set->columns.count; c++) {
 		const double *load = set->change + 3 * (size_t)c;
 		if (load[0] == 0 && load[1] == 0 && load[2] == 0)
 			continue;
 		memcpy(work.load + 3 * work.count, load, 3 * sizeof *load);
-		work.column[work.count++] = set->column[c];
+		work.column[work.count++] = set->columns.whole[c];
 	}
 	if (work.count)
-		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &work);
+		cau_pool_run(solver->pool, solver->chunks.count, spread_part, &work);
 }
 
 // Computes increment += C W^T dr by one application of A^-1 to all loads. This is needed if there
@@ -314,15 +319,15 @@ static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
 static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
 {
 	const cau_vectors *vectors = solver->kernels->vectors;
-	for (int32_t c = 0; c < set->column_count; c++)
-		vectors->add(set->unit, set->column_vertex[c], set->change + 3 * (size_t)c);
+	for (int32_t c = 0; c < set->columns.count; c++)
+		vectors->add(set->unit, set->columns.vertex[c], set->change + 3 * (size_t)c);
 	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
-	solver->kernels->add_scaled(solver->increment, 1, set->solution,
+	solver->kernels->add_scaled(solver->iterate.increment, 1, set->solution,
 	                            4 * (int64_t)solver->tissue->vertex_count);
-	for (int32_t c = 0; c < set->column_count; c++) {
+	for (int32_t c = 0; c < set->columns.count; c++) {
 		double load[3]; // the load as it was rounded to reals
-		vectors->read(set->unit, set->column_vertex[c], load);
-		vectors->add(set->unit, set->column_vertex[c], (double[]){-load[0], -load[1], -load[2]});
+		vectors->read(set->unit, set->columns.vertex[c], load);
+		vectors->add(set->unit, set->columns.vertex[c], (double[]){-load[0], -load[1], -load[2]});
 	}
 }
 
@@ -330,7 +335,7 @@ static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
 // the gradient.
 static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 {
-	memset(set->change, 0, 3 * (size_t)set->column_count * sizeof *set->change);
+	memset(set->change, 0, 3 * (size_t)set->columns.count * sizeof *set->change);
 	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *row = &set->row[i];
 		for (int32_t k = 0; k < row->corner_count; k++) {
@@ -342,7 +347,7 @@ static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 				set->change[3 * row->column[k] + c] += change;
 				off[c] = -change;
 			}
-			solver->kernels->vectors->add(solver->gradient, row->vertex[k], off);
+			solver->kernels->vectors->add(solver->iterate.gradient, row->vertex[k], off);
 		}
 		memcpy(set->before + 3 * (size_t)i, row->reaction, sizeof row->reaction);
 	}
@@ -365,10 +370,10 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 
 static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 {
-	for (int32_t i = 0; i < set->used_count; i++) {
-		int32_t k = set->used[i];
+	for (int32_t i = 0; i < set->columns.used_count; i++) {
+		int32_t k = set->columns.used[i];
 		double step[3];
-		solver->kernels->vectors->read(solver->increment, set->column_vertex[k], step);
+		solver->kernels->vectors->read(solver->iterate.increment, set->columns.vertex[k], step);
 		for (int32_t c = 0; c < 3; c++)
 			set->step[c * CAU_MAX_COLUMNS + k] = step[c];
 	}
@@ -414,7 +419,7 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
 	read_step(set, solver);
-	if (cau_coupling_begin(set) && set->hold_count)
+	if (cau_coupling_begin(set) && set->holds.count)
 		cau_hold_prepare(set);
 	bool wide = cau_contact_is_wide(set), together = is_worth_solving_together(set);
 	int sweeps = wide ? CAU_CONTACT_FEW_SWEEPS : CAU_CONTACT_SWEEPS;
@@ -458,7 +463,7 @@ double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solve
 		const cau_contact_row *row = &set->row[i];
 		double way[3][3];
 		for (int32_t k = 0; k < row->corner_count; k++)
-			solver->kernels->vectors->read(solver->trial_increment, row->vertex[k], way[k]);
+			solver->kernels->vectors->read(solver->iterate.trial, row->vertex[k], way[k]);
 		cau_vec3 along = cau_contact_weighted(row, way[0]);
 		work += fabs(row->reaction[0] * along.x) + fabs(row->reaction[1] * along.y) +
 		        fabs(row->reaction[2] * along.z);

@@ -99,6 +99,54 @@ typedef struct cau_contact_memory {
 	double point[CAU_MAX_POINTS][3];
 } cau_contact_memory;
 
+// Kept columns of A^-1. They are part of the session's state, because they lag behind the factor
+// after cuts.
+typedef struct cau_contact_columns {
+	int32_t count;
+	int32_t vertex[CAU_MAX_COLUMNS];
+	uint64_t version[CAU_MAX_COLUMNS];   // version of the factor from which each column was made
+	cau_reals *whole[CAU_WHOLE_COLUMNS]; // (vertex_count): whole columns of A^-1, m/N
+	// Indices of the columns that constraints use, ascending. If more than half of all columns are
+	// used, the list has all columns. Only the listed columns of answer[] and step[] are up to
+	// date.
+	int32_t used_count;
+	int32_t used[CAU_MAX_COLUMNS];
+	uint64_t epoch;       // epoch of the factor; the columns are discarded when it changes
+	int32_t corner_count; // distinct free vertices of the constraints
+	int32_t corner[CAU_MAX_COLUMNS];
+	double *inverse; // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by column index, m/N
+} cau_contact_columns;
+
+// The constraints at the start of the step.
+typedef struct cau_contact_begun {
+	int32_t count; // number of constraints
+	double reaction[CAU_MAX_CONTACTS][3];
+	double offset[CAU_MAX_TOOLS][3]; // m: offsets of the tools
+} cau_contact_begun;
+
+// Faces whose side of a tool is known.
+typedef struct cau_contact_sides {
+	int32_t memory_count; // faces of the last step, sorted by tool and face: part of the session's
+	                      // state
+	cau_contact_memory memory[CAU_MAX_MEMORY];
+	int32_t touched_count; // faces that the present step has found so far
+	cau_contact_memory touched[CAU_MAX_MEMORY];
+} cau_contact_sides;
+
+// Attachments, all solved together (hold.h).
+typedef struct cau_contact_holds {
+	int32_t count;
+	int32_t row[CAU_MAX_HELD];
+	double *factor; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over the attachments
+} cau_contact_holds;
+
+// Active constraints, solved together (active.h).
+typedef struct cau_contact_active {
+	int32_t row[CAU_MAX_ACTIVE];
+	bool sticks[CAU_MAX_ACTIVE];
+	double *between; // (CAU_MAX_ACTIVE x CAU_MAX_ACTIVE)
+} cau_contact_active;
+
 struct cau_contact_set {
 	int32_t tool_count;
 	cau_contact_tool tool[CAU_MAX_TOOLS];
@@ -109,49 +157,24 @@ struct cau_contact_set {
 	// Tissue has been torn, so all columns are renewed. Jaws may hold tissue that hangs by little.
 	// Columns that still contain removed elements would move such tissue too far.
 	bool torn;
-	bool let_through;    // tools passed tissue that no constraint could hold: no side is remembered
-	uint64_t pushing;    // hash of the active constraints after the last correction
-	bool others;         // the active constraints changed in the last correction
-	bool elsewhere;      // an active constraint's point moved along its face in the last correction
-	bool crossing;       // the solve ended with a face beyond a tool, not only deep in it
-	int32_t begun_count; // number of constraints at the start of the step; begun_reaction has their
-	                     // reactions
-	double begun_reaction[CAU_MAX_CONTACTS][3];
-	double begun_offset[CAU_MAX_TOOLS][3]; // m: offsets of the tools at the start of the step
+	bool let_through;       // tools passed tissue that no constraint could hold: no side is
+	                        // remembered
+	uint64_t pushing;       // hash of the active constraints after the last correction
+	bool others;            // the active constraints changed in the last correction
+	bool elsewhere;         // an active constraint's point moved along its face in the last
+	                        // correction
+	bool crossing;          // the solve ended with a face beyond a tool, not only deep in it
 	int32_t left_out_count; // constraints of this step for which the capacity was too small
-	int32_t memory_count; // faces of the last step, sorted by tool and face: part of the session's
-	                      // state
-	cau_contact_memory memory[CAU_MAX_MEMORY];
-	int32_t touched_count; // faces that the present step has found so far
-	cau_contact_memory touched[CAU_MAX_MEMORY];
-	// Kept columns of A^-1. They are part of the session's state, because they lag behind the
-	// factor after cuts.
-	int32_t column_count;
-	int32_t column_vertex[CAU_MAX_COLUMNS];
-	// version of the factor from which each column was made
-	uint64_t column_version[CAU_MAX_COLUMNS];
-	cau_reals *column[CAU_WHOLE_COLUMNS]; // (vertex_count): whole columns of A^-1, m/N
-	// Indices of the columns that constraints use, ascending. If more than half of all columns are
-	// used, the list has all columns. Only the listed columns of answer[] and step[] are up to
-	// date.
-	int32_t used_count;
-	int32_t used[CAU_MAX_COLUMNS];
-	uint64_t epoch;       // epoch of the factor; the columns are discarded when it changes
-	int32_t corner_count; // distinct free vertices of the constraints
-	int32_t corner[CAU_MAX_COLUMNS];
-	double *inverse;    // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by column index, m/N
-	double *answer;     // (CAU_MAX_POINT_ROWS + 1 x CAU_MAX_COLUMNS): S W^T, m/N; the last row is 0
-	double *step;       // (3 x CAU_MAX_COLUMNS): d at the columns' vertices, m
-	double *change;     // (CAU_MAX_COLUMNS x 3): change of the load on the columns' vertices, N
-	double *before;     // (CAU_MAX_CONTACTS x 3): reactions before correction, N
-	int32_t hold_count; // attachments, all solved together (hold.h)
-	int32_t hold_row[CAU_MAX_HELD];
-	double *hold; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over the attachments
+	cau_contact_begun begun;
+	cau_contact_sides sides;
+	cau_contact_columns columns;
+	double *answer; // (CAU_MAX_POINT_ROWS + 1 x CAU_MAX_COLUMNS): S W^T, m/N; the last row is 0
+	double *step;   // (3 x CAU_MAX_COLUMNS): d at the columns' vertices, m
+	double *change; // (CAU_MAX_COLUMNS x 3): change of the load on the columns' vertices, N
+	double *before; // (CAU_MAX_CONTACTS x 3): reactions before correction, N
 	cau_reals *unit, *solution;
-	// Active constraints, solved together (active.h).
-	int32_t active_row[CAU_MAX_ACTIVE];
-	bool active_sticks[CAU_MAX_ACTIVE];
-	double *active; // (CAU_MAX_ACTIVE x CAU_MAX_ACTIVE)
+	cau_contact_holds holds;
+	cau_contact_active active;
 };
 
 // Allocates the arrays in `arena`. `vectors` has the solver's precision. CAU_NO_MEMORY.

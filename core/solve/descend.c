@@ -24,16 +24,16 @@ static void product_part(void *context, int32_t chunk)
 	const product *work = context;
 	const cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	solver->chunk_dot[chunk] =
+	solver->chunks.dot[chunk] =
 		solver->kernels->dot(work->a, work->b, 4 * (int64_t)first, 4 * (int64_t)(last - first));
 }
 
 static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *b)
 {
 	double sum = 0;
-	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
-	for (int32_t chunk = 0; chunk < solver->chunk_count; chunk++)
-		sum += solver->chunk_dot[chunk];
+	cau_pool_run(solver->pool, solver->chunks.count, product_part, &(product){solver, a, b});
+	for (int32_t chunk = 0; chunk < solver->chunks.count; chunk++)
+		sum += solver->chunks.dot[chunk];
 	return sum;
 }
 
@@ -41,17 +41,17 @@ static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *
 typedef struct move {
 	cau_step_solver *solver;
 	double scale;
-	bool leave; // copy position to position_before first
+	bool leave; // copy position to iterate.before first
 } move;
 
-// position = position_before + scale * trial_increment; updates the displacement
+// position = iterate.before + scale * iterate.trial; updates the displacement
 static void move_part(void *context, int32_t chunk)
 {
 	const move *work = context;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
 	if (work->leave)
-		memcpy(solver->position_before + 3 * first, solver->position + 3 * first,
+		memcpy(solver->iterate.before + 3 * first, solver->position + 3 * first,
 		       3 * (size_t)(last - first) * sizeof *solver->position);
 	solver->kernels->vectors->step(solver, work->scale, first, last);
 	solver->kernels->vectors->displace(solver, first, last);
@@ -59,23 +59,23 @@ static void move_part(void *context, int32_t chunk)
 
 static void leave(cau_step_solver *solver)
 {
-	cau_pool_run(solver->pool, solver->chunk_count, move_part, &(move){solver, 1, 1});
+	cau_pool_run(solver->pool, solver->chunks.count, move_part, &(move){solver, 1, 1});
 }
 
 static void move_to(cau_step_solver *solver, double scale)
 {
-	cau_pool_run(solver->pool, solver->chunk_count, move_part, &(move){solver, scale, 0});
+	cau_pool_run(solver->pool, solver->chunks.count, move_part, &(move){solver, scale, 0});
 }
 
 static void scale_trial(cau_step_solver *solver, double scale)
 {
-	solver->kernels->add_scaled(solver->trial_increment, scale - 1, solver->trial_increment,
+	solver->kernels->add_scaled(solver->iterate.trial, scale - 1, solver->iterate.trial,
 	                            4 * (int64_t)solver->tissue->vertex_count);
 }
 
 static void use_plain_step(cau_step_solver *solver)
 {
-	memcpy(solver->trial_increment, solver->history.last_increment,
+	memcpy(solver->iterate.trial, solver->anderson.history.last_increment,
 	       4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes);
 }
 
@@ -85,8 +85,8 @@ static void move_apart(cau_step_solver *solver, double scale)
 {
 	use_plain_step(solver);
 	scale_trial(solver, scale);
-	cau_collide_stand(solver->collide, solver->position_before);
-	cau_solver_keep_apart(solver, solver->position_before);
+	cau_collide_stand(solver->collide, solver->iterate.before);
+	cau_solver_keep_apart(solver, solver->iterate.before);
 	move_to(solver, 1);
 }
 
@@ -116,10 +116,10 @@ static bool may_stand(cau_step_solver *solver, double scale, double value, doubl
 {
 	if (value <= objective + noise)
 		return true;
-	if (solver->conservative || !isfinite(value))
+	if (solver->settings.conservative || !isfinite(value))
 		return false;
-	double start = dot(solver, solver->history.last_gradient, solver->trial_increment);
-	double end = dot(solver, solver->gradient, solver->trial_increment);
+	double start = dot(solver, solver->anderson.history.last_gradient, solver->iterate.trial);
+	double end = dot(solver, solver->iterate.gradient, solver->iterate.trial);
 	return 0.5 * scale * (start + end) <= noise + rounding(solver) * fabs(start);
 }
 
@@ -143,7 +143,7 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 				scale_trial(solver, scale);
 			return true;
 		}
-		solver->backtracks++;
+		solver->result.backtracks++;
 		if (accelerated) {
 			use_plain_step(solver);
 			accelerated = false;
@@ -170,7 +170,7 @@ static bool go_back(cau_step_solver *solver, double *objective)
 	size_t count = (size_t)solver->tissue->vertex_count;
 	if (!solver->position_start)
 		return false;
-	memcpy(solver->position_before, solver->position, 3 * count * sizeof(double));
+	memcpy(solver->iterate.before, solver->position, 3 * count * sizeof(double));
 	for (size_t v = 0; v < count; v++)
 		if (!solver->fixed[v])
 			memcpy(solver->position + 3 * v, solver->position_start + 3 * v, 3 * sizeof(double));
@@ -180,14 +180,14 @@ static bool go_back(cau_step_solver *solver, double *objective)
 		*objective = value;
 		return true;
 	}
-	memcpy(solver->position, solver->position_before, 3 * count * sizeof(double));
+	memcpy(solver->position, solver->iterate.before, 3 * count * sizeof(double));
 	*objective = cau_solver_evaluate(solver);
 	return false;
 }
 
 static double step_norm(cau_step_solver *solver)
 {
-	return sqrt(fmax(-dot(solver, solver->increment, solver->gradient), 0));
+	return sqrt(fmax(-dot(solver, solver->iterate.increment, solver->iterate.gradient), 0));
 }
 
 // True if the last step can be taken without an evaluation. That requires that no step of this tick
@@ -199,17 +199,18 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
-	double most =
-		solver->conservative ? cau_solver_noise(solver, norm * norm) : far_below * objective;
-	bool touches = solver->collide && solver->collide->touching_count;
-	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
+	double most = solver->settings.conservative ? cau_solver_noise(solver, norm * norm)
+	                                            : far_below * objective;
+	bool touches = solver->collide && solver->collide->result.touching_count;
+	return !solver->result.backtracks && !solver->forces.drag_count && !touches &&
+	       norm * norm <= most;
 }
 
 // True if the step was shortened so that tissue does not cross tissue. The length of such a step
 // says nothing about the remaining error.
 static bool is_held_back(const cau_step_solver *solver)
 {
-	return solver->collide && solver->collide->held_back;
+	return solver->collide && solver->collide->filter.held_back;
 }
 
 // True if the active constraints of tools changed in this increment. The contraction of the
@@ -229,8 +230,8 @@ static bool touches_elsewhere(const cau_step_solver *solver)
 // earlier steps then predict nothing.
 static bool forget_touching(const cau_step_solver *solver, uint64_t *touching)
 {
-	bool changed = solver->collide->touching_hash != *touching;
-	*touching = solver->collide->touching_hash;
+	bool changed = solver->collide->result.touching_hash != *touching;
+	*touching = solver->collide->result.touching_hash;
 	return changed;
 }
 
@@ -242,10 +243,10 @@ static void nothing(void *context)
 void cau_solver_begin(cau_step_solver *solver, void (*meanwhile)(void *context), void *context)
 {
 	CAU_ASSERT(meanwhile != NULL, "nothing to do beside the local step of %p", context);
-	solver->iterations_done = solver->backtracks = 0;
-	solver->local_s = solver->contact_s = 0;
-	solver->residual = 0;
-	solver->objective = cau_solver_evaluate_beside(solver, meanwhile, context);
+	solver->result.iterations = solver->result.backtracks = 0;
+	solver->result.local_s = solver->result.contact_s = 0;
+	solver->result.residual = 0;
+	solver->result.objective = cau_solver_evaluate_beside(solver, meanwhile, context);
 }
 
 cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
@@ -306,7 +307,7 @@ static bool mix(cau_step_solver *solver, descent *d, int32_t k, double norm)
 	// Steps of a converging iteration get shorter. If a law has no energy, a bad mix would not show
 	// in the energy. So a step of double length is taken as a sign of a misleading history. The
 	// history is then discarded.
-	if (!solver->conservative && k && norm > 2 * d->last)
+	if (!solver->settings.conservative && k && norm > 2 * d->last)
 		cau_anderson_start(solver);
 	d->last = norm;
 	return cau_anderson_mix(solver, d->steps++);
@@ -320,7 +321,7 @@ static bool spare(cau_step_solver *solver, descent *d, double norm)
 	    (solver->collide && cau_solver_keep_apart(solver, solver->position)))
 		return false;
 	leave(solver);
-	solver->spared = true;
+	solver->result.spared = true;
 	d->objective -= norm * norm / 2;
 	return true;
 }
@@ -330,15 +331,16 @@ static bool advance(cau_step_solver *solver, descent *d, int32_t k, bool acceler
                     cau_status *status, cau_error *error)
 {
 	cau_loose *loose = &solver->loose;
-	int32_t backtracks = solver->backtracks;
+	int32_t backtracks = solver->result.backtracks;
 	cau_anderson_keep(solver);
 	bool taken = take_step(solver, accelerated, -norm * norm, &d->objective);
-	bool back = !k && solver->backtracks > d->backtracks_before && go_back(solver, &d->objective);
+	bool back =
+		!k && solver->result.backtracks > d->backtracks_before && go_back(solver, &d->objective);
 	if (back) {
 		d->steps = 0;
 		cau_accuracy_begin(&solver->accuracy);
 	}
-	bool straight = taken && solver->backtracks == backtracks && !is_held_back(solver);
+	bool straight = taken && solver->result.backtracks == backtracks && !is_held_back(solver);
 	if (d->near && straight && loose->settled)
 		return true;
 	if (loose->region.n && !loose->given_up)
@@ -363,7 +365,7 @@ static bool is_last(const cau_step_solver *solver, int32_t k)
 {
 	int64_t spent =
 		(k + 2) * (int64_t)count_elements(solver->tissue) + CAU_NEWTON_COST * solver->loose.work;
-	if (k + 1 < solver->iterations)
+	if (k + 1 < solver->settings.iterations)
 		return false;
 	return solver->accuracy.wanted == 0 || k + 1 >= CAU_ACCURACY_STEPS || spent > CAU_SOLVER_EFFORT;
 }
@@ -384,9 +386,9 @@ static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *
 	}
 	if (!k)
 		d->first = norm;
-	solver->residual = d->first > 0 ? norm / d->first : 0;
-	solver->iterations_done = k + 1;
-	if (norm == 0 || (k && solver->residual <= solver->tolerance))
+	solver->result.residual = d->first > 0 ? norm / d->first : 0;
+	solver->result.iterations = k + 1;
+	if (norm == 0 || (k && solver->result.residual <= solver->settings.tolerance))
 		return true;
 	bool accelerated = mix(solver, d, k, norm);
 	if (meets_others(solver))
@@ -399,29 +401,30 @@ static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *
 
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
-	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
-	descent d = {.objective = solver->objective, .backtracks_before = solver->backtracks};
-	d.touching = solver->collide ? solver->collide->touching_hash : 0;
-	solver->spared = false;
+	CAU_ASSERT(solver->settings.iterations > 0, "%d iterations", solver->settings.iterations);
+	descent d = {.objective = solver->result.objective,
+	             .backtracks_before = solver->result.backtracks};
+	d.touching = solver->collide ? solver->collide->result.touching_hash : 0;
+	solver->result.spared = false;
 	forget_increments(solver);
 	cau_status status = cau_loose_choose(solver, error);
 	if (status)
 		return status;
 	// If the guess moves tissue into tissue, the energy may exceed the energy at the tick's start.
-	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
+	if (solver->collide && solver->collide->result.energy_j > solver->collide->start_energy_j)
 		go_back(solver, &d.objective);
 	for (int32_t k = 0; !iterate(solver, &d, k, &status, error) && !is_last(solver, k);)
 		k++;
 	if (status)
 		return status;
-	CAU_ASSERT(solver->backtracks - d.backtracks_before <=
-	               solver->iterations_done * (CAU_MAX_BACKTRACKS + 1),
-	           "%d backtracks in %d iterations", solver->backtracks - d.backtracks_before,
-	           solver->iterations_done);
+	CAU_ASSERT(solver->result.backtracks - d.backtracks_before <=
+	               solver->result.iterations * (CAU_MAX_BACKTRACKS + 1),
+	           "%d backtracks in %d iterations", solver->result.backtracks - d.backtracks_before,
+	           solver->result.iterations);
 	cau_accuracy_learn(&solver->accuracy);
 	if (solver->accuracy.wanted > 0)
 		solver->accuracy.error = fmax(solver->accuracy.error, solver->loose.left);
-	solver->objective = d.objective;
+	solver->result.objective = d.objective;
 	cau_solver_displace(solver);
 	return CAU_OK;
 }

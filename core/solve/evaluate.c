@@ -15,8 +15,8 @@ static void local_part(void *context, int32_t index)
 {
 	cau_step_solver *solver = context;
 	CAU_ASSERT_INDEX(index, solver->slots.work_count);
-	solver->kernels->local(&solver->elements, &solver->slots.work[index], solver->displacement,
-	                       solver->diagonal);
+	solver->kernels->local(&solver->elements, &solver->slots.work[index],
+	                       solver->iterate.displacement, solver->settings.diagonal);
 }
 
 static void vertex_part(void *context, int32_t chunk)
@@ -24,15 +24,15 @@ static void vertex_part(void *context, int32_t chunk)
 	cau_step_solver *solver = context;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
 	solver->kernels->sum(&solver->elements, &solver->slots.incidence, first, last,
-	                     solver->gradient);
-	solver->chunk_energy[chunk] = solver->kernels->vectors->add_inertia(solver, first, last);
+	                     solver->iterate.gradient);
+	solver->chunks.energy[chunk] = solver->kernels->vectors->add_inertia(solver, first, last);
 }
 
 static double add_drag(cau_step_solver *solver)
 {
 	double energy = 0;
-	for (int32_t k = 0; k < solver->drag_count; k++) {
-		const cau_drag *drag = &solver->drag[k];
+	for (int32_t k = 0; k < solver->forces.drag_count; k++) {
+		const cau_drag *drag = &solver->forces.drag[k];
 		CAU_ASSERT_INDEX(drag->vertex, solver->tissue->vertex_count);
 		CAU_ASSERT(drag->coefficient >= 0, "a drag of %g N/m", drag->coefficient);
 		if (solver->fixed[drag->vertex])
@@ -43,7 +43,7 @@ static double add_drag(cau_step_solver *solver)
 			energy += drag->coefficient * away * away / 2;
 			pull[c] = drag->coefficient * away;
 		}
-		solver->kernels->vectors->add(solver->gradient, drag->vertex, pull);
+		solver->kernels->vectors->add(solver->iterate.gradient, drag->vertex, pull);
 	}
 	return energy;
 }
@@ -52,11 +52,12 @@ static double add_collisions(cau_step_solver *solver)
 {
 	cau_collide *collide = solver->collide;
 	double energy = cau_collide_evaluate(collide, solver->pool, solver->position);
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		int32_t v = collide->loaded[k];
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		int32_t v = collide->load.vertex[k];
 		CAU_ASSERT_INDEX(v, solver->tissue->vertex_count);
 		if (!solver->fixed[v])
-			solver->kernels->vectors->add(solver->gradient, v, collide->gradient + 3 * (size_t)v);
+			solver->kernels->vectors->add(solver->iterate.gradient, v,
+			                              collide->load.gradient + 3 * (size_t)v);
 	}
 	return energy;
 }
@@ -100,7 +101,7 @@ double cau_solver_noise(const cau_step_solver *solver, double promise)
 	double of_sum = solver->kernels->vectors->rounding * elastic;
 	// Rounding of a single residual, which is less than that of a sum of thousands of terms.
 	double one_term = 0.06 * solver->kernels->vectors->rounding;
-	double of_residuals = one_term * sqrt(2 * solver->stiffness_j * elastic);
+	double of_residuals = one_term * sqrt(2 * solver->settings.stiffness_j * elastic);
 	// if tissue touches, of_sum is the limit: with a larger one, steps might drive a fold into
 	// itself
 	if (solver->collide)
@@ -114,7 +115,7 @@ static void strain_part(void *context, int32_t index)
 	const cau_step_solver *solver = work->solver;
 	CAU_ASSERT_INDEX(index, solver->slots.work_count);
 	solver->kernels->take_strain(&solver->elements, &solver->slots.work[index],
-	                             solver->displacement, work->share);
+	                             solver->iterate.displacement, work->share);
 }
 
 void cau_solver_take_strain(cau_step_solver *solver, double share)
@@ -129,7 +130,7 @@ void cau_solver_take_strain(cau_step_solver *solver, double share)
 
 void cau_solver_displace(cau_step_solver *solver)
 {
-	cau_pool_run(solver->pool, solver->chunk_count, displacement_part, solver);
+	cau_pool_run(solver->pool, solver->chunks.count, displacement_part, solver);
 }
 
 double cau_solver_evaluate(cau_step_solver *solver)
@@ -159,15 +160,15 @@ static void shared_local_part(void *context, int32_t index)
 static double gather(cau_step_solver *solver, double start)
 {
 	// sums over each vertex's records, plus inertia and drag
-	cau_pool_run(solver->pool, solver->chunk_count, vertex_part, solver);
+	cau_pool_run(solver->pool, solver->chunks.count, vertex_part, solver);
 	double energy = energy_of_elements(solver);
-	for (int32_t k = 0; k < solver->chunk_count; k++)
-		energy += solver->chunk_energy[k];
+	for (int32_t k = 0; k < solver->chunks.count; k++)
+		energy += solver->chunks.energy[k];
 	energy += add_drag(solver);
 	if (solver->collide)
 		energy += add_collisions(solver);
 	if (solver->now_s)
-		solver->local_s += solver->now_s() - start;
+		solver->result.local_s += solver->now_s() - start;
 	return energy;
 }
 

@@ -39,7 +39,7 @@ static void find_tilt(const cau_contact_set *set, const cau_contact_row *row,
 				int32_t a = row->column[m], b = row->column[l];
 				if (a >= 0 && b >= 0)
 					tilt[k][l] += scale * cau_dot(side[k], side[m]) *
-					              set->inverse[(size_t)a * CAU_MAX_COLUMNS + (size_t)b];
+					              set->columns.inverse[(size_t)a * CAU_MAX_COLUMNS + (size_t)b];
 			}
 		}
 }

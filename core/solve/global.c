@@ -7,12 +7,12 @@ void cau_solver_global(cau_step_solver *solver)
 {
 	if (solver->contact)
 		cau_contact_load(solver->contact, solver);
-	cau_solver_apply_inverse(solver, solver->gradient, solver->increment, -1);
-	if (solver->collide && solver->collide->touching_count)
+	cau_solver_apply_inverse(solver, solver->iterate.gradient, solver->iterate.increment, -1);
+	if (solver->collide && solver->collide->result.touching_count)
 		cau_solver_yield(solver);
 	double start = solver->now_s ? solver->now_s() : 0;
 	if (solver->contact)
 		cau_contact_correct(solver->contact, solver);
 	if (solver->now_s)
-		solver->contact_s += solver->now_s() - start;
+		solver->result.contact_s += solver->now_s() - start;
 }

@@ -10,18 +10,18 @@ static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact
 	return set->tool[row->tool].def;
 }
 
-// Computes the lower triangle, by rows, over hold_row. Returns false if the matrix is not positive
+// Computes the lower triangle, by rows, over holds.row. Returns false if the matrix is not positive
 // definite.
 static bool factor(cau_contact_set *set)
 {
-	for (int32_t i = 0; i < set->hold_count; i++) {
-		double *at = set->hold + (size_t)i * CAU_MAX_HELD;
+	for (int32_t i = 0; i < set->holds.count; i++) {
+		double *at = set->holds.factor + (size_t)i * CAU_MAX_HELD;
 		for (int32_t j = 0; j <= i; j++) {
-			const double *other = set->hold + (size_t)j * CAU_MAX_HELD;
-			double sum =
-				cau_contact_between(set, &set->row[set->hold_row[i]], &set->row[set->hold_row[j]]);
+			const double *other = set->holds.factor + (size_t)j * CAU_MAX_HELD;
+			double sum = cau_contact_between(set, &set->row[set->holds.row[i]],
+			                                 &set->row[set->holds.row[j]]);
 			if (i == j)
-				sum += 1 / tool_of(set, &set->row[set->hold_row[i]])->grasp_stiffness_n_m;
+				sum += 1 / tool_of(set, &set->row[set->holds.row[i]])->grasp_stiffness_n_m;
 			for (int32_t k = 0; k < j; k++)
 				sum -= at[k] * other[k];
 			if (i == j && !(sum > 0))
@@ -34,30 +34,30 @@ static bool factor(cau_contact_set *set)
 
 void cau_hold_prepare(cau_contact_set *set)
 {
-	set->hold_count = 0;
+	set->holds.count = 0;
 	for (int32_t i = 0; i < set->row_count; i++)
-		if (set->row[i].attached && set->hold_count < CAU_MAX_HELD)
-			set->hold_row[set->hold_count++] = i;
+		if (set->row[i].attached && set->holds.count < CAU_MAX_HELD)
+			set->holds.row[set->holds.count++] = i;
 	if (!factor(set))
 		// lagging columns can make the matrix indefinite; cau_hold_solve then does nothing
-		set->hold_count = 0;
+		set->holds.count = 0;
 }
 
-// Solves with the factor for one coordinate of the attachments. `x` (hold_count) is the right-hand
+// Solves with the factor for one coordinate of the attachments. `x` (holds.count) is the right-hand
 // side on entry and the solution on return.
 static void substitute(const cau_contact_set *set, double *x)
 {
-	int32_t n = set->hold_count;
+	int32_t n = set->holds.count;
 	for (int32_t i = 0; i < n; i++) {
-		const double *at = set->hold + (size_t)i * CAU_MAX_HELD;
+		const double *at = set->holds.factor + (size_t)i * CAU_MAX_HELD;
 		for (int32_t k = 0; k < i; k++)
 			x[i] -= at[k] * x[k];
 		x[i] /= at[i];
 	}
 	for (int32_t i = n - 1; i >= 0; i--) {
-		x[i] /= set->hold[(size_t)i * CAU_MAX_HELD + (size_t)i];
+		x[i] /= set->holds.factor[(size_t)i * CAU_MAX_HELD + (size_t)i];
 		for (int32_t k = 0; k < i; k++)
-			x[k] -= set->hold[(size_t)i * CAU_MAX_HELD + (size_t)k] * x[i];
+			x[k] -= set->holds.factor[(size_t)i * CAU_MAX_HELD + (size_t)k] * x[i];
 	}
 }
 
@@ -66,8 +66,8 @@ static void substitute(const cau_contact_set *set, double *x)
 static void changes(const cau_contact_set *set, const cau_step_solver *solver,
                     double dr[3][CAU_MAX_HELD])
 {
-	for (int32_t i = 0; i < set->hold_count; i++) {
-		int32_t at = set->hold_row[i];
+	for (int32_t i = 0; i < set->holds.count; i++) {
+		int32_t at = set->holds.row[i];
 		const cau_contact_row *row = &set->row[at];
 		CAU_ASSERT(row->attached, "row %d is solved as held and is not", at);
 		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m, step[3] = {0};
@@ -90,8 +90,8 @@ static void changes(const cau_contact_set *set, const cau_step_solver *solver,
 
 static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_HELD])
 {
-	for (int32_t i = 0; i < set->hold_count; i++) {
-		const cau_contact_row *row = &set->row[set->hold_row[i]];
+	for (int32_t i = 0; i < set->holds.count; i++) {
+		const cau_contact_row *row = &set->row[set->holds.row[i]];
 		cau_vec3 by = {dr[0][i], dr[1][i], dr[2][i]};
 		if (row->slipping ||
 		    cau_length(cau_add(cau_vec3_of(row->reaction), by)) > cau_contact_slips_at(set, row))
@@ -102,18 +102,18 @@ static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_HELD])
 
 void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 {
-	CAU_ASSERT_INDEX(set->hold_count, set->row_count + 1);
+	CAU_ASSERT_INDEX(set->holds.count, set->row_count + 1);
 	double dr[3][CAU_MAX_HELD];
-	if (!set->hold_count)
+	if (!set->holds.count)
 		return;
 	changes(set, solver, dr);
 	if (would_slip(set, dr))
 		return;
-	for (int32_t i = 0; i < set->hold_count; i++)
+	for (int32_t i = 0; i < set->holds.count; i++)
 		for (int c = 0; c < 3; c++)
-			set->row[set->hold_row[i]].reaction[c] += dr[c][i];
-	for (int32_t i = 0; i < set->hold_count; i++) {
-		const cau_contact_row *row = &set->row[set->hold_row[i]];
+			set->row[set->holds.row[i]].reaction[c] += dr[c][i];
+	for (int32_t i = 0; i < set->holds.count; i++) {
+		const cau_contact_row *row = &set->row[set->holds.row[i]];
 		cau_vec3 by = {dr[0][i], dr[1][i], dr[2][i]};
 		cau_contact_move(set, row, by);
 		cau_coupling_take(&set->tool[row->tool], by);

@@ -83,7 +83,7 @@ void cau_solver_apply_inverse(cau_step_solver *solver, const cau_reals *in, cau_
 {
 	CAU_ASSERT(sign == 1 || sign == -1, "A^-1 times %g", sign);
 	CAU_ASSERT(in != out, "%p is read and written at once", (const void *)in);
-	if (solver->diagonal) {
+	if (solver->settings.diagonal) {
 		solver->kernels->vectors->divide(solver, in, out, sign);
 		return;
 	}

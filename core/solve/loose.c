@@ -95,7 +95,7 @@ static bool make_loose(cau_step_solver *solver)
 static void choose_slack(const cau_step_solver *solver, int32_t share, bool ranges, uint8_t *chosen)
 {
 	const cau_local_work *work = &solver->slots.work[share];
-	bool all = solver->newton_chosen, ranged = ranges && solver->loose.ranged[share];
+	bool all = solver->settings.newton_chosen, ranged = ranges && solver->loose.ranged[share];
 	if (!all && !ranged && !solver->elements.slack[work->number])
 		return;
 	for (int32_t slot = work->first; slot < work->last; slot++) {
@@ -139,9 +139,9 @@ enum { RINGS = 2 };
 static void leave_out(const cau_step_solver *solver, uint8_t *chosen)
 {
 	const cau_contact_set *contact = solver->contact;
-	for (int32_t i = 0; contact && i < contact->corner_count; i++)
-		chosen[contact->corner[i]] = LEFT_OUT;
-	for (int ring = 0; contact && contact->corner_count && ring < RINGS; ring++)
+	for (int32_t i = 0; contact && i < contact->columns.corner_count; i++)
+		chosen[contact->columns.corner[i]] = LEFT_OUT;
+	for (int ring = 0; contact && contact->columns.corner_count && ring < RINGS; ring++)
 		leave_out_ring(solver, chosen);
 	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
 		chosen[v] = chosen[v] == CHOSEN && !solver->fixed[v];
@@ -168,7 +168,7 @@ cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error)
 	loose->given_up = loose->moved = false;
 	loose->left = 0;
 	loose->work = 0;
-	if (solver->diagonal || solver->none_loose || !solver->tissue->triangle_count) {
+	if (solver->settings.diagonal || solver->none_loose || !solver->tissue->triangle_count) {
 		loose->region.n = 0;
 		return CAU_OK;
 	}
@@ -177,19 +177,19 @@ cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
 	}
 	int64_t count = choose(solver, true);
-	if (count > CAU_NEWTON_ROWS && !solver->newton_chosen)
+	if (count > CAU_NEWTON_ROWS && !solver->settings.newton_chosen)
 		count = choose(solver, false);
-	if (count > CAU_NEWTON_ROWS && !solver->newton_chosen)
+	if (count > CAU_NEWTON_ROWS && !solver->settings.newton_chosen)
 		count = 0;
 	if (!count) {
 		loose->region.n = 0;
 		return CAU_OK;
 	}
 	loose->settled = false;
-	if (loose->region.n && loose->epoch == solver->factor_epoch &&
+	if (loose->region.n && loose->epoch == solver->age.epoch &&
 	    !memcmp(loose->region.chosen, loose->before, n))
 		return CAU_OK;
-	loose->epoch = solver->factor_epoch;
+	loose->epoch = solver->age.epoch;
 	memcpy(loose->before, loose->region.chosen, n);
 	loose->region.n = 0;
 	if (!cau_newton_create(&loose->region, solver, NULL))

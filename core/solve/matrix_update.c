@@ -52,7 +52,7 @@ cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *
 	if (missing || !update->waiting || !update->operation)
 		return no_memory(error);
 	copy_alive(update->canonical, alive, tissue);
-	if (solver->diagonal)
+	if (solver->settings.diagonal)
 		return CAU_OK;
 	update->least_pivot_bound = least_mass_pivot(solver);
 	update->touched = cau_arena_array(arena, (size_t)solver->sweep.supernode_count, 1);
@@ -175,7 +175,7 @@ double cau_matrix_update_pack(cau_matrix_update *update)
 	const cau_step_solver *solver = update->solver;
 	double least =
 		cau_sweep_pack_touched(&solver->sweep, solver->factor, update->touched, solver->pool);
-	update->solver->factor_version++;
+	update->solver->age.version++;
 	return least;
 }
 
@@ -268,7 +268,7 @@ void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
 {
 	CAU_ASSERT(!update->making, "a factor is being made already, for tick %llu",
 	           (unsigned long long)update->swap_tick);
-	CAU_ASSERT(!update->solver->diagonal && update->background,
+	CAU_ASSERT(!update->solver->settings.diagonal && update->background,
 	           "the diagonal system has no factor to make, for tick %llu",
 	           (unsigned long long)swap_tick);
 	cau_background_wait(update->background); // the thread may still release old panels
@@ -292,7 +292,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 		cau_sweep_swap_panels(&solver->sweep, &update->next_panels);
 	else
 		cau_sweep_pack(&solver->sweep, solver->factor);
-	solver->factor_version++;
+	solver->age.version++;
 	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++) {
 		uint8_t *canonical = update->canonical[kind];
 		update->canonical[kind] = update->next_canonical[kind];
@@ -323,7 +323,7 @@ static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
 	if (!update->waiting_count)
 		return;
 	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->inertia_s);
-	solver->factor_version++;
+	solver->age.version++;
 	update->waiting_count = 0;
 }
 
@@ -347,7 +347,7 @@ cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *a
                                    cau_error *error)
 {
 	update->updates_due = 0;
-	if (update->solver->diagonal) {
+	if (update->solver->settings.diagonal) {
 		advance_diagonal(update, alive);
 		return CAU_OK;
 	}
@@ -383,9 +383,9 @@ cau_status cau_matrix_update_refactor(cau_matrix_update *update, const cau_alive
 	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->inertia_s);
 	update->waiting_count = update->operation_count = update->group_count = 0;
 	copy_alive(update->canonical, alive, solver->tissue);
-	solver->factor_version++;
-	solver->factor_epoch++;
-	if (solver->diagonal)
+	solver->age.version++;
+	solver->age.epoch++;
+	if (solver->settings.diagonal)
 		return CAU_OK;
 	cau_system_assemble(&solver->system, solver->tissue, alive, solver->inertia_s,
 	                    solver->system.matrix.value);

@@ -80,7 +80,7 @@ static void spread(const cau_newton *newton, cau_step_solver *solver, double sca
 		for (int c = 0; c < 3; c++)
 			load[c] =
 				scale * (by->block[c] * d[0] + by->block[3 + c] * d[1] + by->block[6 + c] * d[2]);
-		solver->kernels->vectors->add(solver->gradient, by->vertex, load);
+		solver->kernels->vectors->add(solver->iterate.gradient, by->vertex, load);
 	}
 }
 
@@ -148,7 +148,7 @@ static void keep_within(const cau_step_solver *solver, double *way, int32_t vert
 	if (!solver->collide)
 		return;
 	const double *x = solver->position + 3 * (int64_t)vertex;
-	const double *from = solver->position_before + 3 * (int64_t)vertex;
+	const double *from = solver->iterate.before + 3 * (int64_t)vertex;
 	for (int c = 0; c < 3; c++)
 		whole[c] = x[c] + way[c] - from[c];
 	double share = solver->loose.way_m / sqrt(length2(whole));
@@ -181,7 +181,7 @@ static outcome step(cau_newton *newton, cau_step_solver *solver)
 // True if this step of the session has used up its limit of work for Newton's method.
 static bool is_spent(const cau_step_solver *solver)
 {
-	return !solver->newton_chosen && solver->loose.work >= CAU_NEWTON_WORK;
+	return !solver->settings.newton_chosen && solver->loose.work >= CAU_NEWTON_WORK;
 }
 
 // Chooses the vertices that the last step of Newton's method moved.
@@ -283,7 +283,7 @@ static outcome settle(cau_step_solver *solver)
 // Restores all positions. R is left to A for the rest of the step.
 static void give_up(cau_step_solver *solver, double *objective)
 {
-	memcpy(solver->position, solver->position_before,
+	memcpy(solver->position, solver->iterate.before,
 	       3 * (size_t)solver->tissue->vertex_count * sizeof(double));
 	solver->loose.given_up = true;
 	*objective = cau_solver_evaluate(solver);
@@ -294,42 +294,42 @@ static bool has_moved(const cau_step_solver *solver)
 	const cau_newton *region = &solver->loose.region;
 	for (int32_t i = 0; i < region->n; i++)
 		for (size_t at = 3 * (size_t)region->vertex[i], c = at; c < at + 3; c++)
-			if (solver->position[c] != solver->position_before[c])
+			if (solver->position[c] != solver->iterate.before[c])
 				return true;
 	return false;
 }
 
-// Limits R's motion from position_before so that it crosses no other tissue. Keeps trial_increment.
+// Limits R's motion from iterate.before so that it crosses no other tissue. Keeps iterate.trial.
 // Returns true if the motion was shortened.
 static bool keep_apart(cau_step_solver *solver)
 {
 	const cau_newton *region = &solver->loose.region;
 	const cau_vectors *vectors = solver->kernels->vectors;
-	cau_reals *way = solver->trial_increment;
-	solver->trial_increment = solver->yield.residual;
+	cau_reals *way = solver->iterate.trial;
+	solver->iterate.trial = solver->yield.residual;
 	solver->yield.residual = way;
 	size_t n = (size_t)solver->tissue->vertex_count;
-	memset(solver->trial_increment, 0, 4 * n * vectors->real_bytes);
+	memset(solver->iterate.trial, 0, 4 * n * vectors->real_bytes);
 	for (int32_t i = 0; i < region->n; i++) {
 		double of[3];
 		for (size_t c = 0; c < 3; c++) {
 			size_t at = 3 * (size_t)region->vertex[i] + c;
-			of[c] = solver->position[at] - solver->position_before[at];
+			of[c] = solver->position[at] - solver->iterate.before[at];
 		}
-		vectors->add(solver->trial_increment, region->vertex[i], of);
+		vectors->add(solver->iterate.trial, region->vertex[i], of);
 	}
-	bool held_back = solver->collide->held_back;
-	cau_collide_stand(solver->collide, solver->position_before);
-	bool stopped = cau_solver_keep_apart(solver, solver->position_before);
-	solver->collide->held_back = held_back;
+	bool held_back = solver->collide->filter.held_back;
+	cau_collide_stand(solver->collide, solver->iterate.before);
+	bool stopped = cau_solver_keep_apart(solver, solver->iterate.before);
+	solver->collide->filter.held_back = held_back;
 	for (size_t v = 0; v < n && stopped; v++) {
 		double of[3];
-		vectors->read(solver->trial_increment, (int32_t)v, of);
+		vectors->read(solver->iterate.trial, (int32_t)v, of);
 		for (size_t c = 0; c < 3; c++)
-			solver->position[3 * v + c] = solver->position_before[3 * v + c] + of[c];
+			solver->position[3 * v + c] = solver->iterate.before[3 * v + c] + of[c];
 	}
-	way = solver->trial_increment;
-	solver->trial_increment = solver->yield.residual;
+	way = solver->iterate.trial;
+	solver->iterate.trial = solver->yield.residual;
 	solver->yield.residual = way;
 	return stopped;
 }
@@ -339,7 +339,7 @@ cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_erro
 	cau_loose *loose = &solver->loose;
 	double before = *objective;
 	CAU_ASSERT(loose->region.n > 0, "%d rows to settle", loose->region.n);
-	memcpy(solver->position_before, solver->position,
+	memcpy(solver->iterate.before, solver->position,
 	       3 * (size_t)solver->tissue->vertex_count * sizeof(double));
 	outcome last = settle(solver);
 	if (last == NO_MEMORY)
@@ -365,11 +365,12 @@ static void keep_momentum(cau_step_solver *solver)
 {
 	const cau_tissue *tissue = solver->tissue;
 	double mass = 0, sum[3] = {0}, d[3];
-	if (solver->system.row_count < tissue->vertex_count || solver->drag_count || solver->contact)
+	if (solver->system.row_count < tissue->vertex_count || solver->forces.drag_count ||
+	    solver->contact)
 		return; // something holds the tissue
 	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		double m = solver->fixed[v] ? 0 : tissue->mass[v];
-		solver->kernels->vectors->read(solver->increment, v, d);
+		solver->kernels->vectors->read(solver->iterate.increment, v, d);
 		mass += m;
 		for (int c = 0; c < 3; c++)
 			sum[c] += m * (solver->position[3 * v + c] + d[c] - solver->predicted[3 * v + c]);
@@ -378,7 +379,7 @@ static void keep_momentum(cau_step_solver *solver)
 		sum[c] /= -mass;
 	for (int32_t v = 0; v < tissue->vertex_count; v++)
 		if (!solver->fixed[v])
-			solver->kernels->vectors->add(solver->increment, v, sum);
+			solver->kernels->vectors->add(solver->iterate.increment, v, sum);
 }
 
 void cau_loose_increment(cau_step_solver *solver)
@@ -395,13 +396,13 @@ void cau_loose_increment(cau_step_solver *solver)
 	solve(region, solver, NULL);
 	double *e = region->from;
 	memcpy(e, region->field, 4 * (size_t)region->n * sizeof *e);
-	clear_rows(region, solver, solver->gradient);
+	clear_rows(region, solver, solver->iterate.gradient);
 	spread(region, solver, 1, e);
 	cau_solver_global(solver);
 	spread(region, solver, -1, e);
-	add_rows(region, solver, solver->gradient, region->gradient);
-	solve(region, solver, solver->increment);
-	clear_rows(region, solver, solver->increment);
-	add_rows(region, solver, solver->increment, region->field);
+	add_rows(region, solver, solver->iterate.gradient, region->gradient);
+	solve(region, solver, solver->iterate.increment);
+	clear_rows(region, solver, solver->iterate.increment);
+	add_rows(region, solver, solver->iterate.increment, region->field);
 	keep_momentum(solver);
 }

@@ -60,6 +60,11 @@ typedef struct cau_newton_coupling {
 	double block[9]; // N/m, by rows
 } cau_newton_coupling;
 
+// Capacities of the arrays.
+typedef struct cau_newton_capacity {
+	int32_t rows, blocks, elements, couplings, pairs, grips;
+} cau_newton_capacity;
+
 // H_RR = L D L^T in blocks. Each vertex of R has one row of blocks, in the order of the factor of
 // A. Before the factorisation `block` and `pivot` hold H_RR.
 typedef struct cau_newton {
@@ -77,12 +82,12 @@ typedef struct cau_newton {
 	double *gradient; // (n x 4): gradient of E, N
 	double *from;     // (n x 4): positions before a step, m; or a solution that is kept
 	int32_t *next, *head, *at; // (n): lists of the columns that have a block in a row
-	int32_t row_room, block_room, element_room, coupling_room;
+	cau_newton_capacity capacity;
 	int32_t element_count, coupling_count;
 	cau_newton_element *element; // (element_count): elements with a vertex in R
 	cau_newton_coupling *coupling;
 	int32_t *pair, *grip; // indices of the pairs and grips of tissue contact with a vertex in R
-	int32_t pair_count, pair_room, grip_count, grip_room;
+	int32_t pair_count, grip_count;
 	double *room;    // (n): longest motion of each vertex in one step, m; INFINITY: not in contact
 	double energy;   // J: R's share of E: inertia, drag, and all elements with a vertex in R
 	double negative; // factor on the absolute value that replaces a negative eigenvalue: 1 or 0

@@ -352,7 +352,7 @@ static void add_force(cau_newton *newton, int32_t vertex, double scale, cau_vec3
 // Adds the block m, or its transpose, between a row and a free vertex outside the region.
 static void couple(cau_newton *newton, int32_t row, int32_t vertex, const matrix3 *m, bool turned)
 {
-	CAU_ASSERT_INDEX(newton->coupling_count, newton->coupling_room);
+	CAU_ASSERT_INDEX(newton->coupling_count, newton->capacity.couplings);
 	cau_newton_coupling *to = &newton->coupling[newton->coupling_count++];
 	*to = (cau_newton_coupling){.row = row, .vertex = vertex};
 	for (int r = 0; r < 3; r++)
@@ -525,9 +525,9 @@ static void evaluate(cau_newton *newton, const cau_step_solver *solver, bool hes
 		add_spring(newton, solver, newton->vertex[i],
 		           scale * solver->tissue->mass[newton->vertex[i]],
 		           solver->predicted + 3 * (int64_t)newton->vertex[i]);
-	for (int32_t k = 0; k < solver->drag_count; k++)
-		add_spring(newton, solver, solver->drag[k].vertex, solver->drag[k].coefficient,
-		           solver->drag[k].target);
+	for (int32_t k = 0; k < solver->forces.drag_count; k++)
+		add_spring(newton, solver, solver->forces.drag[k].vertex,
+		           solver->forces.drag[k].coefficient, solver->forces.drag[k].target);
 	for (int32_t k = 0; k < newton->element_count; k++) {
 		const cau_newton_element *element = &newton->element[k];
 		const cau_local_work *work = &solver->slots.work[element->work];
@@ -547,10 +547,10 @@ enum { MOST_COUPLED = 4 };
 bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver)
 {
 	int32_t most = MOST_COUPLED * newton->element_count;
-	if (most > newton->coupling_room) {
+	if (most > newton->capacity.couplings) {
 		free(newton->coupling);
 		newton->coupling = malloc(2 * (size_t)most * sizeof *newton->coupling);
-		newton->coupling_room = newton->coupling ? 2 * most : 0;
+		newton->capacity.couplings = newton->coupling ? 2 * most : 0;
 		if (!newton->coupling)
 			return false;
 	}

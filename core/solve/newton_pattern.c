@@ -25,9 +25,9 @@ static bool make_rows(cau_newton *newton, int32_t n)
 {
 	const size_t block = CAU_BLOCK * sizeof(double), four = 4 * sizeof(double);
 	size_t count = (size_t)n;
-	if (n <= newton->row_room)
+	if (n <= newton->capacity.rows)
 		return true;
-	newton->row_room = 2 * n;
+	newton->capacity.rows = 2 * n;
 	return make_room(&newton->vertex, count, sizeof(int32_t)) &&
 	       make_room(&newton->first, count + 1, sizeof(int32_t)) &&
 	       make_room(&newton->pivot, count, block) && make_room(&newton->inverse, count, block) &&
@@ -41,13 +41,13 @@ static bool make_rows(cau_newton *newton, int32_t n)
 
 static bool make_blocks(cau_newton *newton, int32_t count)
 {
-	if (count <= newton->block_room)
+	if (count <= newton->capacity.blocks)
 		return true;
 	int32_t room = 2 * count, *row = realloc(newton->row, (size_t)room * sizeof *row);
 	if (!row)
 		return false;
 	newton->row = row;
-	newton->block_room = room;
+	newton->capacity.blocks = room;
 	return make_room(&newton->block, (size_t)count, CAU_BLOCK * sizeof(double));
 }
 
@@ -103,13 +103,13 @@ static bool place_vertices(cau_newton *newton, const cau_step_solver *solver,
 
 static bool add_element(cau_newton *newton, cau_newton_element element)
 {
-	if (newton->element_count == newton->element_room) {
-		int32_t room = 2 * newton->element_room + 256;
+	if (newton->element_count == newton->capacity.elements) {
+		int32_t room = 2 * newton->capacity.elements + 256;
 		cau_newton_element *more = realloc(newton->element, (size_t)room * sizeof *more);
 		if (!more)
 			return false;
 		newton->element = more;
-		newton->element_room = room;
+		newton->capacity.elements = room;
 	}
 	newton->element[newton->element_count++] = element;
 	return true;

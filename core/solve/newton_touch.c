@@ -37,8 +37,8 @@ static bool find_pairs(cau_newton *newton, const cau_collide *collide, double wa
 	for (int32_t k = 0; k < collide->pair_count; k++) {
 		const cau_collide_pair *pair = &collide->pair[k];
 		if (has_row(newton, pair->vertex) && !cau_collide_is_exempt(collide, pair) &&
-		    !cau_collide_is_far(collide, k, collide->away_m + way_m, pair->thickness_m) &&
-		    !add_to(&newton->pair, &newton->pair_count, &newton->pair_room, k))
+		    !cau_collide_is_far(collide, k, collide->seen.away_m + way_m, pair->thickness_m) &&
+		    !add_to(&newton->pair, &newton->pair_count, &newton->capacity.pairs, k))
 			return false;
 	}
 	return true;
@@ -48,7 +48,7 @@ static bool find_grips(cau_newton *newton, const cau_collide *collide)
 {
 	for (int32_t k = 0; k < collide->grip_count; k++)
 		if (has_row(newton, collide->grip[k].vertex) &&
-		    !add_to(&newton->grip, &newton->grip_count, &newton->grip_room, k))
+		    !add_to(&newton->grip, &newton->grip_count, &newton->capacity.grips, k))
 			return false;
 	return true;
 }
@@ -64,11 +64,11 @@ bool cau_newton_find_touching(cau_newton *newton, const cau_step_solver *solver,
 		return find_pairs(newton, collide, solver->loose.way_m) && find_grips(newton, collide);
 	for (int32_t k = 0; k < from->pair_count; k++)
 		if (has_row(newton, collide->pair[from->pair[k]].vertex) &&
-		    !add_to(&newton->pair, &newton->pair_count, &newton->pair_room, from->pair[k]))
+		    !add_to(&newton->pair, &newton->pair_count, &newton->capacity.pairs, from->pair[k]))
 			return false;
 	for (int32_t k = 0; k < from->grip_count; k++)
 		if (has_row(newton, collide->grip[from->grip[k]].vertex) &&
-		    !add_to(&newton->grip, &newton->grip_count, &newton->grip_room, from->grip[k]))
+		    !add_to(&newton->grip, &newton->grip_count, &newton->capacity.grips, from->grip[k]))
 			return false;
 	return true;
 }

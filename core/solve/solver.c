@@ -42,10 +42,10 @@ bool cau_solver_is_conservative(const cau_tissue *tissue, bool diagonal)
 static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, cau_error *error)
 {
 	size_t n = (size_t)solver->tissue->vertex_count, size = solver->kernels->vectors->real_bytes;
-	cau_history *history = &solver->history;
-	cau_reals **vectors[] = {&solver->displacement,    &solver->gradient,
-	                         &solver->increment,       &solver->trial_increment,
-	                         &history->last_increment, &history->last_gradient};
+	cau_history *history = &solver->anderson.history;
+	cau_reals **vectors[] = {&solver->iterate.displacement, &solver->iterate.gradient,
+	                         &solver->iterate.increment,    &solver->iterate.trial,
+	                         &history->last_increment,      &history->last_gradient};
 	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
 		if (!(*vectors[i] = cau_arena_array(arena, 4 * n, size)))
 			return no_memory(error);
@@ -55,13 +55,13 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 		if (!history->df[j] || !history->h[j])
 			return no_memory(error);
 	}
-	history->step = solver->trial_increment;
-	solver->chunk_count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
-	solver->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));
-	solver->chunk_dot = cau_arena_array(
-		arena, (size_t)solver->chunk_count * 2 * CAU_ANDERSON_WINDOW, sizeof(double));
-	solver->position_before = cau_arena_array(arena, 3 * n, sizeof(double));
-	if (!solver->chunk_energy || !solver->chunk_dot || !solver->position_before)
+	history->step = solver->iterate.trial;
+	solver->chunks.count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
+	solver->chunks.energy = cau_arena_array(arena, (size_t)solver->chunks.count, sizeof(double));
+	solver->chunks.dot = cau_arena_array(
+		arena, (size_t)solver->chunks.count * 2 * CAU_ANDERSON_WINDOW, sizeof(double));
+	solver->iterate.before = cau_arena_array(arena, 3 * n, sizeof(double));
+	if (!solver->chunks.energy || !solver->chunks.dot || !solver->iterate.before)
 		return no_memory(error);
 	return CAU_OK;
 }
@@ -70,7 +70,7 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 // more.
 static cau_status check_loops(const cau_step_solver *solver, cau_error *error)
 {
-	if (solver->chunk_count <= CAU_POOL_PARTS && solver->slots.work_count < CAU_POOL_PARTS)
+	if (solver->chunks.count <= CAU_POOL_PARTS && solver->slots.work_count < CAU_POOL_PARTS)
 		return CAU_OK;
 	return cau_fail(
 		error, CAU_LIMIT, NULL,
@@ -102,24 +102,25 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	CAU_ASSERT(solver->kernels && solver->kernels->single == single,
 	           "kernels of the wrong precision, not %d", single);
 	solver->tissue = tissue;
-	solver->iterations = scene->iterations;
-	solver->tolerance = scene->tolerance;
-	solver->stiffness_j = mean_stiffness(tissue);
+	solver->settings.iterations = scene->iterations;
+	solver->settings.tolerance = scene->tolerance;
+	solver->settings.stiffness_j = mean_stiffness(tissue);
 	solver->step_s = scene->step_s;
 	solver->inertia_s = tissue->inertia_s;
 	// After two substeps, an error of x2 is 1 / gamma times as large in the velocity.
 	double share = solver->inertia_s / solver->step_s;
 	solver->accuracy.wanted = scene->tolerance > 0 ? 0 : share * scene->accuracy;
-	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
+	solver->settings.diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->whole_panels = CAU_WHOLE_PANELS;
-	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
-	solver->newton_chosen = scene->solver == CAU_SOLVER_NEWTON && solver->conservative;
+	solver->settings.conservative = cau_solver_is_conservative(tissue, solver->settings.diagonal);
+	solver->settings.newton_chosen =
+		scene->solver == CAU_SOLVER_NEWTON && solver->settings.conservative;
 	cau_status status =
 		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);
 	if (!status)
 		status = allocate_vectors(solver, arena, error);
 	if (!status)
-		status = cau_accuracy_create(&solver->accuracy, solver->chunk_count, arena, error);
+		status = cau_accuracy_create(&solver->accuracy, solver->chunks.count, arena, error);
 	if (!status)
 		status = check_loops(solver, error);
 	if (!status)
@@ -132,8 +133,8 @@ cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
 {
 	CAU_ASSERT(!solver->factor, "%d rows are factored twice", solver->system.row_count);
 	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->inertia_s);
-	if (solver->diagonal || !solver->system.row_count) {
-		solver->diagonal = true;
+	if (solver->settings.diagonal || !solver->system.row_count) {
+		solver->settings.diagonal = true;
 		return CAU_OK;
 	}
 	cau_system_assemble(&solver->system, solver->tissue, alive, solver->inertia_s,
@@ -143,7 +144,7 @@ cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
 
 cau_status cau_solver_make_factor(cau_step_solver *solver, cau_arena *arena, cau_error *error)
 {
-	if (solver->diagonal)
+	if (solver->settings.diagonal)
 		return CAU_OK;
 	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
 	if (status) {
@@ -164,7 +165,7 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 
 int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32_t *first)
 {
-	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
+	CAU_ASSERT_INDEX(chunk, solver->chunks.count);
 	int32_t last = (chunk + 1) * CAU_VERTEX_CHUNK;
 	*first = chunk * CAU_VERTEX_CHUNK;
 	return last < solver->tissue->vertex_count ? last : solver->tissue->vertex_count;

@@ -42,6 +42,63 @@ typedef struct cau_yield {
 	cau_reals *residual, *solved, *direction, *image; // image = A direction
 } cau_yield;
 
+// How steps are solved, as the scene says.
+typedef struct cau_solver_settings {
+	bool diagonal;      // diagonal system instead of A: CAU_SOLVER_DIAGONAL
+	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are treated as loose
+	bool conservative;  // every law is the gradient of an energy
+	// most iterations of a step; if the step has a wanted accuracy, see CAU_SOLVER_EFFORT
+	int32_t iterations;
+	double tolerance;
+	double stiffness_j; // J: mean weight of triangles and tetrahedra
+} cau_solver_settings;
+
+// Changes of the factor so far.
+typedef struct cau_factor_age {
+	uint64_t version; // number of changes
+	uint64_t epoch;   // number of changes that keep nothing of the old factor
+} cau_factor_age;
+
+// Forces on the vertices besides inertia, elements and contact.
+typedef struct cau_forces {
+	double *external; // N, (n x 3)
+	cau_drag *drag;
+	int32_t drag_count;
+} cau_forces;
+
+// Vectors of an iteration.
+typedef struct cau_iterate {
+	cau_reals *displacement; // u = x - X
+	cau_reals *gradient;     // grad of eq. 4
+	cau_reals *increment;    // d = -A^-1 grad
+	cau_reals *trial;        // the mixed or shortened increment that is tried
+	double *before;          // m, (n x 3): positions before the step
+} cau_iterate;
+
+// Chunks of CAU_VERTEX_CHUNK vertices: sums of each.
+typedef struct cau_chunks {
+	int32_t count;
+	double *energy; // (count): J
+	double *dot;    // (count x 2 CAU_ANDERSON_WINDOW)
+} cau_chunks;
+
+// Anderson acceleration (anderson.c).
+typedef struct cau_anderson {
+	cau_history history;                                      // history.step is the iterate's trial
+	double product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
+} cau_anderson;
+
+// Results of the last step.
+typedef struct cau_solver_result {
+	// J: value of eq. 4, at the guess once the step has begun, at the solution once it has ended
+	double objective;
+	bool spared; // the end of the step was not evaluated: the elements' energies are of the iterate
+	             // before it
+	double local_s, contact_s;
+	int32_t iterations, backtracks;
+	double residual; // |grad| in the norm of A^-1, relative to that of the first iteration
+} cau_solver_result;
+
 struct cau_step_solver {
 	const cau_tissue *tissue;
 	const cau_kernels *kernels;
@@ -50,57 +107,32 @@ struct cau_step_solver {
 	cau_element_slots slots;
 	cau_system system;
 	cau_factor *factor;
+	cau_factor_age age;
 	cau_sweep sweep;
-	cau_loose loose;         // allocated in the first step
-	int64_t whole_panels;    // size in bytes above which panels of single precision are narrow
-	uint64_t factor_version; // number of changes of the factor so far
-	uint64_t factor_epoch;   // number of changes so far that keep nothing of the old factor
+	cau_loose loose;      // allocated in the first step
+	int64_t whole_panels; // size in bytes above which panels of single precision are narrow
 
-	bool diagonal;      // diagonal system instead of A: CAU_SOLVER_DIAGONAL
-	bool conservative;  // every law is the gradient of an energy
-	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are treated as loose
-	bool none_loose;    // in this tick no tissue counts as loose: some is inverted, diverges or
-	                    // crosses (exempt.c)
-	// most iterations of a step; if the step has a wanted accuracy, see CAU_SOLVER_EFFORT
-	int32_t iterations;
-	double tolerance;
-	double stiffness_j; // J: mean weight of triangles and tetrahedra
-	double step_s;      // s: one tick
-	double inertia_s;   // s: h of M / h^2 in eq. 4 and in A: step_s with implicit Euler
+	cau_solver_settings settings;
+	bool none_loose;  // in this tick no tissue counts as loose: some is inverted, diverges or
+	                  // crosses (exempt.c)
+	double step_s;    // s: one tick
+	double inertia_s; // s: h of M / h^2 in eq. 4 and in A: step_s with implicit Euler
 	cau_accuracy accuracy;
-	const uint8_t *fixed; // (vertex_count): pinned or frozen
 
+	const uint8_t *fixed;         // (vertex_count): pinned or frozen
 	double *position;             // x, (n x 3): the session's positions
 	double *predicted;            // s of eq. 4, (n x 3)
 	const double *position_start; // x_t, (n x 3); NULL: a step does not restart from x_t
-	double *external;             // external forces, N, (n x 3)
-	cau_drag *drag;
-	int32_t drag_count;
+	cau_forces forces;
 	cau_contact_set *contact; // contact of tools; NULL: none
 	cau_collide *collide;     // tissue contact; NULL: none
 
-	cau_reals *displacement;    // u = x - X
-	cau_reals *gradient;        // grad of eq. 4
-	cau_reals *increment;       // d = -A^-1 grad
-	cau_reals *trial_increment; // the mixed or shortened step that is tried
-	cau_yield yield;            // scratch of yield.c, for tissue contact
-	cau_history history;        // for Anderson acceleration; history.step is trial_increment
-	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
-	double *chunk_energy;    // (chunk_count): energy of each chunk, J
-	double *chunk_dot;       // (chunk_count x 2 CAU_ANDERSON_WINDOW)
-	double *position_before; // positions before the step, (n x 3)
-	int32_t chunk_count;
-
+	cau_iterate iterate;
+	cau_chunks chunks;
+	cau_yield yield; // scratch of yield.c, for tissue contact
+	cau_anderson anderson;
 	double (*now_s)(void); // clock for timings; NULL: no timings
-
-	// J: value of eq. 4, at the guess once the step has begun, at the solution once it has ended
-	double objective;
-	// Results of the last step.
-	bool spared; // the end of the step was not evaluated: the elements' energies are of the iterate
-	             // before it
-	double local_s, contact_s;
-	int32_t iterations_done, backtracks;
-	double residual; // |grad| in the norm of A^-1, relative to that of the first iteration
+	cau_solver_result result;
 };
 
 // Allocates elements, pattern and vectors. The system is factored by cau_solver_factor once the
@@ -158,7 +190,7 @@ void cau_solver_apply_inverse(cau_step_solver *solver, const cau_reals *in, cau_
 // the stiffness of tissue contact.
 cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error);
 void cau_solver_yield(cau_step_solver *solver);
-// apart.c: shortens trial_increment, which starts at positions `from`, so that tissue does not
+// apart.c: shortens iterate.trial, which starts at positions `from`, so that tissue does not
 // cross tissue. Returns true if it was shortened.
 bool cau_solver_keep_apart(cau_step_solver *solver, const double *from);
 // evaluate.c: the change of E, J, that rounding alone can make in a step that promises to lower E
@@ -170,7 +202,7 @@ double cau_solver_noise(const cau_step_solver *solver, double promise);
 bool cau_solver_let_go(cau_step_solver *solver);
 // Returns the end of a vertex chunk's range [*first, returned).
 int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32_t *first);
-// anderson.c: mixes trial_increment from the increment and the history of this step.
+// anderson.c: mixes iterate.trial from the increment and the history of this step.
 // cau_anderson_keep adds the mixed increment and gradient to the history by exchanging arrays.
 void cau_anderson_start(cau_step_solver *solver);
 bool cau_anderson_mix(cau_step_solver *solver, int32_t iteration);

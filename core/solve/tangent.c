@@ -19,17 +19,17 @@ static bool make_vectors(cau_tangent *tangent, const cau_step_solver *solver)
 	tangent->position = cau_arena_array(arena, 3 * n, sizeof(double));
 	tangent->load = cau_arena_array(arena, 4 * n, real);
 	tangent->base = cau_arena_array(arena, 4 * n, real);
-	probe->displacement = cau_arena_array(arena, 4 * n, real);
-	probe->gradient = cau_arena_array(arena, 4 * n, real);
-	probe->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));
+	probe->iterate.displacement = cau_arena_array(arena, 4 * n, real);
+	probe->iterate.gradient = cau_arena_array(arena, 4 * n, real);
+	probe->chunks.energy = cau_arena_array(arena, (size_t)solver->chunks.count, sizeof(double));
 	elements->gradient = cau_arena_array(arena, 4 * (size_t)elements->record_count, real);
 	elements->energy =
 		cau_arena_array(arena, (size_t)solver->slots.work_count, sizeof *elements->energy);
 	elements->slack =
 		cau_arena_array(arena, (size_t)solver->slots.work_count, sizeof *elements->slack);
-	bool made = tangent->position && tangent->load && tangent->base && probe->displacement &&
-	            probe->gradient && probe->chunk_energy && elements->gradient && elements->energy &&
-	            elements->slack;
+	bool made = tangent->position && tangent->load && tangent->base &&
+	            probe->iterate.displacement && probe->iterate.gradient && probe->chunks.energy &&
+	            elements->gradient && elements->energy && elements->slack;
 	for (int i = 0; i < CAU_TANGENT_MOTIONS; i++) {
 		tangent->motion[i] = cau_arena_array(arena, 4 * n, real);
 		tangent->change[i] = cau_arena_array(arena, 4 * n, real);
@@ -69,10 +69,10 @@ static void borrow(cau_tangent *tangent, const cau_step_solver *solver)
 	*probe = *solver;
 	// with the predicted state at the position, inertia is 0
 	probe->position = probe->predicted = tangent->position;
-	probe->displacement = own.displacement;
-	probe->gradient = own.gradient;
-	probe->chunk_energy = own.chunk_energy;
-	probe->drag_count = 0;
+	probe->iterate.displacement = own.iterate.displacement;
+	probe->iterate.gradient = own.iterate.gradient;
+	probe->chunks.energy = own.chunks.energy;
+	probe->forces.drag_count = 0;
 	probe->collide = NULL;
 	probe->contact = NULL;
 	probe->now_s = NULL;
@@ -98,8 +98,8 @@ void cau_tangent_begin(cau_tangent *tangent, cau_step_solver *solver)
 	memcpy(tangent->position, solver->position, 3 * n * sizeof(double));
 	cau_solver_evaluate(&tangent->probe);
 	// later evaluations write to the other gradient vector
-	cau_reals *made = tangent->probe.gradient;
-	tangent->probe.gradient = tangent->base;
+	cau_reals *made = tangent->probe.iterate.gradient;
+	tangent->probe.iterate.gradient = tangent->base;
 	tangent->base = made;
 }
 
@@ -161,7 +161,8 @@ static bool find_change(cau_tangent *tangent, cau_reals *motion, cau_reals *chan
 		if (sign == 1)
 			cau_solver_evaluate(probe);
 	}
-	memcpy(change, probe->gradient, (size_t)reals_of(tangent) * kernels->vectors->real_bytes);
+	memcpy(change, probe->iterate.gradient,
+	       (size_t)reals_of(tangent) * kernels->vectors->real_bytes);
 	kernels->add_scaled(change, -1, tangent->base, reals_of(tangent));
 	kernels->add_scaled(change, 1 / way_m - 1, change, reals_of(tangent));
 	return true;

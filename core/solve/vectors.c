@@ -62,7 +62,7 @@ static void take_coordinate(cau_reals *column, const cau_reals *vector, int c, i
 static void displace(const cau_step_solver *solver, int32_t first, int32_t last)
 {
 	const double *x = solver->position, *rest = solver->tissue->rest;
-	real *u = (real *)solver->displacement;
+	real *u = (real *)solver->iterate.displacement;
 	for (int32_t v = first; v < last; v++)
 		for (int c = 0; c < 3; c++)
 			u[4 * v + c] = (real)(x[3 * v + c] - rest[3 * v + c]);
@@ -71,8 +71,8 @@ static void displace(const cau_step_solver *solver, int32_t first, int32_t last)
 static void step(const cau_step_solver *solver, double scale, int32_t first, int32_t last)
 {
 	double *x = solver->position;
-	const double *before = solver->position_before;
-	const real *d = (const real *)solver->trial_increment;
+	const double *before = solver->iterate.before;
+	const real *d = (const real *)solver->iterate.trial;
 	for (int32_t v = first; v < last; v++)
 		for (int c = 0; c < 3; c++)
 			x[3 * v + c] = before[3 * v + c] + scale * (double)d[4 * v + c];
@@ -82,7 +82,7 @@ static double add_inertia(const cau_step_solver *solver, int32_t first, int32_t 
 {
 	double energy = 0, scale = 1 / (solver->inertia_s * solver->inertia_s);
 	const double *x = solver->position, *s = solver->predicted;
-	real *gradient = (real *)solver->gradient;
+	real *gradient = (real *)solver->iterate.gradient;
 	for (int32_t v = first; v < last; v++) {
 		double m = scale * solver->tissue->mass[v], free = !solver->fixed[v];
 		for (int c = 0; c < 3; c++) {
@@ -97,8 +97,8 @@ static double add_inertia(const cau_step_solver *solver, int32_t first, int32_t 
 static void measure(const cau_step_solver *solver, int32_t first, int32_t last, double sums[4])
 {
 	const double *x = solver->position, *start = solver->position_start;
-	const real *trial = (const real *)solver->trial_increment;
-	const real *increment = (const real *)solver->increment;
+	const real *trial = (const real *)solver->iterate.trial;
+	const real *increment = (const real *)solver->iterate.increment;
 	double mass = 0, trial2 = 0, increment2 = 0, motion2 = 0;
 	for (int32_t v = first; v < last; v++) {
 		double m = solver->fixed[v] ? 0 : solver->tissue->mass[v];

@@ -32,7 +32,7 @@ typedef struct cau_vectors {
 	// ---- the solver's own vectors, of vertices [first, last)
 	// displacement = position - rest
 	void (*displace)(const cau_step_solver *solver, int32_t first, int32_t last);
-	// position = position_before + scale * trial_increment
+	// position = iterate.before + scale * iterate.trial
 	void (*step)(const cau_step_solver *solver, double scale, int32_t first, int32_t last);
 	// gradient += m / dt^2 (position - predicted); the gradient is set to 0 at fixed vertices.
 	// Returns the energy of inertia, J.

@@ -49,16 +49,16 @@ static void product_part(void *context, int32_t chunk)
 	const product *work = context;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	solver->chunk_dot[chunk] =
+	solver->chunks.dot[chunk] =
 		solver->kernels->dot(work->a, work->b, 4 * (int64_t)first, 4 * (int64_t)(last - first));
 }
 
 static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *b)
 {
 	double all = 0;
-	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
-	for (int32_t chunk = 0; chunk < solver->chunk_count; chunk++)
-		all += solver->chunk_dot[chunk];
+	cau_pool_run(solver->pool, solver->chunks.count, product_part, &(product){solver, a, b});
+	for (int32_t chunk = 0; chunk < solver->chunks.count; chunk++)
+		all += solver->chunks.dot[chunk];
 	return all;
 }
 
@@ -67,14 +67,14 @@ static double touch(cau_step_solver *solver, const cau_reals *direction)
 {
 	cau_collide *collide = solver->collide;
 	double along = 0;
-	for (int32_t k = 0; k < collide->loaded_count; k++)
-		solver->kernels->vectors->read(direction, collide->loaded[k],
-		                               collide->probe + 3 * (size_t)collide->loaded[k]);
+	for (int32_t k = 0; k < collide->load.count; k++)
+		solver->kernels->vectors->read(direction, collide->load.vertex[k],
+		                               collide->load.probe + 3 * (size_t)collide->load.vertex[k]);
 	cau_collide_apply(collide);
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		size_t at = 3 * (size_t)collide->loaded[k];
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		size_t at = 3 * (size_t)collide->load.vertex[k];
 		for (size_t i = at; i < at + 3; i++)
-			along += collide->probe[i] * collide->answer[i];
+			along += collide->load.probe[i] * collide->load.answer[i];
 	}
 	return along;
 }
@@ -83,9 +83,9 @@ static double touch(cau_step_solver *solver, const cau_reals *direction)
 static void take_off(cau_step_solver *solver, double scale)
 {
 	const cau_collide *collide = solver->collide;
-	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		int32_t v = collide->loaded[k];
-		const double *force = collide->answer + 3 * (size_t)v;
+	for (int32_t k = 0; k < collide->load.count; k++) {
+		int32_t v = collide->load.vertex[k];
+		const double *force = collide->load.answer + 3 * (size_t)v;
 		if (!solver->fixed[v])
 			solver->kernels->vectors->add(
 				solver->yield.residual, v,
@@ -99,7 +99,7 @@ static void take_off(cau_step_solver *solver, double scale)
 // stiff as A at its vertices.
 static bool first_serves(const cau_step_solver *solver, double stiffer)
 {
-	return stiffer * solver->collide->steepest <= surely * enough;
+	return stiffer * solver->collide->result.steepest <= surely * enough;
 }
 
 // True if the last step was enough. The decrease of E is assumed to shrink from step to step at
@@ -116,28 +116,30 @@ static void begin(cau_step_solver *solver)
 	size_t bytes = 4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes;
 	// sets r = -gradient, and z = p = A^-1 r, which is the present increment; then A p = r
 	memset(y->residual, 0, bytes);
-	add(solver, y->residual, -1, solver->gradient);
+	add(solver, y->residual, -1, solver->iterate.gradient);
 	memcpy(y->image, y->residual, bytes);
-	memcpy(y->direction, solver->increment, bytes);
-	memset(solver->increment, 0, bytes);
+	memcpy(y->direction, solver->iterate.increment, bytes);
+	memset(solver->iterate.increment, 0, bytes);
 }
 
 void cau_solver_yield(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
 	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->touching_count);
-	double size = -dot(solver, solver->gradient, solver->increment), first = size, off[3] = {0};
-	double touching = touch(solver, solver->increment), own = size;
+	double size = -dot(solver, solver->iterate.gradient, solver->iterate.increment), first = size,
+		   off[3] = {0};
+	double touching = touch(solver, solver->iterate.increment), own = size;
 	if (!(size > 0) || !(touching >= 0))
 		return;
 	if (first_serves(solver, touching / own)) {
-		add(solver, solver->increment, size / (touching + own) - 1, solver->increment);
+		add(solver, solver->iterate.increment, size / (touching + own) - 1,
+		    solver->iterate.increment);
 		return;
 	}
 	begin(solver);
 	for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
 		double step = size / (touching + own);
-		add(solver, solver->increment, step, y->direction);
+		add(solver, solver->iterate.increment, step, y->direction);
 		off[1] = sweep ? off[2] : step * size;
 		off[2] = step * size;
 		if (!sweep)

@@ -40,8 +40,8 @@ void bench_copy_state(cau_session *to, const cau_session *from)
 void bench_converge(cau_session *session)
 {
 	session->solver.accuracy.wanted = 0;
-	session->solver.iterations = 300;
-	session->solver.tolerance = 3e-7;
+	session->solver.settings.iterations = 300;
+	session->solver.settings.tolerance = 3e-7;
 }
 
 static double step_s(cau_session *session)
@@ -69,12 +69,12 @@ static void measure(turns *t, int32_t steps, bench_accuracy_result *result)
 		}
 		double accurate = step_s(t->session), fixed = step_s(t->fixed);
 		if (sampled)
-			error[samples++] = step_error(t->session, t->exact->position, t->accuracy);
+			error[samples++] = step_error(t->session, t->exact->vertices.position, t->accuracy);
 		if (i < 0)
 			continue;
 		accurate_s += accurate;
 		fixed_s += fixed;
-		iterations += t->session->solver.iterations_done;
+		iterations += t->session->solver.result.iterations;
 	}
 	result->speedup_over_k = fixed_s / accurate_s;
 	result->iterations_mean = (double)iterations / steps;
@@ -130,7 +130,7 @@ int bench_accuracy(const bench_options *options, bench_accuracy_result *result)
 		t.exact = bench_session(scene, options, options->threads);
 	if (t.fixed) {
 		t.fixed->solver.accuracy.wanted = 0;
-		t.fixed->solver.iterations = options->iterations;
+		t.fixed->solver.settings.iterations = options->iterations;
 	}
 	if (t.exact)
 		bench_converge(t.exact);

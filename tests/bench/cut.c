@@ -191,12 +191,12 @@ static int step_along(along_run *run, int32_t at, bench_along_result *result)
 		return 1;
 	run->ms[at] = 1e3 * (bench_cpu_s() - before);
 	double reported = run->reported[at] = session->solver.accuracy.error;
-	run->iterations += session->solver.iterations_done;
+	run->iterations += session->solver.result.iterations;
 	run->above += reported > run->accuracy;
 	result->elements_removed = frame.statistics.elements_removed;
 	if (!sampled)
 		return 0;
-	double is = step_error(session, run->exact->position, run->accuracy);
+	double is = step_error(session, run->exact->vertices.position, run->accuracy);
 	run->found[result->sampled++] = is;
 	run->optimistic += is > 3 * reported;
 	return 0;

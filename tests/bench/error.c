@@ -58,12 +58,12 @@ static void choose(pull_run *pull, cau_session *session)
 	pull->vertex = calloc((size_t)n, sizeof *pull->vertex);
 	pull->start = calloc(3 * (size_t)n, sizeof *pull->start);
 	pull->position = calloc(3 * (size_t)n, sizeof *pull->position);
-	memset(session->chosen, 0, (size_t)n);
-	cau_tissue_select(&session->tissue, &pull->scene->pull.selection, session->chosen);
+	memset(session->vertices.chosen, 0, (size_t)n);
+	cau_tissue_select(&session->tissue, &pull->scene->pull.selection, session->vertices.chosen);
 	for (int32_t v = 0; v < n; ++v)
-		if (session->chosen[v]) {
-			memcpy(pull->start + 3 * (size_t)pull->count, session->position + 3 * (size_t)v,
-			       3 * sizeof(double));
+		if (session->vertices.chosen[v]) {
+			memcpy(pull->start + 3 * (size_t)pull->count,
+			       session->vertices.position + 3 * (size_t)v, 3 * sizeof(double));
 			pull->vertex[pull->count++] = v;
 		}
 }
@@ -91,8 +91,8 @@ static void copy_reals(void *to, int to_single, const void *from, int from_singl
 static void copy_state(cau_session *to, const cau_session *from)
 {
 	size_t bytes = 3 * (size_t)from->tissue.vertex_count * sizeof(double);
-	memcpy(to->position, from->position, bytes);
-	memcpy(to->velocity, from->velocity, bytes);
+	memcpy(to->vertices.position, from->vertices.position, bytes);
+	memcpy(to->vertices.velocity, from->vertices.velocity, bytes);
 	const cau_fat_set *a = &from->solver.elements.fat;
 	cau_fat_set *b = &to->solver.elements.fat;
 	int one = from->solver.elements.single, two = to->solver.elements.single;
@@ -109,7 +109,7 @@ static double mass_distance(const cau_session *session, const double *a, const d
 {
 	double sum = 0;
 	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3 && !session->fixed[v]; ++c) {
+		for (int c = 0; c < 3 && !session->vertices.fixed[v]; ++c) {
 			double d = a[3 * v + c] - b[3 * v + c];
 			sum += session->tissue.mass[v] * d * d;
 		}
@@ -122,13 +122,15 @@ static double step_error(pull_run *pull, cau_session *trial, const cau_session *
                          const cau_session *exact, double share, int32_t iterations, double *ms)
 {
 	copy_state(trial, state);
-	trial->solver.iterations = iterations;
+	trial->solver.settings.iterations = iterations;
 	drive(pull, trial, share);
 	double start = bench_now_s();
 	cau_session_step(trial, NULL);
 	*ms = 1e3 * (bench_now_s() - start);
-	double moved = mass_distance(exact, exact->position, exact->position_start);
-	return moved > 0 ? mass_distance(exact, trial->position, exact->position) / moved : 0;
+	double moved = mass_distance(exact, exact->vertices.position, exact->vertices.start);
+	return moved > 0
+	           ? mass_distance(exact, trial->vertices.position, exact->vertices.position) / moved
+	           : 0;
 }
 
 // Adds one sample of error over time: steps with several numbers of iterations from one state.
@@ -164,7 +166,8 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 			copy_state(exact, state);
 			drive(pull, exact, share);
 			cau_session_step(exact, NULL);
-			result->reference_residual = fmax(result->reference_residual, exact->solver.residual);
+			result->reference_residual =
+				fmax(result->reference_residual, exact->solver.result.residual);
 			double error = step_error(pull, trial, state, exact, share, options->iterations, &ms);
 			sum += error;
 			samples++;
@@ -220,8 +223,8 @@ int bench_error(const bench_options *options, bench_error_result *result)
 	exact = pinned_session(scene, options);
 	if (!state || !trial || !exact)
 		goto done;
-	if (exact->solver.diagonal)
-		exact->solver.iterations = CONVERGED_DIAGONAL;
+	if (exact->solver.settings.diagonal)
+		exact->solver.settings.iterations = CONVERGED_DIAGONAL;
 	choose(&pull, state);
 	measure(options, &pull, state, trial, exact, result);
 	failed = 0;

@@ -63,9 +63,9 @@ static double bytes_of_elements(const cau_elements *e)
 // blocks. Right-hand sides and permutations are small in comparison.
 static double bytes_of_solve(const cau_step_solver *solver)
 {
-	return solver->diagonal ? 0
-	                        : 2.0 * (double)solver->sweep.panel_entries *
-	                              (double)cau_sweep_entry_bytes(&solver->sweep);
+	return solver->settings.diagonal ? 0
+	                                 : 2.0 * (double)solver->sweep.panel_entries *
+	                                       (double)cau_sweep_entry_bytes(&solver->sweep);
 }
 
 // Returns the bytes of the vertices. Position, its start, prediction and step are double.

@@ -29,9 +29,9 @@ static void top_middle(const cau_session *session, double at[3])
 {
 	double best = -1e300;
 	for (int32_t v = 0; v < session->tissue.vertex_count; ++v) {
-		const double *x = session->position + 3 * (size_t)v;
+		const double *x = session->vertices.position + 3 * (size_t)v;
 		double value = x[2] - 10 * (x[0] * x[0] + x[1] * x[1]);
-		if (!session->fixed[v] && value > best) {
+		if (!session->vertices.fixed[v] && value > best) {
 			best = value;
 			memcpy(at, x, 3 * sizeof(double));
 		}

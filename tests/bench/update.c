@@ -149,7 +149,8 @@ int bench_update(const bench_options *options, bench_update_result *result)
 	memset(result, 0, sizeof *result);
 	cau_scene_def *scene = bench_scene(options);
 	cau_session *session = scene ? bench_session(scene, options, 1) : NULL;
-	int failed = !session || session->solver.diagonal || measure_all(session, scene, result);
+	int failed =
+		!session || session->solver.settings.diagonal || measure_all(session, scene, result);
 	if (session && failed)
 		fprintf(stderr, "cautery-bench: the cut of %s could not be measured\n", options->scene);
 	cau_session_destroy(session);

@@ -65,7 +65,7 @@ static cau_vec3 middle_of(const cau_session *session)
 	double mass = 0;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		double m = session->tissue.mass[v];
-		sum = cau_add_scaled(sum, m, cau_vec3_of(session->position + 3 * v));
+		sum = cau_add_scaled(sum, m, cau_vec3_of(session->vertices.position + 3 * v));
 		mass += m;
 	}
 	return cau_scale(1 / mass, sum);
@@ -77,8 +77,8 @@ static motion motion_of(const cau_session *session)
 	cau_vec3 middle = middle_of(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		double m = session->tissue.mass[v];
-		cau_vec3 velocity = cau_vec3_of(session->velocity + 3 * v);
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), middle);
+		cau_vec3 velocity = cau_vec3_of(session->vertices.velocity + 3 * v);
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), middle);
 		of.momentum = cau_add_scaled(of.momentum, m, velocity);
 		of.angular = cau_add_scaled(of.angular, m, cau_cross(arm, velocity));
 	}
@@ -89,9 +89,9 @@ static void throw_it(cau_session *session)
 {
 	cau_vec3 middle = middle_of(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), middle);
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), middle);
 		cau_vec3_to(cau_add_scaled(thrown_m_s, 1, cau_cross(spin_rad_s, arm)),
-		            session->velocity + 3 * v);
+		            session->vertices.velocity + 3 * v);
 	}
 }
 
@@ -134,7 +134,7 @@ static double raised_j(const cau_session *session, double gravity_m_s2)
 	double sum = 0;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		sum += session->tissue.mass[v] * gravity_m_s2 *
-		       (session->position[3 * v + 2] - session->tissue.rest[3 * v + 2]);
+		       (session->vertices.position[3 * v + 2] - session->tissue.rest[3 * v + 2]);
 	return sum;
 }
 

@@ -20,13 +20,14 @@ static void gradient_is_the_energys(void **state)
 	sheets_shake(&s, 5e-4);
 	int32_t n = s.r.tissue.vertex_count;
 	cau_collide_begin(collide, s.pool, s.x);
-	assert_true(collide->touching_count > 100 && collide->grip_count == collide->touching_count);
+	assert_true(collide->result.touching_count > 100 &&
+	            collide->grip_count == collide->result.touching_count);
 	double *x = malloc(3 * (size_t)n * sizeof *x), *gradient = malloc(3 * (size_t)n * sizeof *x);
 	memcpy(x, s.x, 3 * (size_t)n * sizeof *x);
 	for (int32_t i = 0; i < 3 * n; i++) // some pairs slide, some stick, some come nearer
 		x[i] += 1e-4 * sheets_draw(&s);
 	cau_collide_evaluate(collide, s.pool, x);
-	memcpy(gradient, collide->gradient, 3 * (size_t)n * sizeof *x);
+	memcpy(gradient, collide->load.gradient, 3 * (size_t)n * sizeof *x);
 	double most = 0, total[3] = {0};
 	for (int32_t i = 0; i < 3 * n; i++) {
 		most = fmax(most, fabs(gradient[i]));
@@ -56,7 +57,7 @@ static void apart_is_nothing(void **state)
 	sheets s;
 	sheets_begin(&s, 1e-3, 0.3, 1.01e-3);
 	cau_collide_begin(&s.collide, s.pool, s.x);
-	assert_true(s.collide.start_energy_j == 0 && s.collide.loaded_count == 0);
+	assert_true(s.collide.start_energy_j == 0 && s.collide.load.count == 0);
 	assert_true(s.collide.pair_count > 0);
 	rig_finish(&s.r);
 }
@@ -73,7 +74,7 @@ static void foresight_changes_nothing(void **state)
 	int32_t pairs = s.collide.pair_count;
 	for (int32_t i = 0; i < 3 * s.r.tissue.vertex_count; i++)
 		s.collide.step[i] = 5e-4 * sheets_draw(&s);
-	s.collide.found = false;
+	s.collide.range.found = false;
 	cau_collide_find(&s.collide, s.pool, s.x, CAU_COLLIDE_STEP);
 	assert_true(cau_collide_evaluate(&s.collide, s.pool, s.x) == energy && energy > 0);
 	assert_true(pairs > 0);
@@ -85,13 +86,13 @@ static void expect_as_found_anew(sheets *s)
 	int32_t n = s->r.tissue.vertex_count;
 	cau_collide *collide = &s->collide;
 	double energy = cau_collide_evaluate(collide, s->pool, s->x);
-	uint64_t touching = collide->touching_hash;
+	uint64_t touching = collide->result.touching_hash;
 	double *gradient = malloc(3 * (size_t)n * sizeof *gradient);
-	memcpy(gradient, collide->gradient, 3 * (size_t)n * sizeof *gradient);
-	collide->found = false;
+	memcpy(gradient, collide->load.gradient, 3 * (size_t)n * sizeof *gradient);
+	collide->range.found = false;
 	assert_true(cau_collide_evaluate(collide, s->pool, s->x) == energy);
-	assert_true(collide->touching_hash == touching);
-	assert_memory_equal(gradient, collide->gradient, 3 * (size_t)n * sizeof *gradient);
+	assert_true(collide->result.touching_hash == touching);
+	assert_memory_equal(gradient, collide->load.gradient, 3 * (size_t)n * sizeof *gradient);
 	free(gradient);
 }
 
@@ -119,7 +120,7 @@ static void what_is_kept_changes_nothing(void **state)
 		if (tick % ANEW == 0) {
 			memcpy(held, collide->step, 3 * (size_t)n * sizeof *held);
 			memcpy(collide->step, wanted, 3 * (size_t)n * sizeof *held);
-			collide->found = false;
+			collide->range.found = false;
 			cau_collide_filter(collide, s.pool, s.x, false);
 			assert_memory_equal(held, collide->step, 3 * (size_t)n * sizeof *held);
 		}
@@ -127,7 +128,7 @@ static void what_is_kept_changes_nothing(void **state)
 			s.x[i] += collide->step[i];
 		if (tick % ANEW == ANEW / 2)
 			expect_as_found_anew(&s);
-		touched += collide->touching_count;
+		touched += collide->result.touching_count;
 	}
 	assert_true(touched > 100);
 	free(held);
@@ -147,17 +148,17 @@ static void stiffness_is_the_gradients_change(void **state)
 	cau_collide_begin(collide, s.pool, s.x);
 	double before = 0, after = 0, told = 0;
 	for (int32_t v = upper; v < n; v++) {
-		before += collide->gradient[3 * (size_t)v + 2];
-		collide->probe[3 * (size_t)v + 2] = 1e-6;
+		before += collide->load.gradient[3 * (size_t)v + 2];
+		collide->load.probe[3 * (size_t)v + 2] = 1e-6;
 	}
 	cau_collide_apply(collide);
 	for (int32_t v = upper; v < n; v++) {
-		told += collide->answer[3 * (size_t)v + 2];
+		told += collide->load.answer[3 * (size_t)v + 2];
 		s.x[3 * (size_t)v + 2] += 1e-6;
 	}
 	cau_collide_evaluate(collide, s.pool, s.x);
 	for (int32_t v = upper; v < n; v++)
-		after += collide->gradient[3 * (size_t)v + 2];
+		after += collide->load.gradient[3 * (size_t)v + 2];
 	assert_true(told > 0 && fabs(after - before - told) < 1e-3 * told);
 	rig_finish(&s.r);
 }
@@ -181,7 +182,7 @@ static void a_slide_rubs(void **state)
 	for (int k = 0; k < 2; k++) {
 		for (int32_t v = upper; v < n; v++)
 			x[3 * (size_t)v] = s.x[3 * (size_t)v] + 2e-3 * (k + 1);
-		energy[k] = cau_collide_evaluate(collide, s.pool, x) - collide->energy_j;
+		energy[k] = cau_collide_evaluate(collide, s.pool, x) - collide->result.energy_j;
 	}
 	double force = (energy[1] - energy[0]) / 2e-3;
 	assert_true(pressed > 0 && force > 0 && force <= pressed * (1 + ROUNDING));

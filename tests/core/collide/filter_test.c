@@ -147,7 +147,7 @@ static void scant_room_changes_nothing(void **state)
 		assert_memory_equal(held, s.collide.step, 3 * (size_t)n * sizeof *held);
 		scant += s.collide.pair_count < pairs;
 		memcpy(s.collide.step, wanted, 3 * (size_t)n * sizeof *wanted);
-		s.collide.found = false;
+		s.collide.range.found = false;
 		cau_collide_begin(&s.collide, s.pool, s.x);
 		cau_collide_filter(&s.collide, s.pool, s.x, true);
 	}
@@ -185,8 +185,8 @@ static void what_passes_is_what_is_let_be(void **state)
 		bool passes = cau_collide_foresee(&s.collide, longest);
 		for (int32_t i = 0; i < 3 * n; i++)
 			s.collide.step[i] = NAN; // steps of all other vertices, which must not be read
-		for (int32_t i = 0; i < 4 * s.collide.unclear_count; i++) {
-			size_t v = (size_t)s.collide.pair[s.collide.unclear[i / 4]].vertex[i % 4];
+		for (int32_t i = 0; i < 4 * s.collide.filter.unclear_count; i++) {
+			size_t v = (size_t)s.collide.pair[s.collide.filter.unclear[i / 4]].vertex[i % 4];
 			memcpy(s.collide.step + 3 * v, wanted + 3 * v, 3 * sizeof *wanted);
 		}
 		passes = passes && cau_collide_lets_pass(&s.collide, s.x, longest);

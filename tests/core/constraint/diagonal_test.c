@@ -51,7 +51,7 @@ static void test_energy_is_equation_17(void **state)
 	material->young_modulus_pa = young;
 	material->poisson_ratio = poisson;
 	rig_build(&r, NULL, 1);
-	r.solver.diagonal = 1;
+	r.solver.settings.diagonal = 1;
 	uint64_t random = 51;
 	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], p[3][3], e[3][3], x[12], got[12], expected[12] = {0}, squares = 0;
@@ -83,7 +83,7 @@ static void test_linearised_limit_is_equation_13(void **state)
 	memcpy(material->target, target, sizeof target);
 	material->projection = CAU_PROJECTION_LINEARISED;
 	rig_build(&r, NULL, 1);
-	r.solver.diagonal = 1;
+	r.solver.settings.diagonal = 1;
 	uint64_t random = 52;
 	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], x[9], got[9], expected[9] = {0};
@@ -119,7 +119,7 @@ static void test_link_goes_half_way_at_each_end(void **state)
 	cau_link_material *material = &rig_add_links(&r, 0, 1, 0.011)->link;
 	rig_build(&r, NULL, 1);
 	assert_int_equal(r.tissue.link_count, 1);
-	r.solver.diagonal = 1;
+	r.solver.settings.diagonal = 1;
 	double x[18], got[18], expected[18] = {0}, e[3], length = 0;
 	uint64_t random = 53;
 	for (int i = 0; i < 18; i++)
@@ -138,7 +138,7 @@ static void test_link_goes_half_way_at_each_end(void **state)
 	}
 	rig_local(&r, x, got);
 	assert_true(rig_difference(got, expected, 18) < FORCE_TOLERANCE);
-	r.solver.diagonal = 0; // the system with A has the whole force
+	r.solver.settings.diagonal = 0; // the system with A has the whole force
 	rig_local(&r, x, got);
 	for (int i = 0; i < 18; i++)
 		expected[i] *= 2;

@@ -110,7 +110,7 @@ static void test_hinges_in_the_diagonal_system(void **state)
 	rig_begin(&r);
 	law_add_roof(&r)->sheet[0].limit = CAU_LIMIT_NONE;
 	rig_build(&r, NULL, 1);
-	r.solver.diagonal = 1;
+	r.solver.settings.diagonal = 1;
 	uint64_t random = 183;
 	double a[3][3], *x = r.solver.position;
 	rig_random_gradient(&random, 0.2, a);

@@ -25,7 +25,7 @@ static int32_t settle(rig *r, double f[3][3])
 	int32_t inverted = 0;
 	for (int32_t w = 0; w < r->solver.slots.work_count; w++)
 		inverted += r->solver.kernels->settle(&r->solver.elements, &r->solver.slots.work[w],
-		                                      r->solver.displacement);
+		                                      r->solver.iterate.displacement);
 	return inverted;
 }
 
@@ -175,7 +175,7 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 				rig_local(&r, r.solver.position, NULL);
 				for (int32_t w = 0; w < r.solver.slots.work_count; w++)
 					r.solver.kernels->settle(&r.solver.elements, &r.solver.slots.work[w],
-					                         r.solver.displacement);
+					                         r.solver.iterate.displacement);
 			}
 			// the tolerance is a hundred roundings of numbers near one
 			expect_maps(&r, r.solver.elements.single ? 6e-6 : STRAIN_TOLERANCE);

@@ -146,9 +146,9 @@ void rig_build(rig *r, const char *tier, int32_t threads)
 	solver->fixed = r->fixed;
 	solver->position = cau_arena_copy(&r->arena, r->tissue.rest, n, sizeof(double));
 	solver->predicted = cau_arena_copy(&r->arena, r->tissue.rest, n, sizeof(double));
-	solver->external = cau_arena_array(&r->arena, n, sizeof(double));
+	solver->forces.external = cau_arena_array(&r->arena, n, sizeof(double));
 	assert_non_null(solver->pool);
-	assert_true(solver->position && solver->predicted && solver->external && r->fixed);
+	assert_true(solver->position && solver->predicted && solver->forces.external && r->fixed);
 	expect_ok(cau_solver_create(solver, r->scene, &r->tissue, &r->arena, &error), &error);
 	expect_ok(
 		cau_dissection_create(&r->dissection, &r->tissue, 1, r->scene->parting, &r->arena, &error),
@@ -183,15 +183,16 @@ double rig_local(rig *r, const double *x, double *gradient)
 	int32_t n = r->tissue.vertex_count;
 	for (int32_t v = 0; v < n; v++)
 		for (int c = 0; c < 3; c++)
-			cau_real_set(solver->displacement, single, 4 * v + c,
+			cau_real_set(solver->iterate.displacement, single, 4 * v + c,
 			             x[3 * v + c] - r->tissue.rest[3 * v + c]);
 	for (int32_t w = 0; w < solver->slots.work_count; w++)
-		solver->kernels->local(&solver->elements, &solver->slots.work[w], solver->displacement,
-		                       solver->diagonal);
-	solver->kernels->sum(&solver->elements, &solver->slots.incidence, 0, n, solver->gradient);
+		solver->kernels->local(&solver->elements, &solver->slots.work[w],
+		                       solver->iterate.displacement, solver->settings.diagonal);
+	solver->kernels->sum(&solver->elements, &solver->slots.incidence, 0, n,
+	                     solver->iterate.gradient);
 	for (int32_t v = 0; v < n && gradient; v++)
 		for (int c = 0; c < 3; c++)
-			gradient[3 * v + c] = cau_real_get(solver->gradient, single, 4 * v + c);
+			gradient[3 * v + c] = cau_real_get(solver->iterate.gradient, single, 4 * v + c);
 	return cau_solver_elastic_energy(solver);
 }
 
@@ -264,7 +265,7 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
 			if (s != slot)
 				cau_real_set(w.weight[k], e->single, s, 0);
 		}
-	solver->kernels->local(e, work, solver->displacement, solver->diagonal);
+	solver->kernels->local(e, work, solver->iterate.displacement, solver->settings.diagonal);
 	for (int i = 0; i < rig_vertex_count(kind); i++)
 		for (int c = 0; c < 3; c++)
 			gradient[3 * i + c] =

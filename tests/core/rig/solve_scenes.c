@@ -87,11 +87,12 @@ void solve_by_sweep(rig *r, const double *b, double *x)
 	int single = r->solver.elements.single;
 	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++)
-			cau_real_set(r->solver.gradient, single, 4 * v + c, b[3 * v + c]);
-	cau_solver_apply_inverse(&r->solver, r->solver.gradient, r->solver.increment, 1);
+			cau_real_set(r->solver.iterate.gradient, single, 4 * v + c, b[3 * v + c]);
+	cau_solver_apply_inverse(&r->solver, r->solver.iterate.gradient, r->solver.iterate.increment,
+	                         1);
 	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
 		for (int c = 0; c < 3; c++)
-			x[3 * v + c] = cau_real_get(r->solver.increment, single, 4 * v + c);
+			x[3 * v + c] = cau_real_get(r->solver.iterate.increment, single, 4 * v + c);
 }
 
 void solve_dense_matrix(const rig *r, double *a)

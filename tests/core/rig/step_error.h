@@ -16,11 +16,11 @@ static inline double step_error_part(const cau_session *session, const double *e
 	static const double least_error_m = 0.5e-6;
 	double mass = 0, off = 0, motion = 0;
 	for (int32_t v = first; v < last; v++) {
-		double m = session->fixed[v] ? 0 : session->tissue.mass[v];
+		double m = session->vertices.fixed[v] ? 0 : session->tissue.mass[v];
 		mass += m;
 		for (int c = 0; c < 3; c++) {
-			double d = session->position[3 * v + c] - exact[3 * v + c];
-			double way = exact[3 * v + c] - session->position_start[3 * v + c];
+			double d = session->vertices.position[3 * v + c] - exact[3 * v + c];
+			double way = exact[3 * v + c] - session->vertices.start[3 * v + c];
 			off += m * d * d;
 			motion += m * way * way;
 		}

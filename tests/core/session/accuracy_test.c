@@ -77,7 +77,8 @@ static void sample(cau_session *session, cau_session *exact, sampled *of)
 	stage_step(exact, 1);
 	stage_step(session, 1);
 	cau_frame frame = stage_frame(session);
-	of->error[of->count] = step_error(session, exact->position, session->solver.accuracy.wanted);
+	of->error[of->count] =
+		step_error(session, exact->vertices.position, session->solver.accuracy.wanted);
 	of->told[of->count] = frame.statistics.error;
 	of->force[of->count++] = force_error(session, exact);
 	of->iterations += frame.statistics.iterations;
@@ -91,8 +92,8 @@ static sampled run(cau_scene_def *scene, int32_t most, int ticks, int every)
 	scene->iterations = most;
 	cau_session *session = stage_open(scene, 1), *exact = stage_open(scene, 1);
 	exact->solver.accuracy.wanted = 0;
-	exact->solver.iterations = CONVERGED;
-	exact->solver.tolerance = converged_residual;
+	exact->solver.settings.iterations = CONVERGED;
+	exact->solver.settings.tolerance = converged_residual;
 	for (int k = 0; k < ticks; k++) {
 		if (session->tool_count)
 			stage_move(session, "hook", 1.6e-4 * fmax(k - 30, 0), 0,
@@ -200,8 +201,8 @@ static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
 	cau_session *session = stage_open(scene, 1), *exact = stage_open(scene, 1);
 	sampled of = {0}, blow = {0};
 	exact->solver.accuracy.wanted = 0;
-	exact->solver.iterations = CONVERGED;
-	exact->solver.tolerance = converged_residual;
+	exact->solver.settings.iterations = CONVERGED;
+	exact->solver.settings.tolerance = converged_residual;
 	for (int k = 0; k < PRESSED + HELD; k++) {
 		stage_gravity(session, 0, 0, -9.81 - 1e-3 * (k % 2)); // keeps the tissue awake
 		stage_move(session, "hook", 0, 0, 0.03 - 0.0285 * fmin(k / 30.0, 1));

@@ -258,7 +258,7 @@ static int32_t recount_frozen(const cau_session *session)
 {
 	int32_t count = 0;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-		count += session->fixed[v] && !session->pinned[v];
+		count += session->vertices.fixed[v] && !session->vertices.pinned[v];
 	return count;
 }
 
@@ -271,13 +271,13 @@ static void pins_take_frozen_vertices_over(void **state)
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 1);
 	int32_t alone = 0;
-	while (session->fixed[alone])
+	while (session->vertices.fixed[alone])
 		alone++;
 	int32_t strayed = alone + 1;
-	assert_false(session->fixed[strayed]);
+	assert_false(session->vertices.fixed[strayed]);
 	session->dissection.live_elements[alone] = 0; // as if the vertex's last element had parted
-	session->fixed[alone] = session->fixed[strayed] = 1;
-	session->frozen_count = 2;
+	session->vertices.fixed[alone] = session->vertices.fixed[strayed] = 1;
+	session->vertices.frozen_count = 2;
 	cau_command command = stage_command(CAU_COMMAND_PIN);
 	command.as.selection = stage_everything();
 	// A wrong count would fall below zero after some rounds.
@@ -336,7 +336,7 @@ static void a_faulted_session_waits_for_a_snapshot(void **state)
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	stage_step(session, 10);
 	stage_bytes shot = stage_snapshot(session);
-	session->velocity[100] = NAN; // no command can cause this
+	session->vertices.velocity[100] = NAN; // no command can cause this
 	cau_error error = {0};
 	assert_int_equal(cau_session_step(session, &error), CAU_NUMERICAL);
 	assert_true(error.reason[0]);
@@ -371,7 +371,7 @@ static void only_pinned_vertices_are_driven(void **state)
 	cau_error error = {0};
 	int32_t pinned = -1, unpinned = -1;
 	for (int32_t v = 0; v < info.vertex_count; v++)
-		*(session->pinned[v] ? &pinned : &unpinned) = v;
+		*(session->vertices.pinned[v] ? &pinned : &unpinned) = v;
 	double at[3] = {0.001, 0.002, -0.01};
 	assert_int_equal(cau_session_drive(session, 1, &unpinned, at, &error), CAU_BAD_STATE);
 	const int32_t beyond[] = {-1, info.vertex_count, INT32_MAX};
@@ -411,7 +411,7 @@ static void pinning_does_not_grow_the_session(void **state)
 		pin.as.selection.least_m[0] = 0.01;
 		stage_submit(session, &pin);
 		stage_step(session, 2);
-		size_t bytes = session->arena.byte_count + session->rebuilt_arena.byte_count;
+		size_t bytes = session->memory.arena.byte_count + session->memory.rebuilt.byte_count;
 		if (k == 1)
 			once = bytes;
 		assert_true(k <= 1 || bytes <= once + 4096);
@@ -443,9 +443,9 @@ static void pinned_on_the_way(void **state)
 	int still = 0, moved = 0;
 	for (size_t v = 0; v < (size_t)info.vertex_count; v++) {
 		int same = !memcmp(frame.position + 3 * v, before + 3 * v, 3 * sizeof(double));
-		if (session->pinned[v] && !same)
+		if (session->vertices.pinned[v] && !same)
 			fail_msg("pinned vertex %zu moved", v);
-		still += session->pinned[v];
+		still += session->vertices.pinned[v];
 		moved += !same;
 	}
 	assert_true(still > 50 && moved > 50);
@@ -455,7 +455,7 @@ static void pinned_on_the_way(void **state)
 	frame = stage_frame(session);
 	for (size_t v = 0; v < (size_t)info.vertex_count; v++)
 		assert_true(memcmp(frame.position + 3 * v, before + 3 * v, 3 * sizeof(double)) != 0 ||
-		            session->pinned[v]);
+		            session->vertices.pinned[v]);
 	free(before);
 	cau_session_destroy(session);
 	free(scene);

@@ -70,7 +70,7 @@ static cau_scene_def *press_scene(const press *p)
 static cau_vec3 corner(const cau_session *session, int32_t face, int k)
 {
 	int32_t v = session->tissue.faces.vertex[3 * (size_t)face + (size_t)k];
-	return cau_vec3_of(session->position + 3 * (size_t)v);
+	return cau_vec3_of(session->vertices.position + 3 * (size_t)v);
 }
 
 static bool is_drawn(const cau_session *session, int32_t face)
@@ -214,17 +214,18 @@ static int32_t press_twice(const press *p, int ticks, int snapshots_from)
 				fail_msg("%s", error.reason);
 			assert_true(exact);
 			free(shot.bytes);
-			assert_int_equal(other->contact.memory_count, session->contact.memory_count);
-			assert_int_equal(other->contact.column_count, session->contact.column_count);
+			assert_int_equal(other->contact.sides.memory_count,
+			                 session->contact.sides.memory_count);
+			assert_int_equal(other->contact.columns.count, session->contact.columns.count);
 		}
-		kept += session->contact.memory_count > 0;
+		kept += session->contact.sides.memory_count > 0;
 		stage_move(session, "ball", 0.27 * p->cell_m, 0.31 * p->cell_m, p->radius_m + 1e-3 - in);
 		stage_move(other, "ball", 0.27 * p->cell_m, 0.31 * p->cell_m, p->radius_m + 1e-3 - in);
 		stage_step(session, 1);
 		stage_step(other, 1);
 		assert_true(cau_session_hash(session) == cau_session_hash(other));
 	}
-	int32_t columns = session->contact.column_count;
+	int32_t columns = session->contact.columns.count;
 	cau_session_destroy(session);
 	cau_session_destroy(other);
 	free(scene);

@@ -165,7 +165,7 @@ static void isolated_vertices_are_frozen(void **state)
 	stage_step(session, 20);
 	cau_frame frame = stage_frame(session);
 	for (size_t v = 0; v < (size_t)n; v++) {
-		if (session->dissection.live_elements[v] || session->pinned[v])
+		if (session->dissection.live_elements[v] || session->vertices.pinned[v])
 			continue;
 		isolated++;
 		assert_memory_equal(frame.position + 3 * v, before + 3 * v, 3 * sizeof(double));

@@ -60,7 +60,7 @@ static void assert_ledger_closes(const cau_session *session)
 {
 	cau_energy_ledger ledger;
 	cau_session_read_ledger(session, &ledger);
-	const cau_bioheat *bioheat = &session->cells->bioheat;
+	const cau_bioheat *bioheat = &session->heat.cells->bioheat;
 	double stored = 0;
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		stored += cau_bioheat_capacity(bioheat, i) * (bioheat->temperature[i] - bioheat->ambient_c);
@@ -91,7 +91,7 @@ static void lips_move_with_what_is_left(void **state)
 {
 	(void)state;
 	cau_session *session = cut_with(30, 1);
-	const cau_tissue_cells *cells = session->cells;
+	const cau_tissue_cells *cells = session->heat.cells;
 	const cau_tissue *tissue = &session->tissue;
 	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TRIANGLE];
 	int32_t lips = 0;
@@ -212,8 +212,8 @@ static void soft_coagulation_heats_and_parts_nothing(void **state)
 		most = fmaxf(most, frame.temperature[v]);
 		least = fminf(least, frame.temperature[v]);
 	}
-	for (int32_t i = 0; i < session->cells->bioheat.cells.count; i++)
-		damage = fmaxf(damage, (float)session->cells->bioheat.damage[i]);
+	for (int32_t i = 0; i < session->heat.cells->bioheat.cells.count; i++)
+		damage = fmaxf(damage, (float)session->heat.cells->bioheat.damage[i]);
 	assert_true(most > 60 && most <= 101);
 	assert_true(least == 37);
 	assert_true(damage > 1);
@@ -401,9 +401,9 @@ static void heat_goes_on_beyond_the_tool(void **state)
 	}
 	stage_energize(session, "hook", 1);
 	stage_step(session, 30);
-	assert_true(cau_tissue_cells_temperature(session->cells, far) == scene->ambient_c);
+	assert_true(cau_tissue_cells_temperature(session->heat.cells, far) == scene->ambient_c);
 	stage_step(session, CAU_TEST_SANITIZED ? 900 : 1800);
-	assert_true(cau_tissue_cells_temperature(session->cells, far) > scene->ambient_c + 0.5);
+	assert_true(cau_tissue_cells_temperature(session->heat.cells, far) > scene->ambient_c + 0.5);
 	assert_int_equal(parted(session), 0);
 	assert_ledger_closes(session);
 	cau_session_destroy(session);

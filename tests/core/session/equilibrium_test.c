@@ -125,8 +125,8 @@ static void hold_force(const cau_session *session, int32_t count, const int32_t 
 	memset(force, 0, 3 * sizeof *force);
 	for (int32_t k = 0; k < count; k++)
 		for (int c = 0; c < 3; c++)
-			force[c] += cau_real_get(session->solver.gradient, session->solver.elements.single,
-			                         4 * (int64_t)vertex[k] + c) -
+			force[c] += cau_real_get(session->solver.iterate.gradient,
+			                         session->solver.elements.single, 4 * (int64_t)vertex[k] + c) -
 			            session->tissue.mass[vertex[k]] * session->scene->gravity_m_s2[c];
 }
 

@@ -54,7 +54,7 @@ static void sample(cau_session *session, cau_session *exact, hanging *of)
 	stage_step(exact, 1);
 	stage_step(session, 1);
 	of->residual_n = fmax(of->residual_n, stage_balance(exact).residual_n);
-	double error = step_error(session, exact->position, session->solver.accuracy.wanted);
+	double error = step_error(session, exact->vertices.position, session->solver.accuracy.wanted);
 	double told = stage_frame(session).statistics.error;
 	of->samples++;
 	of->wrong += error > 0.01;
@@ -67,8 +67,8 @@ static hanging run(const cau_scene_def *scene)
 	hanging of = {0};
 	cau_session *session = stage_open(scene, 1), *exact = stage_open(scene, 1);
 	exact->solver.accuracy.wanted = 0;
-	exact->solver.iterations = CONVERGED;
-	exact->solver.tolerance = converged_residual;
+	exact->solver.settings.iterations = CONVERGED;
+	exact->solver.settings.tolerance = converged_residual;
 	for (int k = 0; k < TICKS; k++) {
 		stage_gravity(session, 0, 0, -9.81); // keeps the tissue awake
 		if (k % EVERY == 0)
@@ -134,7 +134,7 @@ static int ticks_to_fall(int iterations, double accuracy, double tolerance, doub
 	for (; ticks < MOST_TICKS && lowest > -0.9 * 0.04; ticks++) {
 		stage_step(session, 1);
 		for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-			lowest = fmin(lowest, session->position[3 * v + 2]);
+			lowest = fmin(lowest, session->vertices.position[3 * v + 2]);
 	}
 	cau_session_destroy(session);
 	free(scene);

@@ -254,7 +254,7 @@ static double volume(const cau_session *session, int32_t element)
 	cau_vec3 x[4];
 	for (int k = 0; k < 4; k++) {
 		int32_t v = session->tissue.primitives.tetrahedron[4 * (size_t)element + (size_t)k];
-		x[k] = cau_vec3_of(session->position + 3 * (size_t)v);
+		x[k] = cau_vec3_of(session->vertices.position + 3 * (size_t)v);
 	}
 	return cau_dot(cau_cross(cau_sub(x[1], x[0]), cau_sub(x[2], x[0])), cau_sub(x[3], x[0]));
 }
@@ -276,8 +276,8 @@ static void sample(cau_session *session, cau_session *exact, const generated *of
 	stage_step(exact, 1);
 	advance(of, session, tick);
 	stage_step(session, 1);
-	double is = step_error(session, exact->position, wanted);
-	found->unsettled = fmax(found->unsettled, exact->solver.residual);
+	double is = step_error(session, exact->vertices.position, wanted);
+	found->unsettled = fmax(found->unsettled, exact->solver.result.residual);
 	found->flattered += is > 3 * session->solver.accuracy.error;
 	error[found->samples++] = is;
 }
@@ -288,8 +288,8 @@ static verdict run(const generated *of)
 	double error[SAMPLES], gained = 0, range = 0;
 	cau_session *session = stage_open(of->scene, 1), *exact = stage_open(of->scene, 1);
 	exact->solver.accuracy.wanted = 0;
-	exact->solver.iterations = CONVERGED;
-	exact->solver.tolerance = converged_residual;
+	exact->solver.settings.iterations = CONVERGED;
+	exact->solver.settings.tolerance = converged_residual;
 	int32_t *ticks =
 		calloc((size_t)session->tissue.primitives.tetrahedron_count + 1, sizeof *ticks);
 	for (int tick = 0; tick < TICKS; tick++) {

@@ -24,7 +24,7 @@ static cau_vec3 center_of_holds(const cau_session *session)
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		cau_contact_row row = cau_session_row_of_hold(session, &tool->grasp[k], 0);
 		sum = cau_add_scaled(sum, 1.0 / tool->grasp_count,
-		                     cau_contact_point(&row, session->position));
+		                     cau_contact_point(&row, session->vertices.position));
 	}
 	return sum;
 }
@@ -133,7 +133,7 @@ static double width_held_m(const cau_session *session)
 	double least = HUGE_VAL, most = -HUGE_VAL;
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		cau_contact_row row = cau_session_row_of_hold(session, &tool->grasp[k], 0);
-		double x = cau_contact_point(&row, session->position).x;
+		double x = cau_contact_point(&row, session->vertices.position).x;
 		least = fmin(least, x);
 		most = fmax(most, x);
 	}

@@ -207,7 +207,7 @@ static void expect_fault(int model, int fat_limit, int membrane_limit, double ve
 	stage_step(session, 3);
 	stage_bytes shot = stage_snapshot(session);
 	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++)
-		session->velocity[i] = session->fixed[i / 3] ? 0 : velocity_m_s;
+		session->vertices.velocity[i] = session->vertices.fixed[i / 3] ? 0 : velocity_m_s;
 	cau_error error = {0};
 	if (cau_session_step(session, &error) != CAU_NUMERICAL)
 		fail_msg("%s: no fault", what);
@@ -235,7 +235,7 @@ static int32_t nearest_vertex(const cau_session *session, double x, double y, do
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		const double *at = session->tissue.rest + 3 * v;
 		double away = hypot(hypot(at[0] - x, at[1] - y), at[2] - z);
-		if (away < least && !session->fixed[v]) {
+		if (away < least && !session->vertices.fixed[v]) {
 			nearest = v;
 			least = away;
 		}
@@ -263,7 +263,7 @@ static void nowhere_beside_a_tool_is_a_fault(void **state)
 			stage_bytes shot = stage_snapshot(session);
 			int32_t at =
 				corner ? nearest_vertex(session, 0.03, 0.02, 0) : nearest_vertex(session, 0, 0, 0);
-			session->velocity[3 * at] = NAN;
+			session->vertices.velocity[3 * at] = NAN;
 			cau_error error = {0};
 			assert_int_equal(cau_session_step(session, &error), CAU_NUMERICAL);
 			assert_faulted(session, &shot, &error, "nowhere beside a tool");

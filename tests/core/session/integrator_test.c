@@ -41,12 +41,12 @@ static double *slowest_mode(void)
 	assert_non_null(shape);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		double along = session->tissue.rest[3 * v] / beam_m[0] + 0.5;
-		if (!session->fixed[v])
-			session->velocity[3 * v + 2] = 0.5 * along * along;
+		if (!session->vertices.fixed[v])
+			session->vertices.velocity[3 * v + 2] = 0.5 * along * along;
 	}
 	stage_step(session, 30);
 	for (int32_t i = 0; i < n; i++) {
-		shape[i] = session->position[i] - session->tissue.rest[i];
+		shape[i] = session->vertices.position[i] - session->tissue.rest[i];
 		most = fmax(most, fabs(shape[i]));
 	}
 	for (int32_t i = 0; i < n; i++)
@@ -62,7 +62,7 @@ static double amount_of(const cau_session *session, const double *shape)
 	double sum = 0, of = 0;
 	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++) {
 		double m = session->tissue.mass[i / 3] * shape[i];
-		sum += m * (session->position[i] - session->tissue.rest[i]);
+		sum += m * (session->vertices.position[i] - session->tissue.rest[i]);
 		of += m * shape[i];
 	}
 	return sum / of;
@@ -79,7 +79,7 @@ static swing watch(const cau_scene_def *scene, const double *shape)
 	double before2 = 1, before = 1, first = 0, last = 0, first_s = 0, last_s = 0;
 	int found = 0;
 	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++)
-		session->position[i] += shape[i];
+		session->vertices.position[i] += shape[i];
 	for (int tick = 1; tick * scene->step_s < 2 && found < TURNS; tick++) {
 		stage_step(session, 1);
 		double now = amount_of(session, shape);
@@ -270,13 +270,13 @@ static cau_vec3 angular_momentum(const cau_session *session)
 	double mass = 0;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		double m = session->tissue.mass[v];
-		centre = cau_add_scaled(centre, m, cau_vec3_of(session->position + 3 * v));
+		centre = cau_add_scaled(centre, m, cau_vec3_of(session->vertices.position + 3 * v));
 		mass += m;
 	}
 	centre = cau_scale(1 / mass, centre);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), centre);
-		cau_vec3 moment = cau_cross(arm, cau_vec3_of(session->velocity + 3 * v));
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), centre);
+		cau_vec3 moment = cau_cross(arm, cau_vec3_of(session->vertices.velocity + 3 * v));
 		sum = cau_add_scaled(sum, session->tissue.mass[v], moment);
 	}
 	return sum;
@@ -289,7 +289,7 @@ static double spin(const cau_scene_def *scene, double rad_s)
 	cau_session *session = stage_open(scene, 1);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		cau_vec3 at = cau_vec3_of(session->tissue.rest + 3 * v);
-		cau_vec3_to(cau_cross((cau_vec3){0, 0, rad_s}, at), session->velocity + 3 * v);
+		cau_vec3_to(cau_cross((cau_vec3){0, 0, rad_s}, at), session->vertices.velocity + 3 * v);
 	}
 	cau_vec3 before = angular_momentum(session);
 	double start_j = stage_balance(session).kinetic_j;
@@ -331,7 +331,7 @@ static void what_hits_a_tool_gains_nothing(void **state)
 	ball->hot_radius_m = 0.02;
 	cau_session *session = stage_open(scene, 1);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-		session->velocity[3 * v + 2] = 1;
+		session->vertices.velocity[3 * v + 2] = 1;
 	double start_j = stage_balance(session).kinetic_j, most_j = 0;
 	for (int tick = 0; tick < 30; tick++) {
 		stage_step(session, 1);

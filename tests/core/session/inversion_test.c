@@ -69,7 +69,7 @@ static void what_comes_right_is_counted_no_more(void **state)
 	cau_session *session = stage_open(scene, 1);
 	cau_inversion *inversion = &session->inversion;
 	int32_t corner = session->tissue.primitives.tetrahedron[0];
-	double kept[3], *at = session->position + 3 * (size_t)corner;
+	double kept[3], *at = session->vertices.position + 3 * (size_t)corner;
 	stage_step(session, 1);
 	memcpy(kept, at, sizeof kept);
 	for (int c = 0; c < 3; c++) // reflects the corner at the middle of the slab

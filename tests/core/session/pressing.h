@@ -88,7 +88,7 @@ static inline double pressing_depth_m(const pressing *p, int tick)
 static inline cau_vec3 pressing_corner(const cau_session *session, int32_t face, int k)
 {
 	int32_t v = session->tissue.faces.vertex[3 * (size_t)face + (size_t)k];
-	return cau_vec3_of(session->position + 3 * (size_t)v);
+	return cau_vec3_of(session->vertices.position + 3 * (size_t)v);
 }
 
 // Whether the vertical line up from the tool's tip, which is the path of the tool, meets the face.

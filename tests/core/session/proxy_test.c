@@ -173,8 +173,8 @@ static void it_is_let_out_slowly(void **state)
 	for (int tick = 0; tick < 30; tick++) {
 		stage_step(session, 1);
 		for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
-			most = fmax(most, cau_length(cau_sub(cau_vec3_of(session->position + 3 * v),
-			                                     cau_vec3_of(session->position_start + 3 * v))));
+			most = fmax(most, cau_length(cau_sub(cau_vec3_of(session->vertices.position + 3 * v),
+			                                     cau_vec3_of(session->vertices.start + 3 * v))));
 		way += most;
 	}
 	print_message("at most %.2f mm in a tick\n", 1e3 * most);

@@ -166,7 +166,7 @@ static cau_status read_and_submit(cau_session *session, const cau_command *comma
 	if (!status)
 		status = cau_session_submit(session, &read, error);
 	if (!status)
-		session->command_count = 0; // the test needs only whether the command is accepted
+		session->queue.count = 0; // the test needs only whether the command is accepted
 	return status;
 }
 

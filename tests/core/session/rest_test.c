@@ -54,10 +54,10 @@ static cau_scene_def *make_hanging_block(int precision)
 static void keep_awake(cau_session *session)
 {
 	int32_t vertex = 0;
-	while (!session->pinned[vertex])
+	while (!session->vertices.pinned[vertex])
 		vertex++;
 	double at[3]; // a support that is led to its present position
-	memcpy(at, session->position + 3 * (size_t)vertex, sizeof at);
+	memcpy(at, session->vertices.position + 3 * (size_t)vertex, sizeof at);
 	assert_int_equal(cau_session_drive(session, 1, &vertex, at, NULL), CAU_OK);
 }
 

@@ -27,8 +27,8 @@ static course run(cau_session *session, int ticks)
 		cau_statistics statistics = stage_frame(session).statistics;
 		c.most_gain_j = fmax(c.most_gain_j, statistics.energy_gain_j);
 		c.error = statistics.error;
-		if (session->collide.touching_count > c.most_touching)
-			c.most_touching = session->collide.touching_count;
+		if (session->collide.result.touching_count > c.most_touching)
+			c.most_touching = session->collide.result.touching_count;
 		if (k % LOOK == 0)
 			assert_int_equal(surface_crossings(session), 0);
 	}
@@ -62,7 +62,7 @@ static double lowest_of_sheet_m(const cau_session *session)
 	const cau_tissue_layer *sheet = &session->tissue.layer[0];
 	double least = INFINITY;
 	for (int32_t v = sheet->first_vertex; v < sheet->first_vertex + sheet->vertex_count; v++)
-		least = fmin(least, session->position[3 * (size_t)v + 2]);
+		least = fmin(least, session->vertices.position[3 * (size_t)v + 2]);
 	return least;
 }
 
@@ -347,7 +347,7 @@ static void the_same_bits(void **state)
 		stage_step(three, 1);
 		assert_true(cau_session_hash(one) == cau_session_hash(three));
 		if (tick == SAVED) {
-			assert_true(one->collide.touching_count > 0);
+			assert_true(one->collide.result.touching_count > 0);
 			stage_bytes shot = stage_snapshot(one);
 			bool exact = false;
 			assert_int_equal(cau_session_restore(later, shot.bytes, shot.count, &exact, NULL),
@@ -379,7 +379,7 @@ static void what_begins_crossed_stays_calm(void **state)
 	// Bends one sheet through the other.
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
 		if ((int32_t)v >= session->tissue.layer[1].first_vertex)
-			session->position[3 * v + 2] += 0.1 * session->position[3 * v];
+			session->vertices.position[3 * v + 2] += 0.1 * session->vertices.position[3 * v];
 	assert_true(surface_crossings(session) > 0);
 	for (int tick = 0; tick < 60; tick++) {
 		stage_step(session, 1);

@@ -19,7 +19,7 @@ static void spoil_tool_count_below(cau_session *session)
 
 static void spoil_command_count(cau_session *session)
 {
-	session->command_count = session->command_capacity + 1;
+	session->queue.count = session->queue.capacity + 1;
 }
 
 static void spoil_shape(cau_session *session)
@@ -83,18 +83,18 @@ static void a_spoilt_session_does_not_step(void **state)
 		stage_step(session, 3);
 		size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
 		double *before = malloc(bytes);
-		memcpy(before, session->position, bytes);
+		memcpy(before, session->vertices.position, bytes);
 		cau_tool spared = session->tool[0];
-		int32_t tools = session->tool_count, commands = session->command_count;
+		int32_t tools = session->tool_count, commands = session->queue.count;
 		spoils[i](session);
 		assert_int_equal(cau_session_step(session, &error), CAU_FAULTED);
 		assert_non_null(strstr(error.reason, "safety rule"));
-		assert_memory_equal(before, session->position, bytes);
+		assert_memory_equal(before, session->vertices.position, bytes);
 		assert_int_equal(session->tick, 3);
 		// Restores the members, so that the session can be destroyed.
 		session->tool[0] = spared;
 		session->tool_count = tools;
-		session->command_count = commands;
+		session->queue.count = commands;
 		assert_int_equal(cau_session_step(session, &error), CAU_FAULTED);
 		cau_session_destroy(session);
 		free(before);

@@ -26,7 +26,7 @@ static cau_vec3 centre_of(const cau_session *session)
 	double mass = 0;
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		double m = session->tissue.mass[v];
-		sum = cau_add_scaled(sum, m, cau_vec3_of(session->position + 3 * v));
+		sum = cau_add_scaled(sum, m, cau_vec3_of(session->vertices.position + 3 * v));
 		mass += m;
 	}
 	return cau_scale(1 / mass, sum);
@@ -36,8 +36,8 @@ static void set_spinning(cau_session *session, cau_vec3 omega)
 {
 	cau_vec3 centre = centre_of(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), centre);
-		cau_vec3_to(cau_cross(omega, arm), session->velocity + 3 * v);
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), centre);
+		cau_vec3_to(cau_cross(omega, arm), session->vertices.velocity + 3 * v);
 	}
 }
 
@@ -45,8 +45,8 @@ static cau_vec3 angular_momentum(const cau_session *session)
 {
 	cau_vec3 sum = {0, 0, 0}, centre = centre_of(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), centre);
-		cau_vec3 moment = cau_cross(arm, cau_vec3_of(session->velocity + 3 * v));
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), centre);
+		cau_vec3 moment = cau_cross(arm, cau_vec3_of(session->vertices.velocity + 3 * v));
 		sum = cau_add_scaled(sum, session->tissue.mass[v], moment);
 	}
 	return sum;
@@ -102,7 +102,7 @@ static double off_the_rigid_one(const cau_session *session, cau_vec3 rest_centre
 	cau_vec3 centre = centre_of(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		cau_vec3 rest = cau_sub(cau_vec3_of(session->tissue.rest + 3 * v), rest_centre);
-		cau_vec3 arm = cau_sub(cau_vec3_of(session->position + 3 * v), centre);
+		cau_vec3 arm = cau_sub(cau_vec3_of(session->vertices.position + 3 * v), centre);
 		worst = fmax(worst, cau_length(cau_sub(arm, cau_rotate(q, rest))));
 	}
 	return worst;
@@ -194,7 +194,7 @@ static void what_hangs_is_predicted_as_ever(void **state)
 	double dt = session->solver.step_s;
 	int32_t turned = 0, half = session->tissue.vertex_count / 2;
 	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++) {
-		double s = session->position_start[i] + dt * session->velocity[i];
+		double s = session->vertices.start[i] + dt * session->vertices.velocity[i];
 		if (i >= 3 * half)
 			assert_true(session->solver.predicted[i] == s);
 		else

@@ -11,7 +11,7 @@ static void fill_queue(cau_session *session, uint64_t tick)
 	gravity.tick = tick;
 	while (!cau_session_submit(session, &gravity, NULL))
 		;
-	assert_int_equal(session->command_count, session->command_capacity);
+	assert_int_equal(session->queue.count, session->queue.capacity);
 }
 
 static cau_command energy(int on, uint64_t tick, int32_t ticks)
@@ -158,7 +158,7 @@ static void an_enable_ends_after_its_ticks(void **state)
 	stage_submit(session, &limited);
 	fill_queue(session, 100000); // the end of an enable needs no capacity
 	assert_int_equal(ticks_on(session, 12), 4);
-	session->command_count = 0;
+	session->queue.count = 0;
 	// A newer enable replaces the limit of the enable before it, even by no limit.
 	stage_submit(session, &limited);
 	assert_int_equal(ticks_on(session, 2), 2);
@@ -279,7 +279,7 @@ static void as_commands_they_give_the_same_bits(void **state)
 		stage_step(replayed, 1);
 		on += is_on(live);
 		assert_true(cau_session_hash(live) == cau_session_hash(replayed));
-		assert_int_equal(live->command_count, replayed->command_count);
+		assert_int_equal(live->queue.count, replayed->queue.count);
 	}
 	assert_in_range(on, 10, 50);
 	stage_bytes one = stage_snapshot(live), two = stage_snapshot(replayed);

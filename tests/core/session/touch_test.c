@@ -40,7 +40,7 @@ static double deepest(const cau_session *session, const char *tool)
 	cau_frame frame = stage_frame(session);
 	double depth = 0;
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
-		if (!session->fixed[v])
+		if (!session->vertices.fixed[v])
 			depth = fmax(depth, -cau_tool_distance_at(&state->definition, &state->pose, state->jaw,
 			                                          CAU_PART_BOTH,
 			                                          cau_vec3_of(frame.position + 3 * v), NULL));
@@ -150,7 +150,7 @@ static int32_t vertices_within(const cau_session *session, double margin_m, bool
 	cau_frame frame = stage_frame(session);
 	int32_t count = 0;
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
-		count += !session->fixed[v] && (!drawn || frame.vertex_visible[v]) &&
+		count += !session->vertices.fixed[v] && (!drawn || frame.vertex_visible[v]) &&
 		         cau_tool_distance_at(&state->definition, &state->pose, state->jaw, CAU_PART_BOTH,
 		                              cau_vec3_of(frame.position + 3 * v), NULL) <= margin_m;
 	return count;

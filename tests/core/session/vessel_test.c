@@ -205,11 +205,12 @@ static void heat_alone_seals_nothing(void **state)
 {
 	(void)state;
 	cau_session *session = open_pedicle(1);
-	cau_bioheat *bioheat = &session->cells->bioheat;
+	cau_bioheat *bioheat = &session->heat.cells->bioheat;
 	int32_t tetrahedra = session->tissue.tetrahedron_count;
 	for (int32_t t = 0; t < tetrahedra && bioheat->cells.count < 20000; t++)
-		cau_tissue_cells_fill(session->cells, cau_tissue_cells_element(
-												  &session->tissue, CAU_PRIMITIVE_TETRAHEDRON, t));
+		cau_tissue_cells_fill(
+			session->heat.cells,
+			cau_tissue_cells_element(&session->tissue, CAU_PRIMITIVE_TETRAHEDRON, t));
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		bioheat->temperature[i] = 95;
 	bioheat->cold = false;

@@ -41,12 +41,12 @@ static double plain_step(rig *r)
 {
 	cau_step_solver *solver = &r->solver;
 	cau_solver_evaluate(solver);
-	cau_solver_apply_inverse(solver, solver->gradient, solver->increment, -1);
+	cau_solver_apply_inverse(solver, solver->iterate.gradient, solver->iterate.increment, -1);
 	double product = 0;
 	for (int32_t i = 0; i < 3 * r->tissue.vertex_count; i++) {
-		double d = ((double *)solver->increment)[4 * (i / 3) + i % 3];
+		double d = ((double *)solver->iterate.increment)[4 * (i / 3) + i % 3];
 		solver->position[i] += d;
-		product -= d * ((double *)solver->gradient)[4 * (i / 3) + i % 3];
+		product -= d * ((double *)solver->iterate.gradient)[4 * (i / 3) + i % 3];
 	}
 	return sqrt(fmax(product, 0));
 }
@@ -65,8 +65,8 @@ static void test_the_same_fixed_point(void **state)
 			norm = plain_step(&a);
 		if (!(norm <= STILL * first))
 			fail_msg("%s: the plain iteration is still at %g", law_scenes[k].name, norm / first);
-		b.solver.iterations = ACCELERATED_MOST;
-		b.solver.tolerance = STILL;
+		b.solver.settings.iterations = ACCELERATED_MOST;
+		b.solver.settings.tolerance = STILL;
 		assert_int_equal(cau_solver_run(&b.solver, NULL), CAU_OK);
 		double moved_a = 0, off = 0;
 		for (size_t i = 0; i < n; i++) {
@@ -75,10 +75,10 @@ static void test_the_same_fixed_point(void **state)
 		}
 		if (!(off < FIXED_POINT_TOLERANCE * moved_a))
 			fail_msg("%s: %g of %g apart after %d and %d steps, residual %g", law_scenes[k].name,
-			         off, moved_a, steps, b.solver.iterations_done, b.solver.residual);
-		if (!(b.solver.iterations_done < steps))
+			         off, moved_a, steps, b.solver.result.iterations, b.solver.result.residual);
+		if (!(b.solver.result.iterations < steps))
 			fail_msg("%s: %d accelerated steps, %d plain", law_scenes[k].name,
-			         b.solver.iterations_done, steps);
+			         b.solver.result.iterations, steps);
 		rig_finish(&a);
 		rig_finish(&b);
 	}
@@ -101,11 +101,11 @@ static void test_sooner(void **state)
 				if (both[k]->tissue.rest[3 * v + 2] > -1e-9)
 					both[k]->solver.predicted[3 * v + 2] += 0.01;
 		}
-		end.solver.iterations = 400;
-		end.solver.tolerance = 1e-10;
+		end.solver.settings.iterations = 400;
+		end.solver.settings.tolerance = 1e-10;
 		assert_int_equal(cau_solver_run(&end.solver, NULL), CAU_OK);
-		assert_true(end.solver.residual <= 1e-10);
-		r.solver.iterations = 10;
+		assert_true(end.solver.result.residual <= 1e-10);
+		r.solver.settings.iterations = 10;
 		for (int step = 0; step < 10 && !accelerated; step++)
 			plain_step(&r);
 		if (accelerated)

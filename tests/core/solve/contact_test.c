@@ -29,8 +29,8 @@ static void make_of(pressed *p, double friction, int32_t along, int32_t across, 
 	rig_pin_box(&p->r, (double[]){-1, -1, -1}, (double[]){1, 1, -0.0299});
 	rig_build(&p->r, NULL, 1);
 	rig_factor(&p->r);
-	p->r.solver.iterations = 600;
-	p->r.solver.tolerance = 1e-10;
+	p->r.solver.settings.iterations = 600;
+	p->r.solver.settings.tolerance = 1e-10;
 	p->tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	p->tool.hot_radius_m = RADIUS_M;
 	p->tool.friction = friction;
@@ -86,7 +86,7 @@ static void assert_balance(const pressed *p)
 	size_t n = 3 * (size_t)p->r.tissue.vertex_count;
 	double *left = calloc(n, sizeof *left), largest = 0;
 	for (size_t i = 0; i < n; i++)
-		left[i] = ((double *)p->r.solver.gradient)[4 * (i / 3) + i % 3];
+		left[i] = ((double *)p->r.solver.iterate.gradient)[4 * (i / 3) + i % 3];
 	for (int32_t k = 0; k < p->set->row_count; k++) {
 		const cau_contact_row *row = &p->set->row[k];
 		largest = fmax(largest, cau_length(cau_vec3_of(row->reaction)));
@@ -139,11 +139,11 @@ static void test_pressed_without_and_with_friction(void **state)
 // Checks that the kept columns have the same values as S.
 static void assert_columns_are_whole(const pressed *p)
 {
-	for (int32_t i = 0; i < p->set->column_count; i++)
-		for (int32_t k = 0; k < p->set->column_count; k++)
-			assert_near(
-				p->r.solver.kernels->vectors->at(p->set->column[i], p->set->column_vertex[k]),
-				p->set->inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
+	for (int32_t i = 0; i < p->set->columns.count; i++)
+		for (int32_t k = 0; k < p->set->columns.count; k++)
+			assert_near(p->r.solver.kernels->vectors->at(p->set->columns.whole[i],
+			                                             p->set->columns.vertex[k]),
+			            p->set->columns.inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
 }
 
 // Solves with more constraints than whole columns, then with few constraints again. The solution
@@ -169,7 +169,7 @@ static void test_rows_beyond_whole_columns(void **state)
 		}
 		assert_true(cau_contact_is_wide(p.set) == !round);
 		solve(&p);
-		assert_true(p.set->column_count <= CAU_WHOLE_COLUMNS || !round);
+		assert_true(p.set->columns.count <= CAU_WHOLE_COLUMNS || !round);
 		if (round)
 			assert_columns_are_whole(&p);
 		assert_balance(&p);

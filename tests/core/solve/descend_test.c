@@ -59,7 +59,7 @@ static void test_a_leap_stays_bounded(void **state)
 				double before = cau_solver_evaluate(&r.solver);
 				for (int t = 0; t < 20; t++) {
 					tick(&r);
-					backtracks += r.solver.backtracks;
+					backtracks += r.solver.result.backtracks;
 				}
 				double after = cau_solver_evaluate(&r.solver);
 				assert_true(isfinite(after) && after < before);
@@ -81,7 +81,7 @@ static void test_the_objective_never_rises(void **state)
 			rig r;
 			make_gripped(&r, models[m], CAU_PRECISION_DOUBLE, 1);
 			leap(&r, 0, LEAP_M);
-			r.solver.iterations = iterations;
+			r.solver.settings.iterations = iterations;
 			tick(&r);
 			double value = cau_solver_evaluate(&r.solver);
 			assert_true(value <= last * (1 + 1e-12));
@@ -116,7 +116,7 @@ static void test_inverted_elements_recover(void **state)
 				cau_solver_evaluate(&r.solver);
 			for (int32_t w = 0; w < r.solver.slots.work_count && (t == 0 || t == 150); w++)
 				inverted[t > 0] += r.solver.kernels->settle(
-					&r.solver.elements, &r.solver.slots.work[w], r.solver.displacement);
+					&r.solver.elements, &r.solver.slots.work[w], r.solver.iterate.displacement);
 		}
 		assert_true(inverted[0] > 20);
 		assert_int_equal(inverted[1], 0);
@@ -151,8 +151,8 @@ static void test_a_free_body_keeps_its_momentum(void **state)
 		}
 	}
 	memcpy(r.solver.position, x, n * sizeof(double));
-	r.solver.iterations = 300;
-	r.solver.tolerance = 1e-12;
+	r.solver.settings.iterations = 300;
+	r.solver.settings.tolerance = 1e-12;
 	assert_int_equal(cau_solver_run(&r.solver, NULL), CAU_OK);
 	double *gradient = cau_arena_array(&r.arena, n, sizeof(double));
 	rig_local(&r, r.solver.position, gradient);
@@ -206,14 +206,14 @@ static void test_stops_at_rest_and_at_the_tolerance(void **state)
 	make_gripped(&r, CAU_MODEL_NEOHOOKEAN, CAU_PRECISION_DOUBLE, 1);
 	size_t bytes = 3 * (size_t)r.tissue.vertex_count * sizeof(double);
 	tick(&r);
-	assert_int_equal(r.solver.iterations_done, 1); // the tissue is at its solution already
+	assert_int_equal(r.solver.result.iterations, 1); // the tissue is at its solution already
 	assert_memory_equal(r.solver.position, r.tissue.rest, bytes);
-	r.solver.iterations = 200;
-	r.solver.tolerance = 1e-3;
+	r.solver.settings.iterations = 200;
+	r.solver.settings.tolerance = 1e-3;
 	leap(&r, 0, 0.002);
 	tick(&r);
-	assert_true(r.solver.residual <= 1e-3);
-	assert_in_range(r.solver.iterations_done, 2, 60);
+	assert_true(r.solver.result.residual <= 1e-3);
+	assert_in_range(r.solver.result.iterations, 2, 60);
 	rig_finish(&r);
 }
 

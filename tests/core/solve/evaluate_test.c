@@ -19,10 +19,10 @@ static void make(rig *r, int32_t threads)
 	rig_random_gradient(&random, 0.1, a);
 	rig_deform(r, a, 1e-3, &random, r->solver.position);
 	rig_deform(r, a, 1e-2, &random, r->solver.predicted);
-	r->solver.drag = cau_arena_array(&r->arena, 3, sizeof *r->solver.drag);
-	r->solver.drag_count = 3;
+	r->solver.forces.drag = cau_arena_array(&r->arena, 3, sizeof *r->solver.forces.drag);
+	r->solver.forces.drag_count = 3;
 	for (int k = 0; k < 3; k++) // vertex 0 is pinned, the last vertex is free
-		r->solver.drag[k] = (cau_drag){7 * k, 40.0 + k, {0.01, 0.02 * k, -0.01}};
+		r->solver.forces.drag[k] = (cau_drag){7 * k, 40.0 + k, {0.01, 0.02 * k, -0.01}};
 }
 
 static void test_gradient_is_that_of_the_objective(void **state)
@@ -35,7 +35,7 @@ static void test_gradient_is_that_of_the_objective(void **state)
 	double *numeric = cau_arena_array(&r.arena, n, sizeof(double));
 	cau_solver_evaluate(&r.solver);
 	for (size_t i = 0; i < n; i++)
-		gradient[i] = cau_real_get(r.solver.gradient, 0, (int64_t)(4 * (i / 3) + i % 3));
+		gradient[i] = cau_real_get(r.solver.iterate.gradient, 0, (int64_t)(4 * (i / 3) + i % 3));
 	for (size_t i = 0; i < n; i++) {
 		double at = r.solver.position[i];
 		if (r.fixed[i / 3]) {
@@ -66,10 +66,10 @@ static void test_inertia_and_drag_by_hand(void **state)
 		expected += r.tissue.mass[i / 3] / (dt * dt) * away * away / 2;
 	}
 	for (int k = 0; k < 3; k++)
-		for (int c = 0; c < 3 && !r.fixed[r.solver.drag[k].vertex]; c++) {
-			double away =
-				r.solver.position[3 * r.solver.drag[k].vertex + c] - r.solver.drag[k].target[c];
-			expected += r.solver.drag[k].coefficient * away * away / 2;
+		for (int c = 0; c < 3 && !r.fixed[r.solver.forces.drag[k].vertex]; c++) {
+			double away = r.solver.position[3 * r.solver.forces.drag[k].vertex + c] -
+			              r.solver.forces.drag[k].target[c];
+			expected += r.solver.forces.drag[k].coefficient * away * away / 2;
 		}
 	// the tolerance is rounding, because the additions have another order
 	assert_near(cau_solver_evaluate(&r.solver), expected, 1e-13 * expected);
@@ -109,10 +109,10 @@ static void test_other_work_may_be_done_beside(void **state)
 		size_t reals = 4 * (size_t)r.tissue.vertex_count;
 		size_t bytes = reals * cau_real_bytes(r.solver.elements.single);
 		double value = cau_solver_evaluate(&r.solver);
-		void *gradient = cau_arena_copy(&r.arena, r.solver.gradient, bytes, 1);
+		void *gradient = cau_arena_copy(&r.arena, r.solver.iterate.gradient, bytes, 1);
 		int done = 0;
 		assert_true(cau_solver_evaluate_beside(&r.solver, count, &done) == value);
-		assert_memory_equal(r.solver.gradient, gradient, bytes);
+		assert_memory_equal(r.solver.iterate.gradient, gradient, bytes);
 		assert_int_equal(done, 1);
 		rig_finish(&r);
 	}

@@ -108,7 +108,7 @@ static void test_no_law_pushes_or_turns_an_element(void **state)
 		for (int diagonal = 0; diagonal < 2; diagonal++) {
 			deformed d;
 			make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
-			d.r.solver.diagonal = diagonal;
+			d.r.solver.settings.diagonal = diagonal;
 			rig_local(&d.r, d.x, d.gradient);
 			const cau_elements *e = &d.r.solver.elements;
 			double force = 0, torque = 0;
@@ -142,7 +142,7 @@ static void test_rest_is_exactly_silent(void **state)
 				r.scene->layers[0].fat[0].target[i] = i < 3;
 			}
 			rig_build(&r, NULL, 1);
-			r.solver.diagonal = mode >> 1;
+			r.solver.settings.diagonal = mode >> 1;
 			size_t reals = 3 * (size_t)r.tissue.vertex_count;
 			double *gradient = cau_arena_array(&r.arena, reals, sizeof(double));
 			double energy = rig_local(&r, r.tissue.rest, gradient);
@@ -165,7 +165,7 @@ static void test_removed_elements_are_silent(void **state)
 			for (int32_t e = 0; e < cau_tissue_element_count(&d.r.tissue, kind); e++)
 				rig_remove(&d.r, kind, e, 0);
 		for (int diagonal = 0; diagonal < 2; diagonal++) {
-			d.r.solver.diagonal = diagonal;
+			d.r.solver.settings.diagonal = diagonal;
 			assert_true(rig_local(&d.r, d.x, d.gradient) == 0);
 			for (size_t i = 0; i < d.reals; i++)
 				assert_true(d.gradient[i] == 0);
@@ -197,7 +197,7 @@ static void compare(const law_scene *law, deformed *a, deformed *b, double toler
                     const char *what)
 {
 	for (int diagonal = 0; diagonal < 2; diagonal++) {
-		a->r.solver.diagonal = b->r.solver.diagonal = diagonal;
+		a->r.solver.settings.diagonal = b->r.solver.settings.diagonal = diagonal;
 		a->energy = rig_local(&a->r, a->x, a->gradient);
 		b->energy = rig_local(&b->r, b->x, b->gradient);
 		double off = rig_difference(a->gradient, b->gradient, a->reals);

@@ -32,13 +32,13 @@ static void make(rig *r, int law, double stretch)
 	rig_pin_box(r, (double[]){-1, -1, -1}, (double[]){-0.0499, 1, 1});
 	rig_build(r, NULL, 1);
 	rig_factor(r);
-	assert_true(r->solver.newton_chosen);
+	assert_true(r->solver.settings.newton_chosen);
 	cau_solver_take_strain(&r->solver, 1); // takes the strain at rest as the reference
 	rig_deform(r, a, 2e-4, &random, r->solver.position);
 	cau_solver_take_strain(&r->solver, 0.8); // a fifth of the strain is new in this step
-	r->solver.drag = cau_arena_array(&r->arena, 1, sizeof *r->solver.drag);
-	r->solver.drag_count = 1;
-	r->solver.drag[0] = (cau_drag){20, 40.0, {0.01, 0.02, -0.01}};
+	r->solver.forces.drag = cau_arena_array(&r->arena, 1, sizeof *r->solver.forces.drag);
+	r->solver.forces.drag_count = 1;
+	r->solver.forces.drag[0] = (cau_drag){20, 40.0, {0.01, 0.02, -0.01}};
 }
 
 static double *vector(rig *r)
@@ -58,7 +58,7 @@ static void gradient_at(rig *r, const double *way, double scale, double *gradien
 	for (int32_t i = 0; i < n; i++)
 		r->solver.position[i] += scale * way[i];
 	cau_solver_evaluate(&r->solver);
-	take(r, r->solver.gradient, gradient);
+	take(r, r->solver.iterate.gradient, gradient);
 	for (int32_t i = 0; i < n; i++)
 		r->solver.position[i] -= scale * way[i];
 }
@@ -137,10 +137,10 @@ static void its_increment_solves_it_and_leads_down(void **state)
 			size_t n = 3 * (size_t)r.tissue.vertex_count;
 			double *gradient = vector(&r), *way = vector(&r), *product = vector(&r), slope = 0;
 			cau_solver_evaluate(&r.solver);
-			take(&r, r.solver.gradient, gradient);
+			take(&r, r.solver.iterate.gradient, gradient);
 			assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
 			cau_loose_increment(&r.solver);
-			take(&r, r.solver.increment, way);
+			take(&r, r.solver.iterate.increment, way);
 			assert_true(cau_newton_assemble(&r.solver.loose.region, &r.solver));
 			multiply(&r, way, product);
 			for (size_t i = 0; i < n; i++) {
@@ -163,7 +163,7 @@ static void what_is_removed_is_not_in_it(void **state)
 	assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
 	for (int32_t t = 0; t < r.tissue.triangle_count; t++)
 		rig_remove(&r, CAU_ELEMENT_TRIANGLE, t, 0);
-	r.solver.drag_count = 0;
+	r.solver.forces.drag_count = 0;
 	assert_true(cau_newton_assemble(&r.solver.loose.region, &r.solver));
 	double *way = vector(&r), *product = vector(&r), dt = r.solver.step_s;
 	random_way(&r, way);
@@ -194,7 +194,7 @@ static void precondition(rig *r, uint64_t seed, double *gradient, double *increm
 		double a[3][3];
 		rig_random_gradient(&random, 1, a);
 		gradient[i] = r->fixed[i / 3] ? 0 : a[0][1];
-		cau_real_set(r->solver.gradient, false, 4 * (int64_t)(i / 3) + i % 3, gradient[i]);
+		cau_real_set(r->solver.iterate.gradient, false, 4 * (int64_t)(i / 3) + i % 3, gradient[i]);
 	}
 	assert_true(cau_newton_assemble(region, &r->solver));
 	assert_true(r->solver.kernels->newton_factor(region));
@@ -203,7 +203,7 @@ static void precondition(rig *r, uint64_t seed, double *gradient, double *increm
 		       3 * sizeof *gradient);
 	r->solver.loose.fresh = true;
 	cau_loose_increment(&r->solver);
-	take(r, r->solver.increment, increment);
+	take(r, r->solver.iterate.increment, increment);
 }
 
 static double dot(const double *a, const double *b, size_t n)
@@ -244,13 +244,13 @@ static void settling_leaves_no_force(void **state)
 		memcpy(before, r.solver.position, n * sizeof *before);
 		choose_half(&r);
 		double objective = cau_solver_evaluate(&r.solver), first = objective;
-		take(&r, r.solver.gradient, gradient);
+		take(&r, r.solver.iterate.gradient, gradient);
 		double size = sqrt(dot(gradient, gradient, n)), left = 0;
 		int most = law == VISCOUS ? 12 : 4; // the viscous sheet buckles while it settles
 		for (int k = 0; k < most && (!k || !r.solver.loose.settled); k++)
 			assert_int_equal(cau_loose_settle(&r.solver, &objective, NULL), CAU_OK);
 		assert_true(r.solver.loose.settled && !r.solver.loose.given_up && objective < first);
-		take(&r, r.solver.gradient, gradient);
+		take(&r, r.solver.iterate.gradient, gradient);
 		for (size_t i = 0; i < n; i++) {
 			if (r.solver.loose.region.place[i / 3] < 0)
 				assert_true(r.solver.position[i] == before[i]);
@@ -271,7 +271,7 @@ static void what_is_slack_is_loose(void **state)
 	for (int law = 0; law < LAWS; law++) {
 		rig r;
 		make(&r, law, 1.6);
-		r.solver.newton_chosen = false;
+		r.solver.settings.newton_chosen = false;
 		cau_solver_evaluate(&r.solver);
 		assert_int_equal(cau_loose_choose(&r.solver, NULL), CAU_OK);
 		assert_int_equal(r.solver.loose.region.n > 0, law == RANGE);

@@ -15,7 +15,7 @@ static void test_laws_with_an_energy(void **state)
 		assert_int_equal(cau_solver_is_conservative(&r.tissue, 0), law_scenes[k].has_energy);
 		// printed projections have no energy
 		assert_int_equal(cau_solver_is_conservative(&r.tissue, 1), 0);
-		assert_int_equal(r.solver.conservative, law_scenes[k].has_energy);
+		assert_int_equal(r.solver.settings.conservative, law_scenes[k].has_energy);
 		rig_finish(&r);
 	}
 }
@@ -48,10 +48,10 @@ static void test_diagonal_step(void **state)
 	rig_build(&r, NULL, 1);
 	rig_factor(&r);
 	size_t n = (size_t)r.tissue.vertex_count;
-	double *in = (double *)r.solver.gradient, *out = (double *)r.solver.increment;
+	double *in = (double *)r.solver.iterate.gradient, *out = (double *)r.solver.iterate.increment;
 	for (size_t i = 0; i < 4 * n; i++)
 		in[i] = (double)(i % 7) - 3;
-	cau_solver_apply_inverse(&r.solver, r.solver.gradient, r.solver.increment, -1);
+	cau_solver_apply_inverse(&r.solver, r.solver.iterate.gradient, r.solver.iterate.increment, -1);
 	for (size_t i = 0; i < 3 * n; i++) {
 		double expected = -in[4 * (i / 3) + i % 3] / r.solver.system.diagonal[i / 3];
 		assert_true(out[4 * (i / 3) + i % 3] == expected);

@@ -58,15 +58,16 @@ static void test_displacements_and_steps(void **state)
 		int32_t n = r.tissue.vertex_count;
 		for (int32_t i = 0; i < 3 * n; i++)
 			solver->position[i] = r.tissue.rest[i] + 0.001 * i;
-		memset(solver->displacement, 0, 4 * (size_t)n * vectors->real_bytes);
+		memset(solver->iterate.displacement, 0, 4 * (size_t)n * vectors->real_bytes);
 		vectors->displace(solver, 1, n);
 		for (int32_t i = 0; i < 3 * n; i++) {
 			double wanted = i < 3 ? 0 : solver->position[i] - r.tissue.rest[i];
 			wanted = single ? (double)(float)wanted : wanted;
-			assert_true(vectors->at(solver->displacement, 4 * (i / 3) + i % 3) == wanted);
+			assert_true(vectors->at(solver->iterate.displacement, 4 * (i / 3) + i % 3) == wanted);
 		}
-		memcpy(solver->position_before, r.tissue.rest, 3 * (size_t)n * sizeof(double));
-		memcpy(solver->trial_increment, solver->displacement, 4 * (size_t)n * vectors->real_bytes);
+		memcpy(solver->iterate.before, r.tissue.rest, 3 * (size_t)n * sizeof(double));
+		memcpy(solver->iterate.trial, solver->iterate.displacement,
+		       4 * (size_t)n * vectors->real_bytes);
 		vectors->step(solver, 0.5, 0, n);
 		for (int32_t i = 0; i < 3 * n; i++) {
 			double way = i < 3 ? 0 : 0.0005 * i;

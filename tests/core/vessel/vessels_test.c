@@ -71,7 +71,8 @@ static cau_session *block(double flat)
 	cau_session *session = stage_open(scene, 1);
 	free(scene);
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
-		session->position[3 * (size_t)v + 2] = flat * session->tissue.rest[3 * (size_t)v + 2];
+		session->vertices.position[3 * (size_t)v + 2] =
+			flat * session->tissue.rest[3 * (size_t)v + 2];
 	cau_session_look_at_vessels(session);
 	return session;
 }
