@@ -62,8 +62,8 @@ class Parts(unittest.TestCase):
         self.assertEqual(again[:2], ({}, {"whole": "of details"}))  # it was not made again
         self.assertEqual((figures, list(failed), sections["whole"]), ({"whole": 1}, ["broken"], "of details"))
         self.assertIn("Could not be made this time: OSError: no such program", sections["broken"])
-        self.assertIn("Made but for broken in", run.made_line(60, 0, failed))
-        self.assertIn("Made whole in 20 minutes", run.made_line(1200, 0, {}))
+        self.assertIn("made every part of this page except broken (", run.made_line(60, 0, failed))
+        self.assertIn("A run of 20 minutes made every part of this page (", run.made_line(1200, 0, {}))
 
     def test_every_part_has_its_figures_expected_and_its_place_on_a_page(self):
         with open(os.path.join(run.FOLDER, "expected.json"), encoding="utf-8") as file:
@@ -167,7 +167,7 @@ class PublishedMeasurements(unittest.TestCase):
         self.assertFalse(measured.Measured("1", "", "", True, [near, far]).holds())
         said = measured.verdict([measured.Measured("1", "", "", True, [near]), measured.Measured("2", "", "", True, [far]),
                                  measured.Measured("3", "", "", True, []), measured.Measured("4", "", "", False, [near])])
-        self.assertIn("Of the 3 measurements that are to be within a factor of two, 1 are: 1.", said)
+        self.assertIn("Of the 3 measurements that should be within a factor of two, 1 are: 1.", said)
 
     def test_each_term_is_taken_away_alone(self):
         whole = measured.with_jaws_of(0.5)
