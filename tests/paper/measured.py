@@ -208,7 +208,7 @@ def peritoneum(bench):
         "ultrasonic 3": ("jaws", "connective", with_shears(thick_mm, 3, 10, body_c, 1, **UNTIL_PARTED))})
     depth = {name: 1000 * one["necrosis_mm"] for name, one in found.items()}
     published = {"monopolar": 216, "sealer": 144, "ultrasonic 5": 127, "ultrasonic 3": 90}
-        seconds = ", ".join(f"{found[name]['energy_s']:.2f} s ({name})" for name in ("sealer", "ultrasonic 5", "ultrasonic 3"))
+    seconds = ", ".join(f"{found[name]['energy_s']:.2f} s ({name})" for name in ("sealer", "ultrasonic 5", "ultrasonic 3"))
     return Measured("4", "necrosis beside the instrument, human peritoneum", "um", True,
                     [Value(name, published[name], depth[name]) for name in published],
                     [("monopolar > sealer > ultrasonic 5 > ultrasonic 3", is_descending([depth[name] for name in published]))],
@@ -234,7 +234,7 @@ def pauses(bench, number, name, thick_mm, published):
         also = {**{key[1]: depth[key] for key in depth if key[0] == level}, "5 + 5 s": one["necrosis_mm"]}
         keys = sorted((key for key in published if key[0] == level), key=published.get)
         orders.append((f"the same, open in the pause (level {level})", is_descending([also[key[1]] for key in reversed(keys)])))
-        hot = " and ".join(f"{found[(level, '10 s')]['blade_peak_c']:.0f}" for level in (3, 5))
+    hot = " and ".join(f"{found[(level, '10 s')]['blade_peak_c']:.0f}" for level in (3, 5))
     beside = " and ".join(f"{opened[level]['necrosis_mm']:.2f}" for level in (3, 5))
     return Measured(number, f"necrosis beside ultrasonic shears, {name}", "mm", True,
                     [Value(f"level {key[0]}, {key[1]}", published[key], depth[key]) for key in published], orders,
@@ -260,7 +260,7 @@ def flat_or_grooved(bench):
     found = bench.all({name: ("jaws", tissue, with_jaws_of(groove))
                        for name, groove in (("flat", 0), ("grooved", given("flat_or_grooved", "groove_mm")))})
     peak = {name: one["tissue_peak_c"] for name, one in found.items()}
-        ohms = ", ".join(f"{found[name]['first_ohm']:.0f} ohm ({name})" for name in peak)
+    ohms = ", ".join(f"{found[name]['first_ohm']:.0f} ohm ({name})" for name in peak)
     return Measured("9", "greatest temperature, flat and grooved bipolar jaws", "degC", True,
                     [Value("flat", 105, peak["flat"], start_c), Value("grooved", 96, peak["grooved"], start_c)],
                     [("flat > grooved", peak["flat"] > peak["grooved"])], f"at the start the load was {ohms}")
@@ -416,7 +416,7 @@ def quick(sim):
 # ---- a page
 
 REASONS = [
-        ("4", "the shears need 8 to 10 s for a fold that surgeons divide in one or two seconds. The friction, 0.045, was measured at a "
+    ("4", "the shears need 8 to 10 s for a fold that surgeons divide in one or two seconds. The friction, 0.045, was measured at a "
      "hundredth of the speed and less than a thousandth of the pressure. In 8 to 10 s the heat spreads by 1.3 mm. The power of the "
      "monopolar cut, 30 W, is assumed, because the abstract does not state the power. The kerf of this cut takes about 18 of the 26 J "
      "that the fold takes up. The other heat spreads in the fold, because the set-up has no muscle below the fold"),

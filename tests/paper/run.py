@@ -178,7 +178,7 @@ def duration(seconds):
 
 def made_line(seconds, load_before, failed):
     cores = len(os.sched_getaffinity(0))
-        missing = f" except {', '.join(failed)}" if failed else ""
+    missing = f" except {', '.join(failed)}" if failed else ""
     return (f"A run of {duration(seconds)} made every part of this page{missing} ({time.strftime('%Y-%m-%d')}, {cores} cores of "
             f"{processor()}). The machine's load average before the run was {load_before:.1f}. If this load is not near 0, other "
             "programs ran too, so compare times only within one table.\n")
