@@ -140,7 +140,7 @@ and by a rule that removes each triangle that the needle touches.
 {chr(10).join(rows)}
 
 The paper says that its structure makes more patterns than those that remove polygons (section 7.1). {verdict(fans)} The
-last column counts the sets that strokes left by the edge rule only, and never by the rule of touch. By the edge rule,
+last column counts the sets that remained only by the edge rule, and never by the rule of touch. By the edge rule,
 triangles whose edges had too little heat remain beside removed triangles. The rule of touch removes all of these
 triangles. The rule of touch also makes patterns that heat does not make, because it removes single triangles that the
 needle only brushed. So the strokes decide which rule makes more patterns. Each rule makes patterns that the other rule
@@ -151,5 +151,5 @@ does not make.
 def verdict(fans):
     more = [f for f in fans if f["edges"] > f["touch"]]
     if len(more) == len(fans):
-        return "By this count there are more patterns by the edge rule, for every fan."
-    return f"By this count there are more patterns by the edge rule for {len(more)} of {len(fans)} fans."
+        return "By this count the edge rule makes more patterns for every fan."
+    return f"By this count the edge rule makes more patterns for {len(more)} of {len(fans)} fans."
