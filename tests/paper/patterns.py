@@ -129,8 +129,8 @@ def page(fans):
              f"{f['edges_alone']} |" for f in fans]
     return f"""## Figure 5: patterns of incision
 
-The figure has fans of triangles about one vertex, at rest. A needle of {1e3 * NEEDLE_M:.1f} mm is held on one edge for
-{DOSE_S} s: the edge parts, and the triangles of this edge are removed. So a dose of heat parts single edges. Then the
+The figure has fans of triangles about one vertex, at rest. First, a needle of {1e3 * NEEDLE_M:.1f} mm is held on one edge for
+{DOSE_S} s. The edge parts, and the triangles of this edge are removed. So a dose of heat parts single edges. Then the
 needle makes {fans[0]['strokes']} random strokes, straight, of {1e3 * SPEEDS_M_S[0]:.1f} to {1e3 * SPEEDS_M_S[1]:.0f}
 mm/s, the same for every fan. The table counts the different sets of remaining triangles: by the edge rule with heat,
 and by a rule that removes each triangle that the needle touches.
