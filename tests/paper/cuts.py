@@ -113,8 +113,8 @@ mean over {OFFSETS} paths with different positions in the cells, and the least a
 {chr(10).join(by_mesh)}
 
 By edges, half a cell on all sides is removed together with the parted elements, so a coarse mesh loses more. By
-elements, the mesh loses only the tissue that the heat reaches. Two tests require that the mean volume of eight paths
-changes by at most 15 % over meshes of 1 to 2 x the cells, and by at most 30 % at 0.5 x. The test
+elements, the mesh loses only the tissue that the heat reaches. Two tests compare the mean volume of eight paths between meshes. The mean may change by at most 15 % over meshes of 1 to
+2 x the cells, and by at most 30 % at 0.5 x. The test
 `core_session_cut_by_mesh` runs such sessions with steps of 1/30 s. It runs the meshes 0.5 x and 1 x in every run, and
 finer meshes with `--long`. The test `core_dissect_doses` runs the cuts on tissue at rest.
 

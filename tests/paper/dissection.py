@@ -291,8 +291,8 @@ the tool has passed. Removed and charred triangles are counted in the visible la
 
 At 2 mm/s every bundle gets more heat than it withstands. The fascia opens as a smooth ellipse, the fat as a straight
 trench. The spread of the paper's table alone changes little. With the shipped hook no strand stays at 2 to 3.5 mm/s.
-With the thinner hook and a speed of 4 mm/s some bundles withstand their dose and stay across (the last of them at the
-end of the cut). Beside these strands the gap is narrower. Most of the roughness comes from the curves of the lips
+With the thinner hook and a speed of 4 mm/s some bundles withstand their dose and stay across the cut. The last of these
+bundles is at the end of the cut. Beside these strands the gap is narrower. Most of the roughness comes from the curves of the lips
 between strands. The teeth of the lips are one or two cells long, 2 to 4 mm. A sheet of 6,000 triangles cannot have
 finer teeth. The fat's spread is a quarter of the fascia's. The fat parts completely, with uneven lips, at most one
 strand, and more char; tension across the cut opens the cut.

@@ -200,12 +200,12 @@ def page(details):
     return f"""## What was run
 
 The scene `fascia-power`: a needle of 1 mm is drawn through {LENGTH_MM} mm of taut fascia of 0.5 mm, with 30 W, 1,150 V, 7 mm/s
-and cells of 0.25 mm, where a table does not say otherwise. The program computes each term of the ledger
+and cells of 0.25 mm, if a table does not state other values. The program computes each term of the ledger
 independently. The ledger has no gap if delivered + from the blade = stored + boiled + perfused + surface + with removed
 tissue. Elements part as a whole, so the parted area is a strip as wide as an element. Severed is the length of the
 tool's path along which a triangle on one side of the path was removed. Vaporised is the removed tissue that had lost
-half of its water. The kerf is the mean width of the vaporised tissue. The width of coagulation is the width of two
-equal strips, one on each side of the severed length, which together have the volume of the remaining coagulated tissue.
+half of its water. The kerf is the mean width of the vaporised tissue. Two equal strips, one on each side of the severed length, would together have the volume of the remaining coagulated
+tissue. The width of coagulation is the width of one strip.
 The tests `core_bioheat_*` compare heat, boiling, current, blades and damage with closed forms, within 1 %.
 
 The greatest gap of the ledger in all {len(every)} runs is {worst:.1e} of the energy that came in. Within the limit of

@@ -91,8 +91,9 @@ def table():
 
 A change that makes one of these results worse fails a test. The column "by" names the tests. Names without a file are
 figures of `expected.json`, or the beginnings of such figures' names; the test `paper_quick` checks them. Three kinds of
-results have no test: the errors of free sheets with the scenes' own steps (in the tables above), all times, among them
-the cost of a drawn tool, and strains beyond a limit at loads that `paper_quick` does not compute.
+results have no test. The first kind is the errors of free sheets with the scenes' own steps (in the tables above). The
+second kind is all times, among them the cost of a drawn tool. The third kind is strains beyond a limit at loads that
+`paper_quick` does not compute.
 
 | what | to | by |
 |---|---|---|
