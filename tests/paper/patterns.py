@@ -139,7 +139,7 @@ and by a rule that removes each triangle that the needle touches.
 
 {chr(10).join(rows)}
 
-The paper says that its structure makes more patterns than those that remove polygons (section 7.1). {verdict(fans)} The
+The paper says that its data structure makes more patterns than structures that remove polygons (section 7.1). {verdict(fans)} The
 last column counts the sets that remained only by the edge rule, and never by the rule of touch. By the edge rule,
 triangles whose edges had too little heat remain beside removed triangles. The rule of touch removes all of these
 triangles. The rule of touch also makes patterns that heat does not make, because it removes single triangles that the
