@@ -266,11 +266,10 @@ def page(cuts):
     return f"""## Figure 7: fascia and fat under the instrument
 
 These pictures are drawn from the states that `cautery-sim` writes, as seen from above. (Pictures of the viewer follow
-below.) The top layer has a border, openings are black, triangles with more than {CHARRED:.0%} of their ignition's dose
-are brown, and the hot part is a ring. The paper's scenes come first, without changes. Then follow two scenes with other
+below.) The top layer has a border, openings are black, triangles with more than {CHARRED:.0%} of the dose at which they ignite are brown, and the hot part is a ring. The paper's scenes come first, without changes. Then follow two scenes with other
 paths of the tool and an uneven ignition:
 
-- *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC with the spread of the
+- *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC on average, with the spread of the
   paper's table, 17 degC. The hook has a radius of 2 mm instead of 3 mm, and is drawn at 4 mm/s instead of 2 mm/s.
 - *fat, frayed*: the fat is cut across its tension instead of along it, at 4 mm/s instead of 2 mm/s. The membrane is as
   taut as the fat (T = 0.3 along x). Membrane and fat ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9
@@ -294,6 +293,7 @@ trench. The spread of the paper's table alone changes little. With the shipped h
 With the thinner hook and a speed of 4 mm/s some bundles withstand their dose and stay across the cut. The last of these
 bundles is at the end of the cut. Beside these strands the gap is narrower. Most of the roughness comes from the curves of the lips
 between strands. The teeth of the lips are one or two cells long, 2 to 4 mm. A sheet of 6,000 triangles cannot have
-finer teeth. The fat's spread is a quarter of the fascia's. The fat parts completely, with uneven lips, at most one
+finer teeth. The spread of the fat's ignition temperature is a quarter of the
+fascia's spread. The fat parts completely, with uneven lips, at most one
 strand, and more char; tension across the cut opens the cut.
 """

@@ -86,8 +86,8 @@ rest, and "open" uses the area of the opening at the end.
 
 {chr(10).join(rows)}
 
-In the mildly taut sheet, shrinkage moves the lips apart by {widening(cuts, 'mild', 'along'):.1f} mm along and
-{widening(cuts, 'mild', 'across'):.1f} mm across. In the paper's sheet shrinkage changes the opening by
+In the mildly taut sheet, shrinkage moves the lips apart by {widening(cuts, 'mild', 'along'):.1f} mm in the cut along and
+{widening(cuts, 'mild', 'across'):.1f} mm in the cut across. In the paper's sheet shrinkage changes the opening by
 {widening(cuts, 'taut', 'along'):+.1f} mm. Tension opens the cut by far more than the shrinkage beside the cut. So figure
 6 shows the effect of shrinkage only if tension is small. (A sheet without tension moves away from the hook and is
 not cut at all.)
