@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Monopolar L hook. The hot wire is a foot along x through the tip, and a heel that bends up. A
 // cold, insulated neck leads from above the heel back to the axis, where the shaft begins. As on
-// real hooks, the foot crosses the shaft's axis near its middle, and the heel is at the shaft's
-// side.
+// real hooks, the shaft's axis crosses the foot near the foot's middle, and the heel is at the
+// shaft's side.
 #include "tool/distance.h"
 #include "tool/family.h"
 

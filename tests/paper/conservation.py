@@ -59,17 +59,19 @@ def page(found):
     build/tests/paper_probe swing STEPS_PER_S
 
 A block of 40 x 40 x 20 mm without pins and weight starts at 0.11 m/s and spins at 10 rad/s about an
-axis that is not one of its principal axes. The table has the three quantities after ten seconds, 600 steps.
+axis that is not one of its principal axes. The table compares momentum,
+angular momentum and energy after ten seconds (600 steps) with their values at the start.
 
-| steps | momentum changed by, of itself | angular momentum along what it was | changed by, of itself | energy kept |
+| steps | relative change of momentum | angular momentum along its first direction, end / start | relative change of angular momentum | energy, end / start |
 |---|---:|---:|---:|---:|
 {chr(10).join(flights)}
 
 ![Angular momentum and energy of a free block](validation-flight.svg)
 
-A block of 80 x 20 x 20 mm, held at one end, is released level. Only the method damps the block: implicit Euler removes
-energy from motion, and more with a longer step. The table has the remaining share of the kinetic, elastic and potential
-energy above the sunk state at rest. The last column is the energy that all steps added without a source.
+A block of 80 x 20 x 20 mm, held at one end, is released in a level position and sinks. Nothing damps the block except
+the method: implicit Euler removes energy from motion, and removes more with a longer step. The block's energy is its
+kinetic, elastic and potential energy, minus the energy of the sunk block at rest. The table has the share of this
+energy that is left. The last column is the energy that all steps added without a source.
 
 | steps a second | after 0.5 s | after 1 s | added without a source |
 |---:|---:|---:|---:|

@@ -255,21 +255,23 @@ def force_said(depths, meshes):
     wide = [abs(off(row, "hertz_n")) for row in rows if row["cells"] >= ENOUGH_CELLS]
     few = [abs(off(row, "hertz_n")) for row in rows if row["cells"] < ENOUGH_CELLS]
     finest = max(abs(off_hertz(meshes[ball, MESHES[-1]])) for ball in BALLS)
-    return paragraph(f"Off the solution of the same mesh at most {judged(solution, OF_SOLUTION, '.0e')}.",
-                     f"Off Hertz at most {max(wide):.1%} where a patch spans {ENOUGH_CELLS} cells or more, {max(few):.1%} where it spans "
-                     f"fewer; on the finest meshes of the next table {judged(finest, OF_HERTZ)}.")
+    return paragraph(f"The force differs from the solution of the same mesh by at most {judged(solution, OF_SOLUTION, '.0e')}.",
+                     f"The force differs from Hertz's force by at most {max(wide):.1%} if a patch spans {ENOUGH_CELLS} cells or more, "
+                     f"and by at most {max(few):.1%} if a patch spans fewer.",
+                     f"On the finest meshes of the next table the difference from Hertz is {judged(finest, OF_HERTZ)}.")
 
 
 def meshes_said(meshes):
     most = max(over_meshes(meshes, ball) for ball in BALLS)
-    return f"Over meshes of {ENOUGH_CELLS} cells a patch and more, at all places, at most {judged(most, OVER_MESHES)}."
+    return paragraph(f"Over meshes of {ENOUGH_CELLS} cells a patch and more, and all positions, the force changes by at most "
+                     f"{judged(most, OVER_MESHES)}.")
 
 
 def slides_said(slides):
     above = [cells for cells, rows in slides.items() if change([row["force_n"] for row in rows]) > SLIDES[cells]]
     if not above:
-        return "All are as asked."
-    return paragraph(*(f"At {cells} cells a patch it is not as asked"
+        return "All these ranges are within their limits."
+    return paragraph(*(f"At {cells} cells a patch the range is above its limit"
                        + (f": the solution of such a mesh changes by {change([row['solved_n'] for row in slides[cells]]):.1%}."
                           if cells in SOLVED_SLIDES else ".") for cells in above))
 
@@ -279,16 +281,16 @@ def rest_said(rest):
     vertices = 1e3 * max(deepest(rows, "vertex_depth_m") for rows in rest.values())
     above = [key for key in faces if faces[key] > INSIDE_MM]
     (ball, cell), deep = max(faces.items(), key=lambda item: item[1])
-    faces_said = (f"Faces are deeper than that in {len(above)} of {len(faces)}: flat as they are, they dip into "
-                  "what is round" if above else "No face is deeper than that either")
+    faces_said = (f"Faces are deeper than the limit in {len(above)} of {len(faces)} cases, because a flat face dips into a "
+                  "round ball" if above else "No face is deeper than the limit")
     without = [row["left_out"] > 0 for rows in rest.values() for row in rows]
     (restless, its_cell), most = max(((key, wobble(rows)) for key, rows in rest.items()), key=lambda item: item[1])
-    return paragraph(f"Asked is {INSIDE_MM:g} mm at most. Vertices are inside by {vertices:.0e} mm at most, "
-                     f"{'within' if vertices <= INSIDE_MM else 'above'} that.",
-                     f"{faces_said}; the deepest is {deep:.2f} mm (ball of {ball.radius:g} mm, cells of {cell:g} mm).",
+    return paragraph(f"The limit is {INSIDE_MM:g} mm. Vertices are inside by {vertices:.0e} mm at most, "
+                     f"{'within' if vertices <= INSIDE_MM else 'above'} the limit.",
+                     f"{faces_said}; the deepest face is {deep:.2f} mm deep (ball of {ball.radius:g} mm, cells of {cell:g} mm).",
                      f"At {sum(without)} of {len(without)} places touching tissue had no contact constraint." if any(without) else
-                     "All of it had its contact constraint.",
-                     f"A force changes by {most:.1%} at most though its ball does not move (ball of {restless.radius:g} mm, cells of "
+                     "All touching tissue had its contact constraint.",
+                     f"The force on a ball at rest changes by {most:.1%} at most (ball of {restless.radius:g} mm, cells of "
                      f"{its_cell:g} mm).", "A `-` means that more vertices would be in contact "
                      "than the capacity for contact constraints.")
 
@@ -296,7 +298,7 @@ def rest_said(rest):
 def cost_said(costs):
     of = costs[COSTS[0]]
     more = of["in_ms"] - of["away_ms"]
-    return (f"Asked of the first is {ASKED_MS:g} ms at most: it takes {more:.2f} ms, {'within' if more <= ASKED_MS else 'above'} that.")
+    return (f"The first case may cost {ASKED_MS:g} ms at most. It costs {more:.2f} ms, {'within' if more <= ASKED_MS else 'above'} this limit.")
 
 
 def crossing_said(presses, failed):
@@ -307,14 +309,15 @@ def crossing_said(presses, failed):
     return paragraph(f"Of {len(presses)} presses **{crossed or 'none'}** crossed"
                      f"{'.' if failed == 0 else f', and {failed} failed the test that they are of.'}",
                      f"Of {len(balls)} balls {len(above) or 'none'} ended with a face deeper inside than {INSIDE_MM:g} mm; "
-                     f"the deepest is {deep:.2f} mm ({tool}, {tissue}, cells of {cell:g} mm).")
+                     f"the deepest face is {deep:.2f} mm deep ({tool}, {tissue}, cells of {cell:g} mm).")
 
 
 def narrow_said(rows):
     through = sum(row["least_n"] <= 0 for row in rows)  # what has let it through does not push it back
-    return paragraph(f"Beyond that matrix: the ball of {BALLS[0].radius:g} mm without friction, {REST_DEPTH_MM} mm deep in a slab "
-                     f"{2 * NARROW_HALF_MM} mm wide of cells of {NARROW_CELL_MM} mm, where it rests on faces, at {len(rows)} places.",
-                     f"**It passes through while it rests at {through} of them.**" if through else "It is held at all of them.")
+    return paragraph(f"One more case is not part of these presses. The ball of {BALLS[0].radius:g} mm without friction is pressed "
+                     f"{REST_DEPTH_MM} mm deep into a slab {2 * NARROW_HALF_MM} mm wide with cells of {NARROW_CELL_MM} mm, at "
+                     f"{len(rows)} places where it rests on faces.",
+                     f"**The ball at rest passes through at {through} of them.**" if through else "The ball is held at all of them.")
 
 
 def page(details):
@@ -326,13 +329,12 @@ def page(details):
     build/tests/paper_contact_probe cost RADIUS_MM DEPTH_MM SPEED_MM_S TICKS
     PROXY_MATRIX={EVERY} build/tests/test_core_session_proxy_matrix
 
-Rigid balls without friction are pressed into a slab of {THICK_MM} mm that is bonded to its floor, E
-{1e-3 * YOUNG_MODULUS_PA:g} kPa and nu {POISSON:g} (stable
-neo-Hookean), until everything rests, by steps of an accuracy of 1e-4. Cells are equal below the ball and grow outwards.
-They are counted
-along the diameter of the patch that the ball has by Hertz, 2 sqrt(R d). *Solution*: the same mesh by Newton's method
-with an active set, in double, without any code of core ([tests/reference](../reference/README.md)). *Hertz*: the force
-of Hertz with the correction of Dimitriadis et al. (2002) for a thin layer, for small strains.
+Rigid balls without friction are pressed into a slab of {THICK_MM} mm that is bonded to its floor. The slab is stable
+neo-Hookean with E {1e-3 * YOUNG_MODULUS_PA:g} kPa and nu {POISSON:g}. The session runs at an accuracy of 1e-4 until everything rests. Cells are
+equal below the ball and grow outwards. "Cells a patch" is the number of cells along the diameter of the contact patch by
+Hertz, 2 sqrt(R d). *Solution* is the force that Newton's method with an active set finds on the same mesh, in double
+precision, without any code of core ([tests/reference](../reference/README.md)). *Hertz* is Hertz's force for small
+strains, with the correction of Dimitriadis et al. (2002) for a thin layer.
 
 | ball, mm | depth, mm | cells a patch | force, mN | solution, mN | off it | Hertz, mN | off it |
 |---:|---:|---:|---:|---:|---:|---:|---:|
@@ -342,8 +344,8 @@ of Hertz with the correction of Dimitriadis et al. (2002) for a thin layer, for 
 
 ![Force by depth](validation-contact-force.svg)
 
-The same by mesh: off Hertz, mean of {PLACES} places along a cell. The last column is the range over all these positions
-on meshes of {ENOUGH_CELLS} cells a patch and more.
+The next table has the difference from Hertz's force by mesh, as the mean of {PLACES} positions of the ball along a cell. The
+last column is the range of the force over all these positions on meshes of {ENOUGH_CELLS} cells a patch and more.
 
 | ball, mm | depth, mm | {' | '.join(f'{cells} cells' for cells in MESHES)} | least to most |
 |---:|---:|{'---:|' * len(MESHES)}---:|
@@ -353,8 +355,8 @@ on meshes of {ENOUGH_CELLS} cells a patch and more.
 
 ![Force by mesh](validation-contact-meshes.svg)
 
-A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:g}, at {SLIDING_PLACES} places along a
-cell. The table has the range of its force, relative to the mean.
+A ball of {SLIDING.radius:g} mm is pressed {SLIDING.usual:g} mm deep at {SLIDING_PLACES} positions along a cell, with nu {SLIDING_POISSON:g}. The table has the range
+of the ball's force over these positions, relative to the mean.
 
 | cells a patch | changes by | the mesh's solution by | asked | reached |
 |---:|---:|---:|---:|---|
@@ -365,8 +367,9 @@ cell. The table has the range of its force, relative to the mean.
 ![Force along a cell](validation-contact-sliding.svg)
 
 A ball rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more. The table has the largest depth of tissue
-inside the ball, mm, within half a second at {PLACES} positions: vertices on all meshes, then faces by their cells. The last
-columns have the range of the force in that time, at the worst position.
+inside the ball, in mm, within half a second and over {PLACES} positions. One column has the depth of vertices on all meshes.
+The next columns have the depth of faces, by the width of the cells. The last columns have the range of the force in
+this half second, at the worst position.
 
 | ball, mm | vertices | {' | '.join(f'faces, {cell} mm' for cell in REST_CELLS_MM)} | {' | '.join(f'force, {cell} mm' for cell in REST_CELLS_MM)} |
 |---:|---:|{'---:|' * 2 * len(REST_CELLS_MM)}
@@ -384,9 +387,9 @@ vertices that the ball touches.
 
 {cost_said(costs)}
 
-Balls of 0.25 to 40 mm, a capsule, a hook and closed jaws, pressed at 0.01 to 1.5 m/s into a taut sheet, a slab and `layers` on
-cells of 4, 2 and 1 mm, five radii deep but at most 4 mm. This is every third press, without the slab of 1 mm cells;
-`core_session_proxy_matrix_all` tries all presses. A tool has crossed if a face is above the tool, on the side from
+Balls of 0.25 to 40 mm, a capsule, a hook and closed jaws are pressed into a taut sheet, a slab and `layers`. Their speed
+is 0.01 to 1.5 m/s, the cells are 4, 2 and 1 mm wide, and the depth is five radii, but at most 4 mm. This page has every
+third press, without the slab of 1 mm cells; `core_session_proxy_matrix_all` tries all presses. A tool has crossed if a face is above the tool, on the side from
 which the tool came.
 
 {crossing_said(*found["matrix"])}

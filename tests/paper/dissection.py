@@ -266,11 +266,10 @@ def page(cuts):
     return f"""## Figure 7: fascia and fat under the instrument
 
 These pictures are drawn from the states that `cautery-sim` writes, as seen from above. (Pictures of the viewer follow
-below.) The top layer has a border, openings are black, triangles with more than {CHARRED:.0%} of their ignition's dose
-are brown, and the hot part is a ring. The paper's scenes come first, without changes. Then follow two scenes with other
+below.) The top layer has a border, openings are black, triangles with more than {CHARRED:.0%} of the dose at which they ignite are brown, and the hot part is a ring. The paper's scenes come first, without changes. Then follow two scenes with other
 paths of the tool and an uneven ignition:
 
-- *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC with the spread of the
+- *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC on average, with the spread of the
   paper's table, 17 degC. The hook has a radius of 2 mm instead of 3 mm, and is drawn at 4 mm/s instead of 2 mm/s.
 - *fat, frayed*: the fat is cut across its tension instead of along it, at 4 mm/s instead of 2 mm/s. The membrane is as
   taut as the fat (T = 0.3 along x). Membrane and fat ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9
@@ -291,9 +290,10 @@ the tool has passed. Removed and charred triangles are counted in the visible la
 
 At 2 mm/s every bundle gets more heat than it withstands. The fascia opens as a smooth ellipse, the fat as a straight
 trench. The spread of the paper's table alone changes little. With the shipped hook no strand stays at 2 to 3.5 mm/s.
-With the thinner hook and a speed of 4 mm/s some bundles withstand their dose and stay across (the last of them at the
-end of the cut). Beside these strands the gap is narrower. Most of the roughness comes from the curves of the lips
+With the thinner hook and a speed of 4 mm/s some bundles withstand their dose and stay across the cut. The last of these
+bundles is at the end of the cut. Beside these strands the gap is narrower. Most of the roughness comes from the curves of the lips
 between strands. The teeth of the lips are one or two cells long, 2 to 4 mm. A sheet of 6,000 triangles cannot have
-finer teeth. The fat's spread is a quarter of the fascia's. The fat parts completely, with uneven lips, at most one
+finer teeth. The spread of the fat's ignition temperature is a quarter of the
+fascia's spread. The fat parts completely, with uneven lips, at most one
 strand, and more char; tension across the cut opens the cut.
 """

@@ -31,13 +31,13 @@ def page(found):
 
     build/tests/test_core_session_equilibrium
 
-Static equilibria by DOLFINx, on the same mesh of linear tetrahedra with the same energy
-([tests/reference](../reference/README.md)), are compared with sessions that are stepped in double until they are at
-rest. "Displacement off" is the largest difference of a displacement, relative to the largest displacement. "Force off"
-is the same for the force of the supports and the sphere.
-The test allows {ALLOWED:g}, {ALLOWED_CONTACT:g} with contact. The last column is not an error of a solver. It is the
-difference between this coarse mesh and a converged mesh (force of the pull, sinking of the tip, moment of the twist,
-force on the sphere). Linear tetrahedra lock.
+Sessions are stepped in double precision until the tissue is at rest. The table compares them with the static equilibria
+that DOLFINx computes on the same mesh of linear tetrahedra with the same energy
+([tests/reference](../reference/README.md)). "Displacement off" is the largest difference of a displacement, relative to the largest displacement. "Force off"
+is the largest relative difference of the force of the supports and the sphere. The test allows {ALLOWED:g} for both,
+and {ALLOWED_CONTACT:g} with contact. The last column is not an error of a solver. The last column is the difference
+between this coarse mesh and a converged mesh (force of the pull, sinking of the tip, moment of the twist, force on the
+sphere). This difference is large because linear tetrahedra lock.
 
 | what | case | displacement off | force off | this mesh against a converged one |
 |---|---|---:|---:|---:|

@@ -38,12 +38,12 @@ LIVER = {
 }
 
 NOT_BY_NUMBERS = [
-    ("1: regime at 10, 25 and 50 W in liver", "in part", "the abstract does not name the blade's speed or size. With the hook at 10 mm/s, 25 W coagulates and cuts only where it dwelled, and 50 W cuts and coagulates, as published. At 10 W it coagulates, where the published blade did nothing. Slower, 25 W cuts"),
-    ("2: width of coagulation from 25 to 50 W", "no", "where 25 W coagulates without a cut there is no width beside a cut to compare with that of 50 W"),
-    ("3: heat capacity near 100 degC", "no", "with boiling at one temperature it depends on the window, which the abstract does not name"),
-    ("17: ultrasonic seals fail above 4.5 mm", "no", "a seal's strength is that of a thin wall, by the ratio of wall and radius, so it has no such limit"),
+    ("1: regime at 10, 25 and 50 W in liver", "in part", "the abstract does not name the blade's speed or size. With the hook at 10 mm/s, 25 W coagulates and cuts only where the hook dwelled, and 50 W cuts and coagulates, as published. At 10 W the hook coagulates, but the published blade had no effect. At slower speeds 25 W cuts"),
+    ("2: width of coagulation from 25 to 50 W", "no", "if 25 W coagulates without a cut, it has no width beside a cut that could be compared with the width at 50 W"),
+    ("3: heat capacity near 100 degC", "no", "the model boils at one temperature, so the heat capacity depends on the range of temperatures, which the abstract does not name"),
+    ("17: ultrasonic seals fail above 4.5 mm", "no", "a seal's strength is computed as for a thin wall, from the ratio of wall and radius, so it has no limit of size"),
     ("24: sparks from about 200 V", "yes", "by construction: see the voltages above"),
-    ("26: collateral denaturation by cut and blend", "no", "a weak source, by its own account"),
+    ("26: collateral denaturation by cut and blend", "no", "the publication itself calls its evidence weak"),
 ]
 
 
@@ -184,7 +184,7 @@ def within(runs, limits, what):
     words = ", ".join(f"{words} {100 * off[name]:.0f} %" for name, (words, _) in limits.items())
     held = all(off[name] <= most for name, (_, most) in limits.items())
     allowed = " and ".join(sorted({f"{100 * most:.0f} %" for _, most in limits.values()}))
-    return f"Greatest to least of {what}: {words}. Within {allowed}: {'yes' if held else 'no'}."
+    return f"Over {what} the greatest value exceeds the least by: {words}. Within the limit of {allowed}: {'yes' if held else 'no'}."
 
 
 def halved(runs):
@@ -200,16 +200,16 @@ def page(details):
     return f"""## What was run
 
 The scene `fascia-power`: a needle of 1 mm is drawn through {LENGTH_MM} mm of taut fascia of 0.5 mm, with 30 W, 1,150 V, 7 mm/s
-and cells of 0.25 mm, where a table does not say otherwise. The sums of the ledger are computed independently in the
-program: delivered + from the blade = stored + boiled + perfused + surface + with removed tissue. Elements part as a
-whole, so the parted area is a strip as wide as an element. Severed is the length of the tool's path along which a
-triangle on one of its sides was removed. Vaporised is the removed tissue that had lost half of its water. The kerf is
-the mean width of the vaporised tissue. Coagulated tissue that remains counts as two strips beside the severed length.
-`core_bioheat_*` compare heat, boiling, current, blades and
-damage with closed forms, within 1 %.
+and cells of 0.25 mm, if a table does not state other values. The program computes each term of the ledger
+independently. The ledger has no gap if delivered + from the blade = stored + boiled + perfused + surface + with removed
+tissue. Elements part as a whole, so the parted area is a strip as wide as an element. Severed is the length of the
+tool's path along which a triangle on one side of the path was removed. Vaporised is the removed tissue that had lost
+half of its water. The kerf is the mean width of the vaporised tissue. Two equal strips, one on each side of the severed length, would together have the volume of the remaining coagulated
+tissue. The width of coagulation is the width of one strip.
+The tests `core_bioheat_*` compare heat, boiling, current, blades and damage with closed forms, within 1 %.
 
-Greatest gap of the ledger in all {len(every)} runs: {worst:.1e} of what came in. Within {100 * LEDGER_MOST:.0f} %:
-{'yes' if worst <= LEDGER_MOST else 'no'}.
+The greatest gap of the ledger in all {len(every)} runs is {worst:.1e} of the energy that came in. Within the limit of
+{100 * LEDGER_MOST:.0f} %: {'yes' if worst <= LEDGER_MOST else 'no'}.
 
 ## Power
 
@@ -235,7 +235,8 @@ Greatest gap of the ledger in all {len(every)} runs: {worst:.1e} of what came in
 {table('mesh', details['cells'])}
 
 {within(details['cells'], {'severed_mm': ('severed', SAME_CUT), 'vaporised_mm3': ('vaporised', SAME_CUT)}, 'these meshes')}
-A coarse element holds the lips of the cut together until all of it is severed. So sparks reach more of the lips.
+A coarse element holds the lips of the cut together until the whole element is severed. So sparks reach a larger part of
+the lips.
 
 ## Layers
 
@@ -244,19 +245,20 @@ layers.
 
 {table('scene', details['layers'])}
 
-The longest part of the way beside which no triangle of the fascia is gone: {details['uncut_mm']:.0f} mm.
+The longest part of the tool's path beside which no triangle of the fascia was removed is {details['uncut_mm']:.0f} mm long.
 
 ## Liver
 
-A blade is drawn through {LENGTH_MM} mm of a slab of liver, 2 mm deep, after 1 s of dwelling: pure cut, no blood flow, 20 degC,
-as an organ that was taken out. Elements of 2 mm part as a whole, so the cut is 2 mm wide. Blades and speeds were chosen
-after first runs, and the table has all of them.
+A blade is drawn through {LENGTH_MM} mm of a slab of liver, 2 mm deep, after it has stayed at the start for 1 s. The mode is pure cut. The liver has no blood flow and 20 degC, like
+an organ outside the body. Elements of 2 mm part as a whole, so the cut is 2 mm wide. Blades and speeds were chosen
+after the first runs. The table has all runs with these blades and speeds.
 
 {liver_table(details['liver'])}
 
 ## Published measurements
 
-Numbers are those of the table that the model was made for; 27 was added.
+Each published measurement has a number (#). The model was designed against a list of measurements with these numbers;
+measurement 27 was added to the list later.
 
 {measured.page(details['measured'], details['terms'])}
 ### Others

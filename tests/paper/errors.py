@@ -80,7 +80,7 @@ def pulled_rows(pulled):
 
 def not_to_be_trusted(pulled):
     names = [scene for scene, of in pulled if of["reference_residual"] > CONVERGED]
-    return (f"The reference of {', '.join(names)} has not converged in a thousand iterations: its errors mean little. " if names else "")
+    return (f"The reference of {', '.join(names)} has not converged in a thousand iterations, so the errors in its lines mean little. " if names else "")
 
 
 def page(found):
@@ -92,28 +92,30 @@ def page(found):
     build/bin/cautery-bench --scene NAME --steps {QUICK_STEPS} --error
     build/bin/cautery-bench --scene NAME --steps {STEPS} --accuracy {WANTED}
 
-The table has the mean error of steps by their number of iterations, under the scene's pull, against the converged step
-from the same state. The error is relative to the step's own motion. `strain-xy-on` is a sheet that hangs free, with the
-system that all scenes share, and by Newton's steps
+The table has the mean error of steps by their number of iterations, while the scene pulls on the tissue. The error is
+the difference from the converged step from the same state, relative to the motion of this step. `strain-xy-on` is a
+sheet that hangs free. One line has this sheet with the solver of all scenes, and one line with Newton's steps
 (`solver: "newton"`).
 
 {chr(10).join(pulled_rows(found["pulled"]))}
 
-{not_to_be_trusted(found["pulled"])}Ten iterations leave free sheets far off: A takes a sheet to be as stiff across its plane as within it.
-Newton's steps come near the solution under the sheet's own weight (next table), but slowly under this pull, where
-limits are ranges.
+{not_to_be_trusted(found["pulled"])}After ten iterations a free sheet is still far from the solution, because the prefactored matrix A treats a sheet as
+equally stiff across its plane and within its plane. Newton's steps come near the solution under the sheet's own weight
+(next table). Under this pull, which takes the sheet to its strain limits, they come near the solution only slowly.
 
 ![Error by iterations](validation-error-by-iterations.svg)
 
 ![Error by time](validation-error-by-time.svg)
 
-Times are medians on one thread, on {machine['name']}, family {machine['family']} model {machine['model']}, with other load ({machine['load_before']:.1f} before, {machine['others']:.0%} of
-the cores' time meanwhile). Compare the lines with each other, not with another machine's.
+Times are medians on one thread, on {machine['name']}, family {machine['family']} model {machine['model']}. Other programs ran too: the load average was {machine['load_before']:.1f} before
+the run, and they used {machine['others']:.0%} of the cores' time during the run. Compare the lines with each other, not with lines of
+another machine.
 
-Steps that end where they estimate {WANTED:.0%} (at most 40 iterations; Newton's 40 too), {STEPS} of them. The table has the distance
-to their converged step below which 95 % of sampled steps are, of all vertices or of the worst chunk of 256. The table
-also has the iterations, and the speed as a multiple of the speed with ten iterations, alternating in one run. Tools are
-where the scene puts them. A hanging sheet is at first level, held along one edge, and is then released.
+The next table is of {STEPS} steps that end as soon as their estimated error is {WANTED:.0%} (after at most 40 iterations, also of
+Newton's steps). The second column is the error that 95 % of the sampled steps do not exceed, over all vertices or over
+the worst chunk of 256 vertices. The table also has the iterations, and the speed as a multiple of the speed with ten
+iterations, from alternating runs. Tools are
+where the scene puts them. A hanging sheet is first level and held along one edge, and is then released.
 
 | scene | 95 % are off by less than | iterations | speed over ten iterations |
 |---|---:|---:|---:|

@@ -78,24 +78,26 @@ def page(found):
     build/tests/test_core_heat_heat_grid
     build/tests/paper_probe heat STEP_MM NODES
 
-A point source has spread for a second and spreads further, and no node is held. The table has the largest error of a
-node, relative to the solution's peak.
+The test begins with the temperatures of a point source that has spread for a second. The heat spreads further in the
+grid, and no node has a fixed temperature. The table has the largest error of a node, relative to the peak of the exact
+solution.
 
 | spacing | off |
 |---|---:|
 {chr(10).join(gaussian)}
 
-A ball of {1e3 * BALL_M:g} mm, held at {HOT_C} degC in tissue of {AMBIENT_C} degC from the beginning. At a distance r from its middle the closed form of an
-infinite medium is R / r erfc((r - R) / (2 sqrt(alpha t))) of tool minus ambient. The error is read at vertices of a
-strip of
-tissue through the ball, 0.25 mm apart, as far as {1e3 * REACH_M:g} mm. The table has the largest error outside the ball, of tool minus
-ambient ({HOT_C - AMBIENT_C} degC). The first line is the default of tools.
+A ball of radius R = {1e3 * BALL_M:g} mm is held at {HOT_C} degC from the beginning, in tissue of {AMBIENT_C} degC. In an infinite medium the exact
+rise of temperature at a distance r from the ball's middle is R / r erfc((r - R) / (2 sqrt(alpha t))), as a share of
+tool minus ambient ({HOT_C - AMBIENT_C} degC). The error is read at vertices of a strip of tissue through the ball, 0.25 mm apart, up to
+a distance of {1e3 * REACH_M:g} mm. The table has the largest error outside the ball, also as a share of tool minus ambient. The first
+line of the table is the default grid of tools.
 
 | grid | after 1 s | 3 s | 10 s |
 |---|---:|---:|---:|
 {chr(10).join(rows)}
 
-An error above zero means too warm. Errors are means of both sides of the ball.
+The next two plots have the error by distance from the ball. An error above zero means that the grid is too warm. Each
+error is the mean of both sides of the ball.
 
 ![Error by distance after 1 s](validation-heat-1-s.svg)
 

@@ -89,10 +89,11 @@ def table():
     rows = [f"| {what} | {to} | {', '.join(named(test) for test in tests)} |" for what, to, tests in HELD]
     return f"""## What tests hold
 
-A change that makes one of these worse fails a test. Names without a file are figures of `expected.json`, or beginnings
-of their names; the test `paper_quick` checks them. Three things have no test. The first is the error of free sheets
-with the scenes' own steps (the tables above have it). The second is all times, also the cost of a drawn tool. The third
-is strain beyond a limit at the loads that `paper_quick` does not compute.
+A change that makes one of these results worse fails a test. The column "by" names the tests. Names without a file are
+figures of `expected.json`, or the beginnings of such figures' names; the test `paper_quick` checks them. Three kinds of
+results have no test. The first kind is the errors of free sheets with the scenes' own steps (in the tables above). The
+second kind is all times, among them the cost of a drawn tool. The third kind is strains beyond a limit at loads that
+`paper_quick` does not compute.
 
 | what | to | by |
 |---|---|---|

@@ -39,7 +39,7 @@ def page(found):
     return f"""## Equation 20: ignition
 
 The scene's tool is brought to the tissue, held still there, and energized. An edge that lies wholly inside the tool has
-the tool's temperature u at both ends. So the edge parts after delta / (xi u), to a tick of 1/60 s.
+the tool's temperature u at both ends. So by eq. 20 the edge parts after delta / (xi u). The measured time may differ by a tick of 1/60 s.
 
 {chr(10).join(rows)}
 """

@@ -46,15 +46,16 @@ def page(found):
 
     build/bin/cautery-sim --scene {SHEET} --seconds {strain_limits.HANGING_S} --vtu DIR
 
-The sheet `{SHEET}`, {LIMIT:.0%} allowed along both axes, hangs by two corners in {len(LOADS_M_S2)} gravities (the scene with another
-`gravity_m_s2`), {strain_limits.ITERATIONS} iterations a step. The table has the strain below which 99 % of the
-triangles stay, and the largest strain.
+The sheet `{SHEET}` may stretch by {LIMIT:.0%} along both axes and hangs by two corners. It hangs in {len(LOADS_M_S2)} gravities (the same
+scene with other values of `gravity_m_s2`), with {strain_limits.ITERATIONS} iterations a step. The table has the strain
+below which 99 % of the triangles stay, and the largest strain.
 
 | gravity, m/s^2 | axis 1: 99 %, largest | axis 2: 99 %, largest |
 |---:|---:|---:|
 {chr(10).join(rows)}
 
-A limit is a stiffness beyond it (`limit_stiffness_pa`), not a wall: what is above {LIMIT:.0%} grows with the load.
+A strain limit is not a wall: beyond the limit the tissue has a finite stiffness (`limit_stiffness_pa`). So the strain
+above {LIMIT:.0%} grows with the load.
 
 ![Strain by load](validation-loads.svg)
 """

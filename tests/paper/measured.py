@@ -208,11 +208,11 @@ def peritoneum(bench):
         "ultrasonic 3": ("jaws", "connective", with_shears(thick_mm, 3, 10, body_c, 1, **UNTIL_PARTED))})
     depth = {name: 1000 * one["necrosis_mm"] for name, one in found.items()}
     published = {"monopolar": 216, "sealer": 144, "ultrasonic 5": 127, "ultrasonic 3": 90}
-    seconds = ", ".join(f"{name} {found[name]['energy_s']:.2f} s" for name in ("sealer", "ultrasonic 5", "ultrasonic 3"))
+    seconds = ", ".join(f"{found[name]['energy_s']:.2f} s ({name})" for name in ("sealer", "ultrasonic 5", "ultrasonic 3"))
     return Measured("4", "necrosis beside the instrument, human peritoneum", "um", True,
                     [Value(name, published[name], depth[name]) for name in published],
                     [("monopolar > sealer > ultrasonic 5 > ultrasonic 3", is_descending([depth[name] for name in published]))],
-                    f"energy was on for: {seconds}; the cut was {found['monopolar']['kerf_mm']:.2f} mm wide")
+                    f"energy was on for {seconds}. The monopolar cut was {found['monopolar']['kerf_mm']:.2f} mm wide")
 
 
 PAUSES = {"5 s": {"on_s": 5}, "5 + 5 s": {"on_s": 5, "pause_s": 5, "again_s": 5}, "10 s": {"on_s": 10}}
@@ -234,12 +234,13 @@ def pauses(bench, number, name, thick_mm, published):
         also = {**{key[1]: depth[key] for key in depth if key[0] == level}, "5 + 5 s": one["necrosis_mm"]}
         keys = sorted((key for key in published if key[0] == level), key=published.get)
         orders.append((f"the same, open in the pause (level {level})", is_descending([also[key[1]] for key in reversed(keys)])))
-    hot = ", ".join(f"{found[(level, '10 s')]['blade_peak_c']:.0f}" for level in (3, 5))
+    hot = " and ".join(f"{found[(level, '10 s')]['blade_peak_c']:.0f}" for level in (3, 5))
     beside = " and ".join(f"{opened[level]['necrosis_mm']:.2f}" for level in (3, 5))
     return Measured(number, f"necrosis beside ultrasonic shears, {name}", "mm", True,
                     [Value(f"level {key[0]}, {key[1]}", published[key], depth[key]) for key in published], orders,
-                    f"blades of level 3 and 5 were at {hot} degC after 10 s. The jaws stay closed in the pause. Open ones were tried after "
-                    f"the first run: then 5 + 5 s give {beside} mm")
+                    f"after 10 s the blades were at {hot} degC (levels 3 and 5). The jaws stay closed in the pause of 5 + 5 s. Jaws that "
+                    "are open in the pause were tried after the first run. With open jaws, 5 + 5 s give a necrosis of "
+                    f"{beside} mm (levels 3 and 5)")
 
 
 def abdominal_wall(bench):
@@ -259,10 +260,10 @@ def flat_or_grooved(bench):
     found = bench.all({name: ("jaws", tissue, with_jaws_of(groove))
                        for name, groove in (("flat", 0), ("grooved", given("flat_or_grooved", "groove_mm")))})
     peak = {name: one["tissue_peak_c"] for name, one in found.items()}
-    ohms = " and ".join(f"{found[name]['first_ohm']:.0f}" for name in peak)
+    ohms = ", ".join(f"{found[name]['first_ohm']:.0f} ohm ({name})" for name in peak)
     return Measured("9", "greatest temperature, flat and grooved bipolar jaws", "degC", True,
                     [Value("flat", 105, peak["flat"], start_c), Value("grooved", 96, peak["grooved"], start_c)],
-                    [("flat > grooved", peak["flat"] > peak["grooved"])], f"loads at first: {ohms} ohm")
+                    [("flat > grooved", peak["flat"] > peak["grooved"])], f"at the start the load was {ohms}")
 
 
 CUTTERS = {"ACE": (191.1, 35.7), "Sonicision": (227.1, 38.7), "SonoSurg": (184.8, 27.4)}
@@ -277,10 +278,11 @@ def cutting(bench):
     found = mesentery(bench)
     peak = Measured("10", "greatest temperature of ultrasonic shears when cutting, bovine mesentery", "degC", True,
                     [Value(name, pair[0], found["blade_peak_c"], COMMON["room_c"]) for name, pair in CUTTERS.items()],
-                    note=f"one pair of shears stands for all; it had parted the tissue after {found['energy_s'] - COMMON['reaction_s']:.1f} s")
+                    note="one simulated pair of shears is compared with all three published ones. It parted the tissue after "
+                         f"{found['energy_s'] - COMMON['reaction_s']:.1f} s")
     cooling = Measured("11", "time until the blade is at 60 degC", "s", True,
                        [Value(name, pair[1], found["to_60_s"]) for name, pair in CUTTERS.items()],
-                       note=f"from {found['off_c']:.0f} degC")
+                       note=f"the blade cools from {found['off_c']:.0f} degC")
     return [peak, cooling]
 
 
@@ -316,9 +318,10 @@ def weld(bench):
     best = [key for key in strength if strength[key] >= 0.99 * max(strength.values())]
     return Measured("14", "best weld of a sheep's carotid: 90 degC, 60 to 80 N, 10 s", "", True, [],
                     [("one best of the temperatures and times that were tried", len(best) == 1)],
-                    "strength grows with both and has no best: " + ", ".join(
-                        f"{kelvin} degC for {seconds} s {100 * strength[(kelvin, seconds)]:.0f} %" for kelvin, seconds in sorted(strength)) +
-                    ". Force only shuts the vessel")
+                    "the weld's strength grows with temperature and with time, so no combination is best. After 5, 10 and 15 s the weld has "
+                    "these shares of full strength: " + "; ".join(
+                        f"{strength[(celsius, 5)]:.0%}, {strength[(celsius, 10)]:.0%} and {strength[(celsius, 15)]:.0%} at {celsius} degC"
+                        for celsius in (60, 70, 80, 90)) + ". The force only shuts the vessel")
 
 
 def burst(bench):
@@ -336,8 +339,9 @@ def burst(bench):
                        repr(min(found[key]["fusion"], 1e6)))[0]["pressure_pa"] / MMHG_PA for key in found}
     return Measured("15", "burst pressure of sealed arteries", "mmHg", True,
                     [Value(" ".join(key), published[key], ours[key]) for key in published],
-                    note="the strength of joined walls is assumed (core/vessel/README.md), so this confirms little. Published seals of "
-                         "shears are stronger than those of the sealer. Ours differ by no more than 1 %"
+                    note="the strength of joined walls is assumed (core/vessel/README.md). So the agreement of these burst pressures with "
+                         "the published ones confirms little. In the publication, the seals of shears are stronger than the seals of "
+                         "the sealer. In the model, the strengths of these seals differ by no more than 1 %"
                     if max(ours.values()) < 1.01 * min(ours.values()) else "the strength of joined walls is assumed (core/vessel/README.md)")
 
 
@@ -346,8 +350,9 @@ def ablation(bench):
     start_c = given("needle", "start_c")
     return Measured("19", "30 W for 12 min in a pig's liver, 8 mm from the electrode", "degC", True,
                     [Value("at 8 mm", 58.7, found["temperature_c"], start_c)],
-                    note=f"greatest {found['peak_c']:.0f} degC; load {found['first_ohm']:.0f} ohm at first, {found['last_ohm']:.0f} at last; "
-                         f"{100 * found['far_share']:.0f} % of the power goes beyond 25 mm")
+                    note=f"the greatest temperature is {found['peak_c']:.0f} degC. The load is {found['first_ohm']:.0f} ohm at the start and "
+                         f"{found['last_ohm']:.0f} ohm at the end. {100 * found['far_share']:.0f} % of the power goes into tissue "
+                         "beyond 25 mm")
 
 
 def living_or_not(bench):
@@ -359,7 +364,7 @@ def living_or_not(bench):
     return Measured("27", "ablated volume, 17-gauge cooled electrode (Song et al. 2015, BJR 88:20140497)", "cm^3", False,
                     [Value("taken out", 23.86, dead["taken out"]), Value("living", 7.79, dead["living"])],
                     [("taken out > living", dead["taken out"] > dead["living"])],
-                    "; ".join(f"{name}: greatest {one['peak_c']:.0f} degC, {one['last_w']:.0f} W at last" for name, one in found.items()))
+                    "; ".join(f"{name}: at most {one['peak_c']:.0f} degC, and {one['last_w']:.0f} W at the end" for name, one in found.items()))
 
 
 ALL = (peritoneum, abdominal_wall, intestine, flat_or_grooved, cutting, tips, weld, burst, ablation, living_or_not)
@@ -411,17 +416,21 @@ def quick(sim):
 # ---- a page
 
 REASONS = [
-    ("4", "the shears need 8 to 10 s for a fold that surgeons divide in one or two. The friction, 0.045, was measured at a hundredth of the "
-     "speed and less than a thousandth of the pressure. So heat has time to go 1.3 mm. The monopolar cut has 30 W, of which the abstract says "
-     "nothing. Its kerf takes about 18 of the 26 J that the fold takes up. The rest spreads in the fold, as there is no muscle below"),
-    ("5, 6", "5 s and 10 s come out within a factor of 2.4. With a pause necrosis is deeper than without. The hot blade stays closed "
-     "on the tissue for 16 s instead of 11. With jaws that are open in the pause the order is right in three of the four series"),
-    ("9", "both jaws bring the tissue to 100 degC within the 5 s that were assumed. Water keeps it there, so there is no order"),
-    ("12, 13", "a blade's temperature is that of its metal here. A camera or a thermometer sees its surface later, at a place that the "
-     "abstract does not name. Load and shape of the tips are assumed"),
-    ("14", "fusion only grows with temperature and time, and force does no more than shut the vessel. Nothing in the model makes a weld worse again"),
-    ("27", "at 45 W a dry shell forms around the needle, current ends, and no water comes back. Ours took up a quarter of the published "
-     "energy, or less. Real generators pause and go on"),
+    ("4", "the shears need 8 to 10 s for a fold that surgeons divide in one or two seconds. The friction, 0.045, was measured at a "
+     "hundredth of the speed and less than a thousandth of the pressure. In 8 to 10 s the heat spreads by 1.3 mm. The power of the "
+     "monopolar cut, 30 W, is assumed, because the abstract does not state the power. The kerf of this cut takes about 18 of the 26 J "
+     "that the fold takes up. The other heat spreads in the fold, because the set-up has no muscle below the fold"),
+    ("5, 6", "the results for 5 s and 10 s are within a factor of 2.4. With a pause the necrosis is deeper than without a pause, because "
+     "the hot blade stays closed on the tissue for 16 s instead of 11 s. With jaws that are open in the pause, the order is right in "
+     "three of the four series"),
+    ("9", "both jaws bring the tissue to 100 degC within the assumed 5 s. Boiling water keeps the tissue at 100 degC, so neither kind of "
+     "jaws is hotter than the other"),
+    ("12, 13", "in the model a blade's temperature is the temperature of its metal. In the publication a camera or a thermometer measures "
+     "the blade's surface later, at a place that the abstract does not name. The load and the shape of the tips are assumed"),
+    ("14", "in the model, fusion only grows with temperature and time, and force only shuts the vessel. No term of the model weakens a "
+     "weld again"),
+    ("27", "at 45 W a dry shell forms around the needle, the current ends, and no water flows back. So the simulated tissue took up at "
+     "most a quarter of the published energy. Real generators pause and then deliver power again"),
 ]
 
 
@@ -492,28 +501,28 @@ def setups_table():
 def verdict(measured):
     counted = [one for one in measured if one.counts]
     held = [one.number for one in counted if one.values and one.holds()]
-    return (f"Of the {len(counted)} measurements that are to be within a factor of two, {len(held)} are: {', '.join(held) or 'none'}. "
-            f"At least {WANTED} are wanted.")
+    return (f"Of the {len(counted)} measurements that should be within a factor of two, {len(held)} are: {', '.join(held) or 'none'}. "
+            f"The goal is at least {WANTED}.")
 
 
 def page(measured, terms):
-    notes = "\n".join(f"- {one.number}: {one.note}." for one in measured if one.note)
-    reasons = "\n".join(f"- {number}: {why}." for number, why in REASONS)
+    notes = "\n".join(f"- Measurement {one.number}: {one.note}." for one in measured if one.note)
+    reasons = "\n".join(f"- Measurement{'s' if ',' in number else ''} {number}: {why}." for number, why in REASONS)
     return f"""### Set-ups
 
-[setups.json](setups.json) has every number, with its source or the reason for an assumption. They were written down before
-the first run, and none was changed after it. Their author knew the published values. The set-ups have only cells,
-metal, current and a generator. Nothing moves. Force has an effect only by friction.
+[setups.json](setups.json) has every number, with its source or the reason for an assumption. The numbers were written down
+before the first run, and none was changed after this run. Their author knew the published values. The set-ups have only
+cells of tissue, metal, current and a generator. Nothing moves, and force acts only through friction.
 
-After the first run one law was corrected: a seal counts at its best section, as in
-[core/vessel](../../core/vessel/README.md). Heat capacity of the shears' blade: {shears_metal()['upper_j_k']:.2f} J/K;
-cooling {1000 * shears_metal()['upper_w_k']:.1f} mW/K.
+After the first run one law was corrected: the strength of a seal is now the strength of its best section, as in
+[core/vessel](../../core/vessel/README.md). The blade of the shears has a heat capacity of {shears_metal()['upper_j_k']:.2f} J/K
+and loses {1000 * shears_metal()['upper_w_k']:.1f} mW/K.
 
 {setups_table()}
 
 ### Values
 
-For a temperature its rise above the start is compared. A measurement counts as confirmed if all of its values are
+For a temperature, the table's ratio compares the rise above the temperature at the start. A measurement counts as confirmed if all of its values are
 within a factor of two.
 
 {values_table(measured)}
@@ -522,20 +531,21 @@ within a factor of two.
 
 {orders_table(measured)}
 
-Seen beside it:
+The runs also gave these values:
 
 {notes}
 
-What fails, and the likely reason:
+Likely reasons why measurements fail:
 
 {reasons}
 
 ### Without one term
 
-Before the first run one measurement was named for each term, which must fail without it: its values, or its order.
-Without boiling, water neither takes up heat nor leaves the tissue. A blade without heat capacity has a hundredth of it.
+Before the first run one measurement was named for each term of the model. Without the term, the values or the order of
+this measurement must fail. Without boiling, water neither takes up heat nor leaves the tissue. In the run without
+blades' heat capacity, a blade keeps a hundredth of its heat capacity.
 
 {terms_table(terms)}
 
-Grooves change the load, and not the greatest temperature. So no measurement here needs the contact area.
+Grooves change the load, but not the greatest temperature. So no measurement on this page needs the contact area.
 """

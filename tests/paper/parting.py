@@ -34,9 +34,9 @@ def page(found):
 
 A scene chooses what heat parts (`parting`). *edges* is the paper's rule: an edge gathers heat over its length (eq. 20),
 and when the edge parts, its elements part too. The paper's scenes use this rule, and so do all other figures of this
-page. *elements* is our rule: each triangle and tetrahedron parts by the dose at its own middle, with its ignition drawn
-from a field over the rest shape. `layers` and scenes from mesh files use this rule. By edges, the size of a cut depends
-on the mesh: besides the tissue that heat has parted, half a cell all round is removed ([validation.md](validation.md),
+page. *elements* is our rule: each triangle and tetrahedron parts by the dose at its own middle. Its ignition temperature
+comes from a random field over the rest shape. `layers` and scenes from mesh files use this rule. By edges, the size of a cut depends
+on the mesh: besides the tissue that heat has parted, half a cell on all sides is removed ([validation.md](validation.md),
 "What a cut depends on"). The picture shows the cuts of figure 7 by both rules, when the cuts have ended:
 
 ![The cuts of figure 7 by both rules](parting.svg)
@@ -46,8 +46,8 @@ on the mesh: besides the tissue that heat has parted, half a cell all round is r
 {chr(10).join(rows)}
 
 The section on figure 7 explains the columns of the table. By elements, only the tissue that heat reaches is removed. So
-the same path of the tool removes less, and bundles that withstand their dose stay as bridges. By elements, the frayed
-fascia opens by a third of its opening by edges. The frayed fat, drawn at 4 mm/s, is hardly divided. (Bridges that hang
+the same path of the tool removes less, and bundles that withstand their dose stay as bridges. By elements, the opening of the
+frayed fascia is a third of its opening by edges. The frayed fat, drawn at 4 mm/s, is hardly divided. (Bridges that hang
 together beside the gap count as one strand.) In the paper's two cuts every bundle gets more heat than it withstands. In
 these cuts the results of the two rules differ by the width of one cell.
 """

@@ -129,8 +129,8 @@ def page(fans):
              f"{f['edges_alone']} |" for f in fans]
     return f"""## Figure 5: patterns of incision
 
-The figure has fans of triangles about one vertex, at rest. A needle of {1e3 * NEEDLE_M:.1f} mm is held on one edge for
-{DOSE_S} s: the edge parts, and the triangles of this edge are removed. So a dose of heat parts single edges. Then the
+The figure has fans of triangles about one vertex, at rest. First, a needle of {1e3 * NEEDLE_M:.1f} mm is held on one edge for
+{DOSE_S} s. The edge parts, and the triangles of this edge are removed. So a dose of heat parts single edges. Then the
 needle makes {fans[0]['strokes']} random strokes, straight, of {1e3 * SPEEDS_M_S[0]:.1f} to {1e3 * SPEEDS_M_S[1]:.0f}
 mm/s, the same for every fan. The table counts the different sets of remaining triangles: by the edge rule with heat,
 and by a rule that removes each triangle that the needle touches.
@@ -139,8 +139,8 @@ and by a rule that removes each triangle that the needle touches.
 
 {chr(10).join(rows)}
 
-The paper says that its structure makes more patterns than those that remove polygons (section 7.1). {verdict(fans)} The
-last column counts the sets that strokes left by the edge rule only, and never by the rule of touch. By the edge rule,
+The paper says that its data structure makes more patterns than structures that remove polygons (section 7.1). {verdict(fans)} The
+last column counts the sets that remained only by the edge rule, and never by the rule of touch. By the edge rule,
 triangles whose edges had too little heat remain beside removed triangles. The rule of touch removes all of these
 triangles. The rule of touch also makes patterns that heat does not make, because it removes single triangles that the
 needle only brushed. So the strokes decide which rule makes more patterns. Each rule makes patterns that the other rule
@@ -151,5 +151,5 @@ does not make.
 def verdict(fans):
     more = [f for f in fans if f["edges"] > f["touch"]]
     if len(more) == len(fans):
-        return "By this count there are more patterns by the edge rule, for every fan."
-    return f"By this count there are more patterns by the edge rule for {len(more)} of {len(fans)} fans."
+        return "By this count the edge rule makes more patterns for every fan."
+    return f"By this count the edge rule makes more patterns for {len(more)} of {len(fans)} fans."

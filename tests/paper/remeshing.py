@@ -62,7 +62,8 @@ without membrane, links or pins. It does not collapse or smooth ill-shaped eleme
 One simplification flatters our method: the time of the numeric factorisation in another thread is not included. The
 time of our method includes all ticks of the cut, with or without a change. Where vertices lie in the plane, the other
 method need not bisect edges. So it only opens a sheet that has vertices on the line of cut. In the paper's terms, the
-other method's inserts and deletes of buffers cost O(ins) and O(del), and those of neighbours O(N_ins) and O(N_del). In
+other method's inserts and deletes of buffers cost O(ins) and O(del), and its inserts and deletes of
+neighbours cost O(N_ins) and O(N_del). In
 the other method bisection costs O(re), and the test for ill-shaped elements O(ill). Our method only updates the share
 counts, which costs O(n) at most.
 """

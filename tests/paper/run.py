@@ -68,18 +68,17 @@ small form with `expected.json`, each within the tolerance that this file gives.
 
 VALIDATION_HEAD = """# The method, validated
 
-This page has the method's errors in cases with a known solution, and shows on what its results depend.
-`tests/paper/run.py` writes
-it, with [the paper's page](README.md). Each section names the command that computes its numbers. The test `paper_quick`
-checks
-some of each in a small form (`expected.json`).
+This page has the method's errors in cases with a known solution. It also shows which settings change the method's
+results. `tests/paper/run.py` writes this page and [the paper's page](README.md). Each section names the command that
+computes its numbers. The test `paper_quick` runs some cases of each section in a small form, and compares their figures
+with `expected.json`.
 """
 
 ENERGY_HEAD = """# Energy, validated
 
-This page checks energy `tissue` ([core/bioheat](../../core/bioheat/README.md)) by its energy ledger, and shows on what
-a cut by power depends. `tests/paper/run.py --only energy` writes it. The test `paper_quick` checks some of it
-(`expected.json`).
+This page checks energy `tissue` ([core/bioheat](../../core/bioheat/README.md)) by its energy ledger, and shows which
+settings change a cut by power. `tests/paper/run.py --only energy` writes this page. The test `paper_quick` compares
+some of the page's figures with `expected.json`.
 """
 
 
@@ -179,10 +178,10 @@ def duration(seconds):
 
 def made_line(seconds, load_before, failed):
     cores = len(os.sched_getaffinity(0))
-    whole = f"Made but for {', '.join(failed)}" if failed else "Made whole"
-    return (f"{whole} in {duration(seconds)}, {time.strftime('%Y-%m-%d')}, on {cores} cores of: {processor()}. The machine's load "
-            f"before was {load_before:.1f}: where that is not near 0, others used it too, and times are to be compared within "
-            "one table only.\n")
+    missing = f" except {', '.join(failed)}" if failed else ""
+    return (f"A run of {duration(seconds)} made every part of this page{missing} ({time.strftime('%Y-%m-%d')}, {cores} cores of "
+            f"{processor()}). The machine's load average before the run was {load_before:.1f}. If this load is not near 0, other "
+            "programs ran too, so compare times only within one table.\n")
 
 
 def write_pages(sections, last):

@@ -62,8 +62,8 @@ class Parts(unittest.TestCase):
         self.assertEqual(again[:2], ({}, {"whole": "of details"}))  # it was not made again
         self.assertEqual((figures, list(failed), sections["whole"]), ({"whole": 1}, ["broken"], "of details"))
         self.assertIn("Could not be made this time: OSError: no such program", sections["broken"])
-        self.assertIn("Made but for broken in", run.made_line(60, 0, failed))
-        self.assertIn("Made whole in 20 minutes", run.made_line(1200, 0, {}))
+        self.assertIn("made every part of this page except broken (", run.made_line(60, 0, failed))
+        self.assertIn("A run of 20 minutes made every part of this page (", run.made_line(1200, 0, {}))
 
     def test_every_part_has_its_figures_expected_and_its_place_on_a_page(self):
         with open(os.path.join(run.FOLDER, "expected.json"), encoding="utf-8") as file:
@@ -107,9 +107,9 @@ class Validation(unittest.TestCase):
         self.assertEqual(contact.judged(0.05, 0.1), "5.0%, within the 10% that is asked")
         self.assertEqual(contact.judged(0.11, 0.1), "11.0%, above the 10% that is asked")
         still, moved = ([{"force_n": force, "solved_n": force} for force in forces] for forces in ((1, 1), (1, 1.5)))
-        self.assertEqual(contact.slides_said({2: still, 4: still}), "All are as asked.")
+        self.assertEqual(contact.slides_said({2: still, 4: still}), "All these ranges are within their limits.")
         self.assertEqual(contact.slides_said({2: moved, 4: still}),
-                         "At 2 cells a patch it is not as asked: the solution of such a mesh changes by 40.0%.")
+                         "At 2 cells a patch the range is above its limit: the solution of such a mesh changes by 40.0%.")
         case = contact.COSTS[0]
         self.assertIn("0.60 ms, within", contact.cost_said({case: {"in_ms": 1.596, "away_ms": 1}}))
         self.assertIn("0.70 ms, above", contact.cost_said({case: {"in_ms": 1.7, "away_ms": 1}}))
@@ -121,11 +121,11 @@ class Validation(unittest.TestCase):
         press = {"vertex_depth_m": 0, "face_depth_m": 9e-5, "left_out": 0, "least_n": 1, "most_n": 1}
         ball = contact.BALLS[0]
         said = contact.rest_said({(ball, 2): [press]}).replace("\n", " ")
-        self.assertIn("No face is deeper than that either; the deepest is 0.09 mm", said)
+        self.assertIn("No face is deeper than the limit; the deepest face is 0.09 mm deep", said)
         deep = press | {"face_depth_m": 2e-4, "left_out": 3, "most_n": 3}
         said = contact.rest_said({(ball, 2): [press], (ball, 4): [deep]}).replace("\n", " ")
         self.assertIn("in 1 of 2", said)
-        self.assertIn("changes by 100.0% at most though its ball does not move (ball of 1.5 mm, cells of 4 mm)", said)
+        self.assertIn("The force on a ball at rest changes by 100.0% at most (ball of 1.5 mm, cells of 4 mm)", said)
         self.assertIn("At 1 of 2 places touching tissue had no contact constraint", said)
 
     def test_the_closed_form_is_hot_at_the_ball_and_comes_to_r_over_r(self):
@@ -167,7 +167,7 @@ class PublishedMeasurements(unittest.TestCase):
         self.assertFalse(measured.Measured("1", "", "", True, [near, far]).holds())
         said = measured.verdict([measured.Measured("1", "", "", True, [near]), measured.Measured("2", "", "", True, [far]),
                                  measured.Measured("3", "", "", True, []), measured.Measured("4", "", "", False, [near])])
-        self.assertIn("Of the 3 measurements that are to be within a factor of two, 1 are: 1.", said)
+        self.assertIn("Of the 3 measurements that should be within a factor of two, 1 are: 1.", said)
 
     def test_each_term_is_taken_away_alone(self):
         whole = measured.with_jaws_of(0.5)

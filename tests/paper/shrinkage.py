@@ -75,21 +75,22 @@ def page(cuts):
              for c in cuts]
     return f"""## Figure 6: shrinkage beside the cut
 
-The scene `fascia` (with the paper's values: tool 170 degC, ignition 160 degC, xi 0.4) gets a cut of {2e3 * HALF_M:.0f}
-mm along and across the sheet, at {1e3 * SPEED_M_S:.0f} mm/s, without shrinkage (S = 1) and with the paper's S of 0.1
-and 0.3. One sheet is mildly taut (T = 0.8, so it tends to nine tenths of its length). The other sheet is the paper's (T
-= 0.1, so it tends to a third of its length). A width is an area divided by the length of the cut. The area is that of
-the removed triangles at rest, or that of the opening in the end.
+The scene `fascia` has the paper's values: tool 170 degC, ignition 160 degC, xi 0.4. It gets a cut of {2e3 * HALF_M:.0f}
+mm at {1e3 * SPEED_M_S:.0f} mm/s, along or across the sheet. Each cut is made without shrinkage (S = 1) and with the
+paper's S of 0.1 and 0.3. The target T is the square of the length to which the sheet tends, relative to its present length. One sheet is
+mildly taut (T = 0.8, so it tends to nine tenths of its length). The other sheet is the paper's (T = 0.1, so it tends to
+a third of its length). A width in the table is an area divided by the length of the cut. "Burnt away" uses the area of the removed triangles at
+rest, and "open" uses the area of the opening at the end.
 
 ![Borders of the incisions](figure-6.svg)
 
 {chr(10).join(rows)}
 
-In the mildly taut sheet, shrinkage moves the lips apart by {widening(cuts, 'mild', 'along'):.1f} mm along and
-{widening(cuts, 'mild', 'across'):.1f} mm across. In the paper's sheet shrinkage changes the opening by
-{widening(cuts, 'taut', 'along'):+.1f} mm. Tension opens the cut by far more than the shrinkage beside the cut. So
-figure 6 shows the effect of shrinkage only where tension is small. (A sheet without tension moves away from the hook
-and is not cut at all.)
+In the mildly taut sheet, shrinkage moves the lips apart by {widening(cuts, 'mild', 'along'):.1f} mm in the cut along and
+{widening(cuts, 'mild', 'across'):.1f} mm in the cut across. In the paper's sheet shrinkage changes the opening by
+{widening(cuts, 'taut', 'along'):+.1f} mm. Tension opens the cut by far more than the shrinkage beside the cut. So figure
+6 shows the effect of shrinkage only if tension is small. (A sheet without tension moves away from the hook and is
+not cut at all.)
 """
 
 

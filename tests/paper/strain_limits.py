@@ -69,8 +69,8 @@ def page(sheets):
     moved = max(sheet["moved_mm"] for sheet in sheets)
     return f"""## Figure 4: strain limits by axis
 
-Six sheets of 100 mm hang by the ends of their upper edge for {HANGING_S} s, {ITERATIONS} iterations a step, and are not
-cut. The top sheets may stretch by 60 % along both material axes. The middle sheets may stretch by 2 % along the first
+Six sheets of 100 mm hang by the ends of their upper edge for {HANGING_S} s and are not
+cut. Each step has {ITERATIONS} iterations. The top sheets may stretch by 60 % along both material axes. The middle sheets may stretch by 2 % along the first
 axis and by 60 % along the second axis. The bottom sheets may stretch by 2 % along both axes. On the left, the material
 axes are turned by 0.5 rad against the mesh's axes. On the right, both agree. As in the paper, the top sheets become
 long. The middle sheets shear or narrow to follow their stiff fibres. The bottom sheets keep their shape.
@@ -80,7 +80,7 @@ long. The middle sheets shear or narrow to follow their stiff fibres. The bottom
 {chr(10).join(rows)}
 
 Strain is |F a| - 1 of each triangle along its material axis a. The paper gives no numbers of strain. Beyond a limit the
-tissue has a finite stiffness (`limit_stiffness_pa`), so strain can exceed the limit. In few triangles it does so by
-much: beside the two pins, which carry the whole weight. In the last two seconds no vertex moved further than
+tissue has a finite stiffness (`limit_stiffness_pa`), so strain can exceed the limit. Strain exceeds the limit by
+much only in few triangles, beside the two pins, because the pins carry the whole weight. In the last two seconds no vertex moved further than
 {moved:.2g} mm.
 """

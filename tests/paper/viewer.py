@@ -77,8 +77,8 @@ def page(cases):
     return f"""### Figure 7 by the viewer
 
 `cauteryd` runs the same four cuts command by command. The viewer ([clients/web](../../clients/web/README.md)) shows
-them obliquely, in headless Chromium, at the times of the drawing above. The viewer adds the surroundings, char in
-blotches and fringes of torn fibres along a lip, drawn from the same states. Only the daemon decides which tissue
+them obliquely, in headless Chromium, at the times of the drawing above. From the same states the viewer also draws char in
+blotches, and fringes of torn fibres along a lip. It adds the surroundings. Only the daemon decides which tissue
 exists. Figures 4 to 6 are drawings, because pictures of the viewer would not show single triangles and motions of a
 millimetre better. As in the paper's figure 7, the fascia gapes and the fat opens with its membrane drawn back.
 
