@@ -10,7 +10,7 @@
 #include "cautery.h"
 #include "cautery/messages.h"
 #include "clock/clock.h"
-#include "hosted_session/tools.h"
+#include "hosted_session/hosted.h"
 #include "hub/sign_of_life.h"
 #include "log/log.h"
 #include "transport_dds/checks.h"
