@@ -10,7 +10,7 @@
 #include "config/config.h"
 #include "hosted_session/beginnings.h"
 #include "hosted_session/order.h"
-#include "metrics/histogram.h"
+#include "metrics/exposition.h"
 #include "session/logic.h"
 #include "store/store.h"
 #include "stream/stream.h"

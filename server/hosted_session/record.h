@@ -5,7 +5,7 @@
 
 #include <stdatomic.h>
 
-#include "buffer/shelf.h"
+#include "buffer/buffer.h"
 #include "hosted_session/life.h"
 #include "log/log.h"
 

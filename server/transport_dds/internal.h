@@ -11,7 +11,7 @@
 #include "cautery/messages.h"
 #include "clock/clock.h"
 #include "hosted_session/hosted.h"
-#include "hub/sign_of_life.h"
+#include "hub/hub.h"
 #include "log/log.h"
 #include "transport_dds/checks.h"
 #include "transport_dds/dds_transport.h"
