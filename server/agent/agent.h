@@ -1,12 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy's TCP agent-check: each connection gets one line and is closed. The agent reads nothing
-// and waits for no peer, so a bad peer costs no more than a good one.
+// The load of a daemon, as an answer to a proxy in front of several daemons.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
-#include "agent/load.h"
 #include "cautery/status.h"
+
+// ---- load ---------------------------------------------------------------------------------------
+// Computes how many more sessions the daemon can take.
+
+typedef struct cau_load {
+	// accepts new sessions; false while the daemon starts, drains or stands aside, or if its store
+	// is not ready
+	bool takes;
+	int32_t session_count, session_count_most;
+	int64_t session_bytes, session_bytes_most; // approximate memory of all sessions
+	double busy_share;                         // used share of the workers' cores, 0 to 1
+	double pace_share_min; // pace of the slowest session, as a share of its speed, 0 to 1
+} cau_load;
+
+// Returns the free capacity, 1 to 100 %: the least of the free shares of sessions, memory and
+// cores, times pace_share_min. The result is never 0, because HAProxy treats 0 as `drain`. If all
+// daemons are full, the proxy must still send new sessions to one of them, which reports the error.
+int cau_load_free_percent(const cau_load *load);
+
+enum { CAU_LOAD_LINE_BYTES = 16 };
+
+// Writes the line of HAProxy's agent-check: "ready 63%\n" or "drain\n". Returns its bytes.
+size_t cau_load_write(const cau_load *load, char line[CAU_LOAD_LINE_BYTES]);
+
+// ---- agent --------------------------------------------------------------------------------------
+// HAProxy's TCP agent-check: each connection gets one line and is closed. The agent reads nothing
+// and waits for no peer, so a bad peer costs no more than a good one.
 
 typedef struct cau_agent cau_agent;
 

@@ -78,3 +78,6 @@ bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const
 // (NULL: no header). An IPv4 address mapped into IPv6 becomes an IPv4 address.
 void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
                            size_t capacity);
+
+// True if `text` is one of the comma-separated names in `list`, ignoring case.
+bool cau_list_has(const char *list, const char *text);

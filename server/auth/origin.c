@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Where a request comes from: the checks of Host and Origin, and the client's address behind
+// proxies.
+#include <arpa/inet.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "auth/auth.h"
-#include "auth/list.h"
+
+// ---- Host and Origin ----------------------------------------------------------------------------
 
 bool cau_list_has(const char *list, const char *text)
 {
@@ -72,4 +76,50 @@ bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const
 	snprintf(own, sizeof own, "http://%.256s", host ? host : "");
 	return host && (strcasecmp(origin, own) == 0 ||
 	                (strncasecmp(origin, "https://", 8) == 0 && strcasecmp(origin + 8, host) == 0));
+}
+
+// ---- the client's address -----------------------------------------------------------------------
+
+static bool is_address(const char *text)
+{
+	struct in6_addr address; // in6_addr, the larger of both types
+	return inet_pton(AF_INET, text, &address) == 1 || inet_pton(AF_INET6, text, &address) == 1;
+}
+
+// Replaces ::ffff:10.0.0.1 by 10.0.0.1. On an IPv6 socket the system shows an IPv4 peer in the
+// first form (RFC 4291, 2.5.5.2); settings use the second.
+static void take_off_mapping(char *address)
+{
+	static const char mapped[] = "::ffff:";
+	struct in_addr found;
+	char *inner = address + sizeof mapped - 1;
+	if (strncmp(address, mapped, sizeof mapped - 1) == 0 && inet_pton(AF_INET, inner, &found) == 1)
+		memmove(address, inner, strlen(inner) + 1);
+}
+
+// Each proxy appends its client's address to the header. So the addresses are read from the right.
+// If an address belongs to a trusted proxy, that proxy wrote the address on the left, which is read
+// next. The first address that is not a trusted proxy is the client. Anything on the left of the
+// client's address may be forged.
+void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
+                           size_t capacity)
+{
+	size_t end = forwarded ? strlen(forwarded) : 0;
+	take_off_mapping(address);
+	while (end > 0 && cau_list_has(config->trusted_proxies, address)) {
+		char item[64];
+		size_t start = end;
+		while (start > 0 && forwarded[start - 1] != ',')
+			start--;
+		const char *first = forwarded + start + strspn(forwarded + start, " \t");
+		size_t bytes = strcspn(first, " \t,");
+		if (bytes == 0 || bytes >= sizeof item || bytes >= capacity)
+			return;
+		memcpy(item, first, bytes);
+		item[bytes] = 0;
+		if (!is_address(item))
+			return;
+		memcpy(address, item, bytes + 1);
+		end = start ? start - 1 : 0;
+	}
 }

@@ -9,7 +9,7 @@
 
 #include "hosted_session/hosted.h"
 #include "log/log.h"
-#include "store/backup.h"
+#include "store/store.h"
 
 // Approximate bytes that a copy reads, writes, syncs and checks in a second. The builder orders its
 // jobs by the time that follows from this.

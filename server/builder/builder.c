@@ -4,10 +4,35 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#include "builder/job_queue.h"
 #include "cautery/assert.h"
 #include "clock/clock.h"
-#include "worker/priority.h"
+#include "worker/pool.h"
+
+// ---- the order of jobs --------------------------------------------------------------------------
+
+void cau_job_queue_put(cau_job_queue *queue, cau_job *job, double now_s)
+{
+	job->rank = now_s + CAU_JOB_PATIENCE * job->expected_s;
+	cau_job **place = &queue->first;
+	while (*place && (*place)->rank <= job->rank) // jobs of equal rank stay in order
+		place = &(*place)->next;
+	job->next = *place;
+	*place = job;
+	queue->count++;
+}
+
+cau_job *cau_job_queue_take(cau_job_queue *queue)
+{
+	cau_job *job = queue->first;
+	if (job) {
+		queue->first = job->next;
+		job->next = NULL;
+		queue->count--;
+	}
+	return job;
+}
+
+// ---- the builder --------------------------------------------------------------------------------
 
 struct cau_builder {
 	pthread_mutex_t mutex; // guards all members

@@ -14,8 +14,7 @@
 #include "auth/auth.h"
 #include "builder/builder.h"
 #include "clock/clock.h"
-#include "daemon/load_meter.h"
-#include "daemon/restart.h"
+#include "daemon/reports.h"
 #include "http/static_files.h"
 #include "hub/hub.h"
 #include "lease/lease.h"
@@ -27,7 +26,6 @@
 #include "transport_ws/network.h"
 #include "watchdog/watchdog.h"
 #include "worker/pool.h"
-#include "worker/priority.h"
 
 enum {
 	CLOSING_S = 2, // longest time for connections to take their close frames

@@ -12,7 +12,7 @@
 #include "config/setting.h"
 #include "daemon/daemon.h"
 #include "log/log.h"
-#include "store/backup.h"
+#include "store/store.h"
 
 // Exit codes: 0 after a drain, 1 if the daemon could not start, 2 for wrong settings.
 enum { EXIT_STARTED = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };

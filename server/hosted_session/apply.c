@@ -2,8 +2,6 @@
 // Applies accepted orders at a tick border: passes commands to the core, and writes the log.
 #include <stdlib.h>
 
-#include "hosted_session/answer.h"
-#include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 

@@ -4,9 +4,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "hosted_session/answer.h"
-#include "hosted_session/build_limits.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/life.h"
 #include "hosted_session/slice.h"
 
 // First estimate of a step's time, s for each vertex: 0.12 s for a sheet of 250,000 vertices.

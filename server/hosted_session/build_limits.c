@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/build_limits.h"
+#include "hosted_session/life.h"
 
 #include <stdatomic.h>
 #include <stdio.h>

@@ -3,9 +3,9 @@
 // noted. A request that is sent again gets the stored answer.
 #include <stdlib.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
-#include "hosted_session/resend.h"
+#include "hosted_session/sink.h"
+#include "hosted_session/slice.h"
 
 // Data for the store's thread when a batch is committed.
 typedef struct commit {

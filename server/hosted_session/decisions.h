@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The decisions about a session: the state machine of server/session under a lock. The lock is held
-// briefly, never while the core computes, and never inside another lock of the session. Clients are
-// notified of decisions under the lock, so in the order of the decisions.
+// The decisions about a session, and the notices to clients about drivers and energy.
 #pragma once
 
 #include <pthread.h>
 #include <stdio.h>
 
-#include "hosted_session/identity.h"
+#include "hosted_session/life.h"
+
+// ---- decisions ----------------------------------------------------------------------------------
+// The decisions about a session: the state machine of server/session under a lock. The lock is held
+// briefly, never while the core computes, and never inside another lock of the session. Clients are
+// notified of decisions under the lock, so in the order of the decisions.
 
 typedef struct cau_hosted_decisions {
 	pthread_mutex_t lock;
@@ -77,3 +80,32 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause);
 // Answers an energy-off or a pause whose command cannot be stored, and frees the order. The command
 // takes effect at the next tick border, but the log does not contain it.
 void cau_hosted_answer_unstored(cau_hosted *h, cau_order *order);
+
+// ---- notices of drivers, energy and refused motion ----------------------------------------------
+// Notifies clients of drivers and energy. Also counts refused motion for each tool and reports the
+// count to the client that sent it, once a second.
+
+// Refused motion of one tool.
+typedef struct cau_refused_motion {
+	char tool[CAU_NAME_BYTES]; // "": the entry is unused
+	int64_t count;
+	double told_s;
+	uint32_t client;
+	uint64_t sequence; // sequence number of the newest refused motion
+	cau_error error;
+} cau_refused_motion;
+
+// Refused motion of all tools of a session. Any thread may use this struct, under the lock.
+typedef struct cau_hosted_refusals {
+	pthread_mutex_t lock;
+	uint64_t count; // refused motions of all tools since the session was created
+	cau_refused_motion place[CAU_MAX_TOOLS];
+} cau_hosted_refusals;
+
+void cau_refusals_note(cau_hosted_refusals *refusals, const cau_order *order,
+                       const cau_error *error);
+void cau_refusals_report(cau_hosted_refusals *refusals, const cau_hosted_identity *identity,
+                         double now_s); // reports each tool at most once a second
+
+// Sends tool.driver_changed.
+void cau_driver_notify(const cau_hosted_identity *identity, const cau_drive *drive);

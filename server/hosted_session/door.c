@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/hosted.h"
 #include "hosted_session/internal.h"
-#include "hosted_session/tools.h"
 
 static cau_ask ask_of_command(const cau_order *order)
 {

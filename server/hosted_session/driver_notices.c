@@ -2,9 +2,9 @@
 // Notifies clients of drivers, energy and refused motion.
 #include <string.h>
 
-#include "hosted_session/answer.h"
+#include "hosted_session/hosted.h"
 #include "hosted_session/internal.h"
-#include "hosted_session/tools.h"
+#include "hosted_session/slice.h"
 
 enum { REFUSALS_TOLD_EVERY_S = 1 };
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 static cau_order *order_of(uint64_t ticket)
 {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/energy.h"
+#include "hosted_session/slice.h"
 
 #include <string.h>
 
 #include "cautery/defaults.h"
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
-#include "hosted_session/slice.h"
 
 // ---- energy cut-off -----------------------------------------------------------------------------
 

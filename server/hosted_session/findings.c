@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/findings.h"
+#include "hosted_session/timeline.h"
 
 #include <stdio.h>
 
-#include "hosted_session/answer.h"
-#include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 #define GAIN_MOST 0.01 // largest energy gain that is not reported, relative to the tick's energy
 

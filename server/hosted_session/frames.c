@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/history.h"
+#include "hosted_session/record.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "hosted_session/answer.h"
-#include "hosted_session/build_limits.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/life.h"
+#include "hosted_session/slice.h"
 
 cau_hosted *cau_hosted_share(cau_hosted *h)
 {

@@ -6,16 +6,10 @@
 
 #include "clock/clock.h"
 #include "hosted_session/decisions.h"
-#include "hosted_session/driver_notices.h"
-#include "hosted_session/findings.h"
-#include "hosted_session/frames.h"
 #include "hosted_session/life.h"
-#include "hosted_session/pace.h"
 #include "hosted_session/past_views.h"
 #include "hosted_session/published.h"
 #include "hosted_session/read_requests.h"
-#include "hosted_session/shown.h"
-#include "hosted_session/suspension.h"
 #include "hosted_session/timeline.h"
 #include "trace/trace.h"
 

@@ -5,9 +5,38 @@
 
 #include "cautery/command.h"
 #include "cautery/messages.h"
-#include "hosted_session/advance.h"
 #include "hosted_session/sink.h"
 #include "session/asker.h"
+
+// ---- the arguments of session.advance -----------------------------------------------------------
+// They lie directly after their order, in the same memory block.
+
+enum {
+	CAU_ADVANCE_COMMANDS = 32,
+	CAU_ADVANCE_VERTICES = 16384, // most vertices that a request may choose
+	CAU_ADVANCE_REGIONS = 8,
+	// most numbers (positions and scalars) in an answer: 2.5 MB of text
+	CAU_ADVANCE_NUMBERS = 131072,
+};
+
+typedef struct cau_advance_region {
+	char name[CAU_NAME_BYTES];
+	cau_selection where; // selection of kind BOX or SPHERE
+} cau_advance_region;
+
+typedef struct cau_advance {
+	int64_t ticks;
+	uint64_t began_tick; // tick at which the order took effect
+	uint32_t channels;   // channels to observe: CAU_CHANNEL_* bits
+	bool chosen;         // observe only the vertices in `vertices`
+	bool energy;         // include the energy ledger of the instruments in the answer
+	int32_t command_count, vertex_count, region_count;
+	cau_command *commands; // in the memory block of the order
+	int32_t *vertices;     // in the memory block of the order
+	cau_advance_region regions[CAU_ADVANCE_REGIONS];
+} cau_advance;
+
+// ---- orders -------------------------------------------------------------------------------------
 
 // The kinds of orders, and the functions that serve them at a tick border (slice.h).
 //

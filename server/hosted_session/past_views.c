@@ -10,9 +10,8 @@
 
 #include "cautery/assert.h"
 #include "cautery/sha256.h"
-#include "hosted_session/answer.h"
-#include "hosted_session/build_limits.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/life.h"
 #include "hosted_session/slice.h"
 
 // Estimated times of the stages, s, and s for each vertex. The builder sorts its jobs by them, as

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
+#include "hosted_session/hosted.h"
 #include "hosted_session/internal.h"
-#include "hosted_session/tools.h"
 
 void cau_hosted_publish_summary(cau_hosted *h)
 {

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 // Longest time between two tick borders, s of wall time, with which a read waits for the next
 // border. With a longer time the read wakes the worker at once.

@@ -5,7 +5,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "buffer/shelf.h"
+#include "buffer/buffer.h"
 #include "cautery/session.h"
 #include "hosted_session/order.h"
 

@@ -1,15 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session's writes to the store: one batch for each slice, and answers after its commit. Only
-// the session's owning thread (internal.h) uses the record. Any thread may read cau_hosted_commits.
+// The stored past of a session: its branches and named snapshots, its writes to the store, and the
+// replay of its log.
 #pragma once
 
 #include <stdatomic.h>
 
-#include "buffer/shelf.h"
-#include "hosted_session/history.h"
-#include "hosted_session/identity.h"
-#include "hosted_session/present_core.h"
+#include "buffer/buffer.h"
+#include "hosted_session/life.h"
 #include "log/log.h"
+
+// ---- branches and named snapshots (history.c) ---------------------------------------------------
+// The branches and the named snapshots of a session. Only the session's owning thread (internal.h)
+// uses them.
+
+enum { SNAPSHOT_COUNT = 64 };
+
+typedef struct cau_named_snapshot {
+	char name[CAU_NAME_BYTES];
+	int64_t branch;
+	uint64_t tick;
+} cau_named_snapshot;
+
+typedef struct cau_hosted_history {
+	int64_t branch, next_branch;
+	uint64_t first_tick;
+	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
+	int32_t snapshot_count;
+} cau_hosted_history;
+
+const cau_named_snapshot *cau_history_find(const cau_hosted_history *history, const char *name);
+// Reads the branches and the snapshots of a session from the store.
+cau_status cau_history_load(cau_hosted_history *history, const cau_hosted_identity *identity,
+                            cau_error *error);
+
+// ---- writes -------------------------------------------------------------------------------------
+// A session's writes to the store: one batch for each slice, and answers after its commit. Only
+// the session's owning thread (internal.h) uses the record. Any thread may read cau_hosted_commits.
 
 // An answer that waits for its commit.
 typedef struct cau_pending {
@@ -96,3 +122,46 @@ void cau_commits_lose(cau_hosted_commits *commits, uint64_t from_tick);
 void cau_record_commit(cau_hosted *h);
 // Looks for an earlier answer to the same order, and sends it if there is one (commit.c).
 cau_outcome_kind cau_record_resend(cau_hosted *h, cau_order *order);
+
+// ---- replay -------------------------------------------------------------------------------------
+// Brings a core to a stored state: restores the nearest checkpoint, then replays the log, in
+// slices.
+
+// An entry of the log that is being replayed.
+typedef struct cau_replayed {
+	uint64_t tick;
+	uint32_t order;
+	bool acts; // false: the entry has no command (CAU_STORE_REACHED)
+	cau_command command;
+} cau_replayed;
+
+// A replay that is under way. Only one thread at a time may use this struct.
+typedef struct cau_replay {
+	void *snapshot; // snapshot of the checkpoint, until the core is restored from it
+	size_t snapshot_bytes;
+	uint64_t from, until; // ticks between which the log is replayed
+	uint64_t tick;        // tick of the core
+	bool exact;
+	double stepped_s; // processor time of the replayed steps
+	cau_replayed *commands;
+	size_t count, capacity, at;
+} cau_replay;
+
+// Checks whether a tick can be reached. Runs on the builder. First waits until all submitted
+// batches are in the store. Returns CAU_BAD_VALUE if the tick cannot be reached. `present`: the
+// branch is the session's present branch.
+cau_status cau_replay_check(const cau_hosted_identity *identity, const cau_hosted_commits *commits,
+                            int64_t branch, bool present, uint64_t tick, cau_error *error);
+// Reads the checkpoint and the log of a session's branch up to `tick` (UINT64_MAX: the end).
+cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *session,
+                           int64_t branch, uint64_t tick, cau_error *error);
+// Restores the core from the checkpoint that cau_replay_read has read. After CAU_CORRUPT the core
+// is unchanged. After another failure its state is undefined.
+cau_status cau_replay_restore(cau_replay *replay, cau_session *core, cau_error *error);
+// Replays the log until its end, or for about `seconds`.
+cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,
+                            cau_error *error);
+// Starts the replay later than at the checkpoint: the core, or the snapshot that replaces the
+// checkpoint's, is at `tick`.
+void cau_replay_shorten(cau_replay *replay, uint64_t tick);
+void cau_replay_finish(cau_replay *replay);

@@ -6,7 +6,7 @@
 
 #include "cautery/command_json.h"
 #include "clock/clock.h"
-#include "hosted_session/replay.h"
+#include "hosted_session/record.h"
 
 cau_status cau_replay_check(const cau_hosted_identity *identity, const cau_hosted_commits *commits,
                             int64_t branch, bool present, uint64_t tick, cau_error *error)

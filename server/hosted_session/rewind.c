@@ -8,7 +8,6 @@
 // until the new one is reached. If that fails, the session continues from its present state.
 #include <stdlib.h>
 
-#include "hosted_session/answer.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 

@@ -2,8 +2,6 @@
 // One slice of a session on a worker: energy cut-offs, orders, one step, frames, the commit.
 #include <math.h>
 
-#include "hosted_session/answer.h"
-#include "hosted_session/energy.h"
 #include "hosted_session/internal.h"
 #include "hosted_session/slice.h"
 

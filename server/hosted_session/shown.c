@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/shown.h"
+#include "hosted_session/published.h"
 
 #include <math.h>
 #include <string.h>

@@ -74,3 +74,8 @@ static inline void cau_reply_fail(const cau_reply *reply, const cau_error *error
 
 // Answers that another daemon has the session.
 void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to);
+
+// Sends the stored answer `text` to the client that asks again. A client's sequence number belongs
+// to one method. If the stored answer is of another method, the client receives
+// CAU_RPC_SEQUENCE_CONFLICT.
+void cau_resend_answer(const cau_reply *reply, const char *text, size_t text_bytes);

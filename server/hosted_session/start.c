@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 #include "cautery/scene_json.h"
-#include "hosted_session/answer.h"
-#include "hosted_session/build_limits.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/life.h"
 #include "hosted_session/mesh_reading.h"
+#include "hosted_session/slice.h"
 
 // Pieces of memory on each shelf: one is used by the store or the builder, and one is ready for the
 // next slice.

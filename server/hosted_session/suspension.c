@@ -2,13 +2,12 @@
 // While the builder has a session, its stages cannot be interrupted. Between two stages the builder
 // reports its progress, compares the session's memory with the limits, and checks whether clients
 // have cancelled the session.
-#include "hosted_session/suspension.h"
+#include "hosted_session/life.h"
 
 #include <string.h>
 
-#include "hosted_session/answer.h"
-#include "hosted_session/build_limits.h"
 #include "hosted_session/internal.h"
+#include "hosted_session/slice.h"
 
 static const char *const stage_names[] = {
 #define X(code, name) [CAU_BUILD_##code] = (name),

@@ -1,9 +1,82 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders about time, and session.destroy.
-
-#include "hosted_session/answer.h"
-#include "hosted_session/internal.h"
+// The time of a session: its pace, the orders about time, session.destroy, and the end of a slice.
 #include "hosted_session/slice.h"
+
+#include <math.h>
+
+#include "cautery/assert.h"
+#include "clock/clock.h"
+#include "hosted_session/internal.h"
+#include "hosted_session/published.h"
+
+// ---- pace ---------------------------------------------------------------------------------------
+
+#define FACTOR_WINDOW_S 1.0 // window over which realtime_factor is measured, s
+// factor by which piece_s falls from step to step, unless a step takes longer than piece_s
+#define PIECE_KEPT 0.9
+
+_Static_assert((int)CAU_HOSTED_STAGES == (int)CAU_STAGE_COUNT,
+               "a histogram for each stage of the core");
+
+const char *cau_hosted_stage_name(int stage)
+{
+	static const char *const names[] = {
+#define X(code, name) name,
+		CAU_STAGE_TABLE(X)
+#undef X
+	};
+	return names[stage];
+}
+
+void cau_pace_restart(cau_hosted_pace *pace, uint64_t tick)
+{
+	pace->window_s = cau_monotonic_s();
+	pace->window_tick = tick;
+}
+
+void cau_pace_measure(cau_hosted_pace *pace, uint64_t tick, double tick_step_s)
+{
+	double now_s = cau_monotonic_s(), wall_s = now_s - pace->window_s;
+	if (wall_s < FACTOR_WINDOW_S)
+		return;
+	pace->realtime_factor = (double)(tick - pace->window_tick) * tick_step_s / wall_s;
+	pace->window_s = now_s;
+	pace->window_tick = tick;
+}
+
+void cau_pace_expect(cau_hosted_pace *pace, double took_s)
+{
+	pace->stepped_s += took_s;
+	pace->piece_s = fmax(took_s, PIECE_KEPT * pace->piece_s);
+}
+
+void cau_pace_stepped(const cau_hosted_pace *pace, cau_hosted_times *times,
+                      const cau_statistics *statistics)
+{
+	if (!times)
+		return;
+	cau_histogram_note(&times->step, pace->step_cost_s);
+	for (int i = 0; i < CAU_STAGE_COUNT; i++)
+		cau_histogram_note(&times->stage[i], statistics->seconds[i]);
+	if (pace->late_s >= 0)
+		cau_histogram_note(&times->lateness, pace->late_s);
+}
+
+void cau_pace_await_frame(cau_hosted_pace *pace, double came_s)
+{
+	if (pace->waiting_count < WAITING_COUNT)
+		pace->waiting_s[pace->waiting_count++] = came_s;
+}
+
+void cau_pace_framed(cau_hosted_pace *pace, cau_hosted_times *times)
+{
+	double now_s = cau_monotonic_s();
+	for (int i = 0; i < pace->waiting_count && times; i++)
+		cau_histogram_note(&times->command_to_frame, now_s - pace->waiting_s[i]);
+	pace->waiting_count = 0;
+}
+
+// ---- orders about time, and session.destroy -----------------------------------------------------
 
 static void answer_summary(cau_hosted *h, cau_order *order, int change)
 {
@@ -100,4 +173,47 @@ cau_outcome_kind cau_apply_destroy(cau_hosted *h, cau_order *order, const cau_ac
 		return CAU_NOT_DONE;
 	h->life.ended = true;
 	return CAU_DONE;
+}
+
+// ---- the end of a slice, and refused orders -----------------------------------------------------
+
+void cau_hosted_end_slice(cau_hosted *h)
+{
+	cau_record_commit(h);
+	cau_decisions_flush_trace(&h->decisions, h->identity.id);
+	if (!h->creation.starting)
+		h->creation.unanswered = false;
+	cau_hosted_publish_summary(h);
+	cau_hosted_publish_tools(h);
+	h->identity.around->sink.sliced(h->identity.around->sink.user, h->identity.number);
+}
+
+void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code)
+{
+	if (code == CAU_RPC_NOT_HERE) {
+		cau_hosted_refuse_gone(&h->life, order);
+		return;
+	}
+	if (order->kind == CAU_ORDER_COMMAND) {
+		h->findings.refused_commands++;
+		if (order->motion)
+			cau_refusals_note(&h->refusals, order, error);
+	}
+	cau_answer_fail(order, error, code);
+}
+
+void cau_hosted_refuse_rest(cau_hosted *h)
+{
+	cau_action action;
+	CAU_ASSERT(h->decisions.logic->ended, "orders of session %s are refused before it ends",
+	           h->identity.id);
+	for (cau_decide_next(h, &action); action.act != CAU_ACT_NOTHING; cau_decide_next(h, &action)) {
+		cau_order *order = (cau_order *)(uintptr_t)action.ticket;
+		if (action.act == CAU_ACT_REFUSE)
+			cau_hosted_refuse_order(h, order, &action.error, action.code);
+		else if (action.act == CAU_ACT_STEP_FAILED)
+			cau_time_stepped(h, order, true);
+		cau_decide_done(h, CAU_DONE);
+	}
+	cau_reads_refuse(h);
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hosted_session/resend.h"
+#include "hosted_session/sink.h"
 #include "hub/internal.h"
 
 // Pause, s, before a resend is tried again while its earlier request is being handled.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clients of the hub. A client is kept for a while after its connection is lost, so that it can
 // return to its tools.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
 
+#include "cautery/assert.h"
 #include "cautery/sha256.h"
 #include "hub/internal.h"
 
@@ -162,21 +164,21 @@ void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection)
 		cau_hub_each(hub, cut_one, &(cut){number, "the driver's connection was lost"});
 }
 
-typedef struct sign {
+typedef struct client_sign {
 	uint32_t client;
 	double alive_s;
-} sign;
+} client_sign;
 
 static void feed_one(void *user, cau_hosted *hosted)
 {
-	const sign *given = user;
+	const client_sign *given = user;
 	cau_hosted_feed(hosted, given->client, given->alive_s);
 }
 
 void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible, double alive_s)
 {
 	if (visible)
-		cau_hub_each(hub, feed_one, &(sign){number, alive_s});
+		cau_hub_each(hub, feed_one, &(client_sign){number, alive_s});
 	else
 		cau_hub_each(hub, cut_one, &(cut){number, "the driver's page is hidden"});
 }
@@ -215,4 +217,62 @@ bool cau_hub_resume_token(cau_hub *hub, uint32_t number, char token[CAU_RESUME_B
 		memcpy(token, client->resume, CAU_RESUME_BYTES);
 	pthread_mutex_unlock(&hub->mutex);
 	return client && *token;
+}
+
+// ---- signs of life ------------------------------------------------------------------------------
+
+static void begin_window(cau_sign_of_life *sign, double arrival_s, double least_s)
+{
+	sign->window_from_s = arrival_s;
+	sign->window_least_s = least_s;
+}
+
+static void begin(cau_sign_of_life *sign, double arrival_s, double difference_s)
+{
+	sign->clocked = true;
+	sign->least_s = difference_s;
+	sign->measured_s = sign->alive_s = arrival_s;
+	begin_window(sign, arrival_s, difference_s);
+}
+
+// Notes a smaller difference: the clock was set forward, or the first message was delayed for long.
+static void note_leap(cau_sign_of_life *sign, double arrival_s, double difference_s,
+                      double deadline_s)
+{
+	if (sign->least_s - difference_s > deadline_s)
+		sign->measured_s = arrival_s + deadline_s;
+	sign->least_s = fmin(sign->least_s, difference_s);
+}
+
+static void let_grow_old(cau_sign_of_life *sign, double arrival_s, double client_s)
+{
+	double difference_s = arrival_s - client_s;
+	bool set_back = client_s < sign->client_s;
+	if (set_back || arrival_s - sign->arrival_s > CAU_SIGN_GAP_S)
+		begin_window(sign, arrival_s, difference_s);
+	sign->window_least_s = fmin(sign->window_least_s, difference_s);
+	if (arrival_s - sign->window_from_s < CAU_SIGN_WINDOW_S)
+		return;
+	sign->least_s = sign->window_least_s;
+	begin_window(sign, arrival_s, INFINITY);
+}
+
+double cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s, double client_s,
+                             double deadline_s)
+{
+	CAU_ASSERT(deadline_s >= 0, "a deadline of %g s", deadline_s);
+	CAU_ASSERT(arrival_s >= sign->arrival_s, "arrived at %g s, after %g s", arrival_s,
+	           sign->arrival_s);
+	double difference_s = arrival_s - client_s;
+	if (!sign->clocked)
+		begin(sign, arrival_s, difference_s);
+	note_leap(sign, arrival_s, difference_s, deadline_s);
+	let_grow_old(sign, arrival_s, client_s);
+	sign->arrival_s = arrival_s;
+	sign->client_s = client_s;
+	if (arrival_s >= sign->measured_s)
+		sign->alive_s = fmax(sign->alive_s, fmin(arrival_s, client_s + sign->least_s));
+	CAU_ASSERT(sign->alive_s <= arrival_s, "alive at %g s, which arrived at %g s", sign->alive_s,
+	           arrival_s);
+	return sign->alive_s;
 }

@@ -9,6 +9,8 @@
 // so.
 #pragma once
 
+#include <stdbool.h>
+
 #include "cautery/messages.h"
 #include "config/config.h"
 #include "hosted_session/hosted.h"
@@ -152,3 +154,82 @@ void cau_hub_store_takes(cau_hub *hub, bool ephemeral, bool takes, const char *r
 void cau_hub_stop_time(cau_hub *hub);
 // Makes a checkpoint of all sessions. Returns when they are on the disk or when the time is over.
 void cau_hub_drain(cau_hub *hub, double seconds);
+
+// ---- sessions that move (server/move) -----------------------------------------------------------
+
+// ---- functions that the hub calls
+// Answers about sessions that are not the hub's. Any thread may call them, without a lock of the
+// hub.
+typedef struct cau_elsewhere {
+	void *user;
+	// True if session `id` has moved to another daemon; *to is then its target.
+	bool (*moved)(void *user, const char *id, cau_moved_to *to);
+	// True if session `id` is arriving and is not this daemon's yet.
+	bool (*arrives)(void *user, const char *id);
+} cau_elsewhere;
+
+// Call this before sessions exist. Without it no session is elsewhere.
+void cau_hub_set_elsewhere(cau_hub *hub, const cau_elsewhere *elsewhere);
+
+// ---- sessions of the store
+
+// Reads session `id` of the store as a creation; free it with cau_creation_free.
+cau_status cau_hub_read_session(cau_hub *hub, const char *id, cau_creation **creation,
+                                cau_error *error);
+// Starts session `id` of the store. Answers `reply` with its description; the reply may have no
+// receiver.
+cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *reply,
+                              cau_error *error);
+// Builds session `id` in advance. The session then waits, and belongs to the caller, not to the
+// hub. `reply` is answered with move_held. Takes the scene and meshes of the creation if the result
+// is CAU_OK. Takes no lock of the hub.
+cau_status cau_hub_make_incoming(cau_hub *hub, cau_creation *creation, const char *id,
+                                 const cau_reply *reply, cau_hosted **hosted, cau_error *error);
+// Adds a session that was built in advance to the hub's sessions. Takes the caller's reference.
+// Returns false, and takes nothing, if no slot is free.
+bool cau_hub_place(cau_hub *hub, cau_hosted *hosted);
+
+// ---- drivers of a session that moves
+
+// Copies the token with which client `number` gets its tools back. Returns false if there is none.
+bool cau_hub_resume_token(cau_hub *hub, uint32_t number, char token[CAU_RESUME_BYTES]);
+// Registers a lost client that another daemon has reported. The client may return with its token.
+// Returns its number; 0: there are too many clients.
+uint32_t cau_hub_expect(cau_hub *hub, const cau_client *client);
+
+// ---- signs of life ------------------------------------------------------------------------------
+// Computes when a client gave its newest sign of life, by the server's clock. A message may wait on
+// its way, or in a socket while the server is stopped. So it proves that its sender was alive when
+// it was sent, not when it was read. The sender's clock gives the time of sending.
+//
+// The difference between a message's arrival and its sender's clock is the offset of the clocks
+// plus the delay. The least difference belongs to the shortest delay. So a message was sent at its
+// sender's time plus the least difference, or earlier. The least difference must not be kept for
+// ever: clocks drift, and a clock may be set back. So it is replaced by the least difference of the
+// last CAU_SIGN_WINDOW_S once messages have arrived for that long without a gap. Messages that
+// arrive all at once, as after a stop of the server, take none of that time.
+//
+// A clock that is set forward looks like a shorter delay. If the change exceeds the deadline, it is
+// not trusted at once: for one deadline, messages only measure the clock and are no signs of life.
+
+#define CAU_SIGN_WINDOW_S 5.0
+// Longest pause between two arrivals of one window, s. A longer pause begins a new window.
+#define CAU_SIGN_GAP_S 1.0
+
+typedef struct cau_sign_of_life {
+	bool clocked;          // a message had a clock; from then on only messages with a clock count
+	double least_s;        // the least difference that is used
+	double window_from_s;  // arrival that began the window
+	double window_least_s; // the least difference in the window
+	double arrival_s;      // arrival of the newest message with a clock
+	double client_s;       // clock of the sender in that message
+	double measured_s;     // messages that arrive before this time are no signs of life
+	double alive_s;        // the newest sign of life, monotonic
+} cau_sign_of_life;
+
+// Notes a message with a clock. `arrival_s` is monotonic and never decreases. `client_s` is the
+// sender's clock, from any origin. `deadline_s` is the silence after which energy is cut off.
+// Returns the time of the sender's newest sign of life: at most `arrival_s`, and never less than
+// the last result.
+double cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s, double client_s,
+                             double deadline_s);

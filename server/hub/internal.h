@@ -11,7 +11,6 @@
 
 #include "clock/clock.h"
 #include "hub/hub.h"
-#include "hub/moving.h"
 #include "log/log.h"
 
 enum { MOST_SINKS = 4 };

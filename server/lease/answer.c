@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A strict scan checks the form first, so the functions below only have to find members and values.
-#include "lease/answer.h"
+#include "lease/etcd.h"
 
 #include <openssl/evp.h>
 #include <stdlib.h>

@@ -16,12 +16,12 @@
 #include <pthread.h>
 
 #include "clock/clock.h"
-#include "hub/moving.h"
+#include "hub/hub.h"
 #include "log/log.h"
 #include "move/courier.h"
 #include "move/move.h"
 #include "session/handover.h"
-#include "store/dump.h"
+#include "store/rows.h"
 
 // Where to find a session that has moved away, and the proof of the move.
 typedef struct cau_tombstone {

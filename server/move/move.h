@@ -3,7 +3,7 @@
 // sessions that arrive, and the targets of sessions that have left. The requests of a courier are
 // served by jobs of the mover. session/handover.h makes the decisions.
 //
-// This folder uses the hub. The hub calls two functions of this folder (hub/moving.h): whether an
+// This folder uses the hub. The hub calls two functions of this folder (hub/hub.h): whether an
 // id has moved away, and whether it is arriving.
 #pragma once
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cautery/defaults.h"
-#include "hosted_session/advance.h"
+#include "hosted_session/order.h"
 #include "rpc/internal.h"
 
 // Memory into which the params are read.

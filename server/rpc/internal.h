@@ -8,7 +8,7 @@
 #include "backup/backup.h"
 #include "cautery/chunk_codec.h"
 #include "clock/clock.h"
-#include "hub/sign_of_life.h"
+#include "hub/hub.h"
 #include "log/log.h"
 #include "metrics/exposition.h"
 #include "quota/quota.h"

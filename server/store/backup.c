@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "backup.h"
+#include "store/store.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,9 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "fault.h"
 #include "file.h"
-#include "probe.h"
 
 enum { NAME_BYTES = 4096, WAIT_MS = 100, WAITS_MOST = 300 };
 

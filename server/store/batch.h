@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The records in a batch. Each record is one allocation with copies of everything that its public
-// struct points to, except a checkpoint's snapshot.
+// The records in a batch, and how they are written into the database.
 #pragma once
 
+#include <sqlite3.h>
+
 #include "store/store.h"
+
+// ---- records ------------------------------------------------------------------------------------
+// Each record is one allocation with copies of everything that its public struct points to, except
+// a checkpoint's snapshot.
 
 enum record_kind {
 	RECORD_SESSION,
@@ -64,3 +69,48 @@ struct cau_store_batch {
 // Returns the client and sequence of the request that the record answers. Returns false if the
 // record answers no request.
 bool cau_store_record_request(const struct record *record, const char **client, uint64_t *sequence);
+
+// ---- writing ------------------------------------------------------------------------------------
+// Writes records into the database, inside a transaction of the caller.
+
+enum {
+	CAU_STORE_STATEMENTS = 20,
+	// number of slots: about as many as branches that are written at the same time
+	CAU_STORE_UNCOUNTED_SLOTS = 16,
+};
+
+// Bytes of commands that branches.bytes does not count yet. Counting with each command would write
+// the table page of branches with each commit. A crash loses these bytes, less than a page for each
+// branch.
+struct cau_store_uncounted {
+	struct {
+		int64_t key, branch, bytes; // bytes 0 means that the slot is free
+	} slot[CAU_STORE_UNCOUNTED_SLOTS];
+};
+
+struct cau_store_writer {
+	sqlite3 *database; // borrowed
+	sqlite3_stmt *statement[CAU_STORE_STATEMENTS];
+	// A rollback restores the value from before the records that it undoes.
+	struct cau_store_uncounted uncounted;
+};
+
+// Compiles every statement. This also checks that the tables are as this build expects.
+cau_status cau_store_writer_init(struct cau_store_writer *writer, sqlite3 *database,
+                                 cau_error *error);
+// the writer may be zeroed or initialised
+void cau_store_writer_finish(struct cau_store_writer *writer);
+
+// Writes one record. CAU_ALREADY_EXISTS and CAU_NOT_FOUND are the record's own errors; any other
+// error is the disk's.
+cau_status cau_store_writer_apply(struct cau_store_writer *writer, const struct record *record,
+                                  int64_t now_ms, cau_error *error);
+
+// ---- writing the records of sessions that move (moves.c) ----------------------------------------
+// Writes the records of sessions that move, inside a transaction of the caller. Moves are rare, so
+// the statements are compiled when they are needed.
+
+// Writes one record. CAU_ALREADY_EXISTS, CAU_NOT_FOUND and CAU_BAD_VALUE are the record's own
+// errors; any other error is the disk's.
+cau_status cau_store_import(sqlite3 *database, const struct record *record, int64_t now_ms,
+                            cau_error *error);

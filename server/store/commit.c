@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "commit.h"
+#include "store_state.h"
 
 #include <string.h>
 #include <sys/statvfs.h>
 
 #include "cautery/assert.h"
-#include "clock.h"
-#include "fault.h"
-#include "metrics.h"
-#include "queue.h"
+#include "file.h"
 #include "retention.h"
 
 enum {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "course.h"
+#include "retention.h"
 
 #include <stdlib.h>
 
 #include "cautery/assert.h"
-#include "fault.h"
+#include "file.h"
 
 enum {
 	// divisor of an age: thinning may remove a checkpoint if its two neighbours are at most

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dump.h"
+#include "rows.h"
 
 #include <sqlite3.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "fault.h"
 #include "file.h"
 #include "store_state.h"
 

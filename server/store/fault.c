@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fault.h"
 #include "cautery/assert.h"
+#include "file.h"
 
 #include <stdint.h>
 #include <string.h>

@@ -7,9 +7,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "fault.h"
-#include "migrate.h"
-
 // longest wait, ms, for the write lock, which an operator's sqlite3 may hold
 enum { BUSY_MS = 2000 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fold.h"
 #include "cautery/assert.h"
+#include "file.h"
 
 // Folds the log. PASSIVE never holds up a commit. If the fold fails, the commits are still safe in
 // the log, and the fold is requested again later.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "probe.h"
+#include "file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,9 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "fault.h"
-#include "schema.h"
-#include "write.h"
+#include "batch.h"
 
 enum {
 	HEADER_BYTES = 100,

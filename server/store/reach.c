@@ -2,8 +2,8 @@
 // Which past ticks of a branch can be reached.
 #include <string.h>
 
-#include "course.h"
-#include "read.h"
+#include "retention.h"
+#include "store_state.h"
 
 // Reads the branch's course on the connection `reading`.
 static cau_status read_course(cau_store *store, const char *session, int64_t branch,

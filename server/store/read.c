@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fault.h"
-#include "read.h"
+#include "file.h"
+#include "store_state.h"
 
 enum {
 	PIECE_ROWS = 256,      // most commands in one piece

@@ -2,8 +2,8 @@
 // Reads the events of a session, and those that a branch sees.
 #include <stdlib.h>
 
-#include "fault.h"
-#include "read.h"
+#include "file.h"
+#include "store_state.h"
 
 // ?1: session, ?2: kind or NULL, ?3: branch or -1, ?4 and ?5: ticks, ?6: count
 static const char newest_events[] =

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Chooses what to remove. Deleted sessions; parts of left branches from which no other branch was
 // forked; old answers and events. On the present line: checkpoints that are close for their age
-// (course.h), and the oldest log of a session that is too big. Marked states stay.
+// (course.c), and the oldest log of a session that is too big. Marked states stay.
 // A left branch loses its newest ticks first, so that the rest is always a complete beginning. The
 // present line loses its log from the oldest on; the missing ranges are reported as gaps.
 #include "retention.h"
 
 #include <stdbool.h>
 
-#include "fault.h"
-#include "trim.h"
+#include "file.h"
 
 enum {
 	// divisor of the budget: 1/20 of it is free after retention, once the budget was exceeded

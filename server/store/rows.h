@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "cautery/status.h"
+#include "store/store.h"
 
 #define CAU_ROWS_VERSION 2
 #define CAU_ROWS_HEAD_BYTES 16
@@ -99,3 +100,22 @@ void cau_rows_put_values(cau_rows_writer *writer, cau_rows_table table, ...);
 void cau_rows_flag(cau_rows_writer *writer, uint32_t flags);
 // Appends bytes after the last row. A reader removes them before it opens the piece.
 void cau_rows_append(cau_rows_writer *writer, const void *bytes, size_t byte_count);
+
+// ---- reading a session's records ----------------------------------------------------------------
+// Reads all records of a session for another store, in two readings. The first reads what exists
+// while the session runs. The second reads the new records, when the session is suspended and
+// everything is on the disk. The dump has a connection of its own, so that other reads do not wait.
+// Each of the two readings is one read transaction.
+
+typedef struct cau_store_dump cau_store_dump;
+
+// Opens a dump of `session`. Errors: CAU_NOT_FOUND, CAU_IO, CAU_NO_MEMORY. Only one thread at a
+// time may use a dump.
+cau_status cau_store_dump_open(cau_store *store, const char *session, cau_store_dump **dump,
+                               cau_error *error);
+// Adds records to the writer until it holds `bytes` or more. *over: this reading is complete.
+cau_status cau_store_dump_write(cau_store_dump *dump, cau_rows_writer *writer, size_t bytes,
+                                bool *over, cau_error *error);
+// Begins the second reading, of the new records. Call it after the end of the first reading.
+cau_status cau_store_dump_rest(cau_store_dump *dump, cau_error *error);
+void cau_store_dump_close(cau_store_dump *dump); // closes the dump; `dump` may be NULL

@@ -5,12 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clock.h"
-#include "commit.h"
-#include "fault.h"
 #include "file.h"
-#include "migrate.h"
-#include "probe.h"
 #include "store_state.h"
 
 static const int64_t hour_ms = 3600000;

@@ -255,7 +255,7 @@ typedef struct cau_store_gap {
 // Records a gap. Put it into the batch of the checkpoint that ends the gap, at before_tick.
 cau_status cau_store_put_gap(cau_store_batch *batch, const cau_store_gap *gap, cau_error *error);
 
-// ---- writing: sessions that move (dump.h reads them, rows.h is how they travel) -----------------
+// ---- writing: sessions that move (rows.h) -------------------------------------------------------
 // A session that another daemon has now.
 typedef struct cau_store_moved {
 	const char *id;   // the session's id here
@@ -438,3 +438,13 @@ typedef struct cau_store_metrics {
 } cau_store_metrics;
 void cau_store_get_metrics(cau_store *store, cau_store_metrics *metrics);
 double cau_store_time_bucket_s(int bucket); // returns the upper end of a bucket, s
+
+// ---- copies -------------------------------------------------------------------------------------
+// Copies a store as of one moment, while its daemon continues to use it.
+
+// Copies the store at `path` to `file`, which must not exist. A daemon may be writing the store.
+// The copy has everything that was committed when the copy began, and nothing later. It is checked
+// page by page like a store before opening, synced, and only then linked to `file`. Errors:
+// CAU_ALREADY_EXISTS: `file` exists; CAU_NOT_FOUND: no store at `path`; CAU_CORRUPT: the copy is
+// damaged; CAU_IO.
+cau_status cau_store_backup(const char *path, const char *file, cau_error *error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trim.h"
+#include "retention.h"
 
-#include "fault.h"
+#include "file.h"
 
 enum { ROW_BYTES = 64 }; // bytes that write.c counts for a command besides its payload
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write.h"
+#include "batch.h"
 
 #include "cautery/assert.h"
-#include "fault.h"
-#include "import.h"
+#include "file.h"
 
 // Columns: name, SQL.
 #define STATEMENT_TABLE(X)                                                                         \

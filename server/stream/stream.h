@@ -6,7 +6,6 @@
 #include <pthread.h>
 
 #include "buffer/buffer.h"
-#include "buffer/shelf.h"
 #include "cautery/frame_codec.h"
 #include "cautery/topology_codec.h"
 

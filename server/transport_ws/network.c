@@ -7,7 +7,7 @@
 #include "clock/clock.h"
 #include "log/log.h"
 #include "transport_ws/internal.h"
-#include "worker/priority.h"
+#include "worker/pool.h"
 
 enum { TICK_MS = 100 };
 

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "auth/list.h"
+#include "auth/auth.h"
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
 

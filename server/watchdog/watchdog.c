@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "clock/clock.h"
-#include "worker/priority.h"
+#include "worker/pool.h"
 
 struct cau_watchdog {
 	pthread_t thread;

@@ -4,9 +4,10 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "clock/clock.h"
-#include "worker/priority.h"
 
 struct cau_worker_pool {
 	pthread_mutex_t mutex;
@@ -234,4 +235,9 @@ int32_t cau_worker_pool_busy(cau_worker_pool *pool)
 		busy += pool->tasks[i]->running || pool->tasks[i]->next.due_s <= now_s;
 	pthread_mutex_unlock(&pool->mutex);
 	return busy;
+}
+
+void cau_thread_set_nice(int nice)
+{
+	setpriority(PRIO_PROCESS, (id_t)gettid(), nice);
 }

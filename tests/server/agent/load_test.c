@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "agent/load.h"
+#include "agent/agent.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

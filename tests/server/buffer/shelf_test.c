@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "buffer/shelf.h"
+#include "buffer/buffer.h"
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/job_queue.h"
+#include "builder/builder.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "cautery/command_json.h"
-#include "hosted_session/build_limits.h"
+#include "hosted_session/life.h"
 #include "server/double/fake_session.h"
 #include "server/hosted_session/hosted_fixture.h"
 

@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "hosted_session/kept_states.h"
+#include "hosted_session/past_views.h"
 
 enum { BYTES = 100, BUDGET = 1000 };
 

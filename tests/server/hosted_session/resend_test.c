@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hosted_session/resend.h"
+#include "hosted_session/sink.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests signs of life by the sender's clock: delays, messages that arrive all at once, drift, and
 // clocks that are set.
-#include "hub/sign_of_life.h"
+#include "hub/hub.h"
 
 #include <math.h>
 #include <setjmp.h>

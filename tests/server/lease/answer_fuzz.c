@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "fuzz/fuzz_target.h"
-#include "lease/answer.h"
+#include "lease/etcd.h"
 #include "lease/logic.h"
 
 static void check_values(const cau_etcd_value *values)

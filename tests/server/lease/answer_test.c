@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "lease/answer.h"
+#include "lease/etcd.h"
 
 #define HEADER                                                                                     \
 	"\"header\":{\"cluster_id\":\"14841639068965178418\",\"member_id\":\"10276657743932975437\","  \

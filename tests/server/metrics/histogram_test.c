@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks the buckets of a histogram, and that threads do not lose each other's counts.
-#include "metrics/histogram.h"
+#include "metrics/exposition.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "store/backup.h"
+#include "store/store.h"
 
 enum { COMMANDS = 400 };
 

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-#include "store/clock.h"
+#include "store/store_state.h"
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 

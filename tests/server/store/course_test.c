@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-#include "store/course.h"
+#include "store/retention.h"
 
 enum { SPACING = 600 };
 

@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "store/clock.h"
+#include "store/store_state.h"
 
 enum {
 	SNAPSHOT_BYTES = 500000,

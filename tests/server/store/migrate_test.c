@@ -7,9 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "store/fault.h"
-#include "store/migrate.h"
-#include "store/schema.h"
+#include "store/file.h"
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 

@@ -3,7 +3,7 @@
 // session.
 #include "retention_fixture.h"
 
-#include "store/clock.h"
+#include "store/store_state.h"
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 

@@ -7,7 +7,6 @@
 #include <sqlite3.h>
 #include <string.h>
 
-#include "store/fault.h"
 #include "store/file.h"
 #include "store/retention.h"
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "daemon/load_meter.h"
+#include "daemon/reports.h"
 
 #include <math.h>
+#include <systemd/sd-daemon.h>
 #include <time.h>
 
 #include "clock/clock.h"
+#include "log/log.h"
+
+// ---- load ---------------------------------------------------------------------------------------
 
 // Length of the window in which the busy share is measured, s. A shorter window would show single
 // steps; a longer one, sessions that have ended.
@@ -49,4 +53,33 @@ void cau_load_meter_read(cau_load_meter *meter, cau_load *load)
 	load->session_bytes = cau_hub_memory(meter->hub);
 	load->session_bytes_most = meter->config->max_sessions_bytes;
 	load->pace_share_min = cau_hub_pace_share_min(meter->hub);
+}
+
+// ---- progress of a restart ----------------------------------------------------------------------
+
+#define PACE_S 2.0 // time between two lines of the log
+
+void cau_restart_begin(cau_restart *restart, cau_hub *hub, int32_t sessions)
+{
+	*restart =
+		(cau_restart){.hub = hub, .of = sessions, .left = sessions, .began_s = cau_monotonic_s()};
+	restart->told_s = restart->began_s;
+}
+
+void cau_restart_tell(cau_restart *restart)
+{
+	if (restart->left == 0)
+		return;
+	int32_t left = cau_hub_resuming(restart->hub);
+	if (left >= restart->left)
+		return;
+	restart->left = left;
+	int32_t done = restart->of - left;
+	double now_s = cau_monotonic_s();
+	if (!left || now_s >= restart->told_s + PACE_S) {
+		cau_log(CAU_LOG_NOTICE, NULL, left ? "resuming" : "all_resumed",
+		        "sessions=%d of=%d seconds=%.1f", done, restart->of, now_s - restart->began_s);
+		restart->told_s = now_s;
+	}
+	sd_notifyf(0, left ? "STATUS=%d of %d sessions are up" : "STATUS=", done, restart->of);
 }
