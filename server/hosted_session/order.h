@@ -7,7 +7,7 @@
 #include "cautery/messages.h"
 #include "hosted_session/advance.h"
 #include "hosted_session/sink.h"
-#include "session/asker.h"
+#include "session/logic.h"
 
 // The kinds of orders, and the functions that serve them at a tick border (slice.h).
 //
