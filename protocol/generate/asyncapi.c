@@ -4,7 +4,7 @@
 
 #include "cautery/json_writer.h"
 #include "cautery/rpc.h"
-#include "generate/write.h"
+#include "generate/model.h"
 
 enum { TEXT_BYTES = 4 << 20 };
 

@@ -7,7 +7,7 @@
 #include "cautery/chunk_codec.h"
 #include "cautery/rpc.h"
 #include "cautery/topology_codec.h"
-#include "generate/write.h"
+#include "generate/model.h"
 
 enum { ROW_BYTES = 16, VERTICES = 3, CAPACITY = 4096, ENCODER_BYTES = 1 << 15 };
 

@@ -3,7 +3,7 @@
 
 #include "cautery/rpc_errors.h"
 #include "cautery/stream.h"
-#include "generate/write.h"
+#include "generate/model.h"
 
 static const char *const role_names[] = {
 #define X(code, name) name,

@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "cautery/defaults.h"
-#include "json/fields.h"
-#include "json/instrument.h"
+#include "json/document.h"
 
 // ---- building blocks ----------------------------------------------------------------------------
 

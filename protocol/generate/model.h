@@ -3,7 +3,9 @@
 // pages, the code for other languages and AsyncAPI are all generated from this model.
 #pragma once
 
-#include "rpc/message_table.h"
+#include <stdio.h>
+
+#include "rpc/message.h"
 
 typedef enum property_kind {
 	PROPERTY_FLAG,
@@ -58,3 +60,12 @@ typedef struct model {
 // Fills *made, which is large, so make it static. Aborts if one of the bounds above is too small.
 void model_make(model *made);
 const type *model_find(const model *of, const char *name);
+
+// ---- the files that are made from the model
+// Only write_examples uses the codecs.
+
+void write_typescript(FILE *out, const model *from);
+void write_python(FILE *out, const model *from);
+void write_asyncapi(FILE *out, const model *from);
+void write_markdown(FILE *out, const model *from);
+void write_examples(FILE *out);

@@ -5,7 +5,7 @@
 #include "cautery/frame_codec.h"
 #include "cautery/rpc.h"
 #include "cautery/rpc_errors.h"
-#include "generate/write.h"
+#include "generate/model.h"
 
 static void write_words(FILE *out, const cau_choices *choices, int fixed)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The members that a command may have.
 #include "cautery/assert.h"
-#include "json/field_macros.h"
-#include "json/fields.h"
+#include "json/document.h"
+#include "json/record.h"
 
 CHOICES(command_choices, CAU_COMMAND_TABLE)
 CHOICES(material_kind_choices, CAU_LAYER_TABLE)

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "json/instrument.h"
 
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "cautery/defaults.h"
-#include "json/field_macros.h"
-#include "json/fields.h"
+#include "json/document.h"
+#include "json/record.h"
 
 enum { PROFILE_BYTES = 1 << 16, INSTRUMENTS = 64, NUMBERS = 64 };
 

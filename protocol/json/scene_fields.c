@@ -2,8 +2,8 @@
 // The members that a scene may have. Scalars come from the tables of scene.h; vectors, names and
 // choices are listed here.
 #include "cautery/assert.h"
-#include "json/field_macros.h"
-#include "json/fields.h"
+#include "json/document.h"
+#include "json/record.h"
 
 CHOICES(solver_choices, CAU_SOLVER_TABLE)
 CHOICES(precision_choices, CAU_PRECISION_TABLE)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rpc/message_table.h"
+#include "rpc/message.h"
 
 #include <string.h>
 

@@ -2,7 +2,6 @@
 #include "cautery/rpc.h"
 #include "rpc/message.h"
 #include "json/document.h"
-#include "json/fields.h"
 
 static void begin(cau_json_writer *writer, const cau_rpc_buffer *out)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes and reads the section of the channel `tool_contact` in frames. README.md in protocol/ has
 // the layout.
-#include "wire/contact_records.h"
+#include "wire/records.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,11 +4,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "wire/arrays.h"
-#include "wire/contact_records.h"
-#include "wire/header.h"
+#include "wire/frame.h"
 #include "wire/records.h"
-#include "wire/vessel_records.h"
 
 struct cau_frame_decoder {
 	cau_stream_def def;

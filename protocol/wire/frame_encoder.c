@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "wire/frame_encoder.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "wire/bytes.h"
-#include "wire/contact_records.h"
-#include "wire/header.h"
+#include "wire/frame.h"
 #include "wire/records.h"
-#include "wire/vessel_records.h"
 
 size_t cau_frame_bytes_max(const cau_stream_def *def)
 {

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "wire/frame_encoder.h"
+#include "wire/frame.h"
 
 struct cau_frame_thinner {
 	const cau_frame_encoder *encoder;

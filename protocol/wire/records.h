@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes and reads the sections of frames that consist of records: tool names, tools and
-// statistics.
+// Writes and reads the sections of frames that consist of records: tool names, tools, statistics,
+// vessels and contacts of tools.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/channels.h"
 #include "cautery/stream.h"
 
+// ---- tools and statistics
 enum {
 	TOOL_RECORD_BYTES = 84,
 	TOOL_ASKED_BYTES = 28,
@@ -52,3 +57,27 @@ const char *cau_tool_force_read(const uint8_t *payload, size_t bytes, cau_stream
                                 int32_t count);
 const char *cau_statistics_read(const uint8_t *payload, size_t bytes,
                                 cau_stream_statistics *statistics);
+
+// ---- vessels
+enum { VESSELS_BYTES_MAX = 9 << 10 };
+
+// Returns why a decoder would refuse this vessel, or NULL.
+const char *cau_vessel_state_check(const cau_vessel_state *vessel);
+
+// Writes the payload and returns its length, VESSELS_BYTES_MAX at most.
+size_t cau_vessels_write(uint8_t *out, const cau_vessel_state *vessels, int32_t count);
+// Reads a payload. Returns NULL, or why it is refused.
+const char *cau_vessels_read(const uint8_t *payload, size_t bytes, cau_vessel_state *vessels,
+                             int32_t *count);
+
+// ---- contacts of tools
+enum { CONTACTS_BYTES_MAX = 3 << 10 };
+
+// Returns why a decoder would refuse this record, or NULL.
+const char *cau_tool_contact_check(const cau_tool_contact *contact);
+
+// Writes the payload and returns its length, CONTACTS_BYTES_MAX at most.
+size_t cau_contacts_write(uint8_t *out, const cau_tool_contact *contacts, int32_t count);
+// Reads a payload except time_s, which the frame's header has. Returns NULL, or why it is refused.
+const char *cau_contacts_read(const uint8_t *payload, size_t bytes, cau_tool_contact *contacts,
+                              int32_t *count);

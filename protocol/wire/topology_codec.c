@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "wire/arrays.h"
-#include "wire/header.h"
+#include "wire/frame.h"
 
 enum { CORNERS = 3, TEXTURE_COMPONENTS = 6 };
 

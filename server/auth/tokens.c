@@ -11,8 +11,7 @@
 #include "auth/auth.h"
 #include "cautery/sha256.h"
 #include "clock/clock.h"
-#include "config/named_file.h"
-#include "config/role.h"
+#include "config/config.h"
 
 enum {
 	MAX_TOKENS = 256,

@@ -9,7 +9,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <sys/stat.h>
 
+#include "cautery/message_choices.h"
 #include "cautery/status.h"
 
 enum { CAU_CONFIG_TEXT_BYTES = 512 };
@@ -167,3 +169,26 @@ void cau_config_print(const cau_config *config, FILE *stream);
 void cau_config_schema(FILE *stream);
 // Writes the usage text.
 void cau_config_help(FILE *stream);
+
+// ---- roles
+// The words for roles in settings and files: view, operate, admin.
+
+const char *cau_role_word(cau_role role);
+// Returns false if the word names no role; *role then stays unchanged.
+bool cau_role_read(const char *word, cau_role *role);
+
+// ---- files that a setting names
+// Tokens, certificate and key, roles, settings, scenes. They are read at the start and at a signal,
+// by a thread that must not block. So only regular files of bounded size are opened: a FIFO would
+// wait for a writer, and a device may never end.
+
+enum {
+	CAU_NAMED_FILE_REASON_BYTES = 96,
+	CAU_NAMED_FILE_BYTES =
+		1 << 20, // limit for tokens, keys and roles, far more than such files need
+};
+
+// Opens a regular file of at most `most_bytes` for reading. `info` may be NULL. On failure returns
+// NULL; `reason` then is the end of "cannot read FILE: ...".
+FILE *cau_named_file_open(const char *path, int64_t most_bytes, struct stat *info,
+                          char reason[CAU_NAMED_FILE_REASON_BYTES]);

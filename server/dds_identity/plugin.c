@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "dds_identity/identity.h"
-#include "dds_identity/proofs.h"
 
 static void *library; // handle of Cyclone's plugin; stays open
 // functions of Cyclone's plugin; the same for every domain

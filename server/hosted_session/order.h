@@ -6,7 +6,7 @@
 #include "cautery/command.h"
 #include "cautery/messages.h"
 #include "hosted_session/sink.h"
-#include "session/asker.h"
+#include "session/logic.h"
 
 // ---- the arguments of session.advance -----------------------------------------------------------
 // They lie directly after their order, in the same memory block.

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "config/role.h"
+#include "config/config.h"
 
 // Number of remembered addresses. If there are more, the address that has taken least is forgotten,
 // and so gets a full allowance again. The allowances of the role and of the daemon limit these

@@ -130,7 +130,7 @@ void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *f
 // Counts a malformed message. After MALFORMED_MOST of them the connection is closed.
 void cau_peer_malformed(cau_peer *peer);
 
-// ---- life.c
+// ---- reply.c: signs of life
 // Returns the monotonic time of the peer's newest sign of life. If the peer never sent its clock,
 // this is the present time, unless the network thread was stopped.
 double cau_peer_alive_s(const cau_peer *peer);
@@ -203,12 +203,10 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 // ---- pages.c
 void cau_service_page(void *user, cau_page *page);
 
-// ---- answers.c
+// ---- metrics_daemon.c: counts of answers
 // Counts an answer. `method`: CAU_METHOD_COUNT if the message had none. `code`: 0 for a result.
 void cau_answers_count(cau_service *service, cau_method method, int32_t code);
 const char *cau_answers_method_name(cau_method method); // "none" for CAU_METHOD_COUNT
-void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *out);
-void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out);
 
 // ---- metrics_daemon.c: the part of /metrics about the whole daemon
 void cau_service_daemon_metrics(cau_service *service, cau_metrics_format format, FILE *out);

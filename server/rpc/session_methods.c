@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The methods about sessions, and about the store that keeps them.
 #include <stdlib.h>
 #include <string.h>
 
@@ -346,4 +347,21 @@ void cau_call_session_log(cau_call *call)
 		order->as.log.to_tick = params.has_to_tick ? (uint64_t)params.to_tick : UINT64_MAX;
 	}
 	submit(call, order);
+}
+
+// ---- store.backup, a method for administrators
+void cau_call_store_backup(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_store_backup params = {0};
+	cau_reply reply = cau_call_reply(call);
+	// the store contains all sessions, so the token must be for all
+	if (*call->peer->bounds.sessions) {
+		cau_call_may_use(call, "");
+		return;
+	}
+	if (cau_rpc_params(call->message, &params, &error) ||
+	    cau_backups_make(&call->peer->service->backups, params.has_name ? params.name : "", &reply,
+	                     &error))
+		cau_call_fail(call, &error, 0);
 }

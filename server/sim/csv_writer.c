@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/csv_writer.h"
+#include "sim/writers.h"
 
 #include <inttypes.h>
 #include <math.h>

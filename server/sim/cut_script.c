@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/cut_script.h"
+#include "sim/scene.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -3,11 +3,8 @@
 #include <stdlib.h>
 
 #include "embed/whole_file.h"
-#include "sim/cut_script.h"
-#include "sim/options.h"
-#include "sim/report.h"
 #include "sim/run.h"
-#include "sim/scene_source.h"
+#include "sim/scene.h"
 
 enum { SCRIPT_MAX_BYTES = 1 << 28 };
 

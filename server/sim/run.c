@@ -9,8 +9,7 @@
 #include <unistd.h>
 
 #include "cautery/command_json.h"
-#include "sim/csv_writer.h"
-#include "sim/vtu_writer.h"
+#include "sim/writers.h"
 
 typedef struct run {
 	const sim_options *options;

@@ -16,7 +16,7 @@ void cau_ring_put_key(cau_streams *streams, cau_stream *stream, cau_buffer *buff
                       uint64_t sequence);
 void cau_ring_clear(cau_stream *stream); // hold the mutex if other threads can see the stream
 
-// ---- half_rate.c
+// ---- ring.c: half rate
 // Makes the delta over two frames if it is due. Called after each frame of the stream.
 void cau_half_publish(cau_streams *streams, cau_stream *stream);
 // Returns the delta that the subscriber needs next, even if it has left the ring. NULL: the

@@ -77,7 +77,7 @@ typedef struct cau_subscriber {
 	double key_asked_s;       // when a key frame was last requested, at most once a second
 	// time since which frames are ready and the subscriber takes none; 0: the subscriber takes them
 	double waiting_since_s;
-	bool half; // the subscriber keeps falling behind and gets every second frame (half_rate.c)
+	bool half; // the subscriber keeps falling behind and gets every second frame (ring.c)
 	int32_t falls, steady; // recent falls; frames taken since the last fall
 	size_t in_flight;      // bytes sent and not acknowledged
 	struct {

@@ -15,7 +15,6 @@
 #include "log/log.h"
 #include "transport_dds/checks.h"
 #include "transport_dds/dds_transport.h"
-#include "transport_dds/keys.h"
 #include "transport_dds/roles.h"
 
 enum {
@@ -263,7 +262,7 @@ typedef struct cau_dds_request {
 	char session[CAU_NAME_BYTES];
 } cau_dds_request;
 
-// The writer of an ended session, and its publisher; farewells.c.
+// The writer of an ended session, and its publisher; outlets.c.
 typedef struct cau_dds_farewell {
 	struct cau_dds_farewell *next;
 	dds_entity_t publisher, writer;
@@ -378,6 +377,16 @@ bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session);
 // Moves all bits into `taken` and clears `bits`.
 void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken);
 
+// ---- domain.c
+// Opens the domain and the daemon's participant.
+cau_status cau_dds_open_domain(cau_dds_entities *entities, const cau_config *config,
+                               cau_error *error);
+// Closes everything in the domain. Cyclone wakes its receiving thread with a packet to itself and
+// waits for that thread. If the network interface is gone, the packet is lost, and Cyclone would
+// wait for ever. So this function waits only for a while. The domain then stays open until the
+// process ends, and a log line reports this.
+void cau_dds_leave(dds_entity_t domain);
+
 // ---- outlets.c: writers that count their readers
 // Opens a writer. The outlet must not move in memory until the writer is deleted. Returns false on
 // failure.
@@ -420,13 +429,17 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
 void cau_dds_open_loose(cau_dds *dds, cau_door *loose, const cau_door *reliable);
 
 // ---- peers.c: readers and writers of other programs
+// Returns DDS's name of the first policy of which the writer offers less than the reader requests;
+// NULL if there is no such policy. Reliability is checked last. A policy that a QoS does not set
+// has DDS's default.
+const char *cau_dds_mismatch(const dds_qos_t *offered, const dds_qos_t *requested);
 cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error);
 // Checks new peers, or all peers if we have new readers or writers. Opens best-effort readers. Logs
 // each peer that cannot be matched, once.
 void cau_dds_look_at_peers(cau_dds *dds);
 void cau_dds_forget_peers(cau_dds_peers *peers);
 
-// ---- farewells.c: last samples of ended sessions
+// ---- outlets.c: last samples of ended sessions
 // Takes over `publisher`. Deletes it when all readers of its `writer` have the last sample.
 void cau_dds_bid_farewell(cau_dds_farewell **farewells, dds_entity_t publisher,
                           dds_entity_t writer);
@@ -478,7 +491,7 @@ void cau_dds_drop_hands(cau_dds_tool *tool);
 // Ends the client, with energy off. Its writers may become clients again.
 void cau_dds_end_place(cau_dds *dds, cau_dds_client *client);
 
-// ---- reload.c: new roles
+// ---- places.c: new roles
 void cau_dds_take_roles(cau_dds *dds);
 
 // ---- orders.c: orders of a hand
@@ -515,7 +528,7 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level, int32_t ticks);
 void cau_dds_grasp(cau_dds_hand *hand, bool level);
 
-// ---- native.c, settings.c, ros2.c: take samples
+// ---- native.c, ros2.c: take samples
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 void cau_dds_take_setting(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 void cau_dds_take_instrument(cau_dds *dds, cau_door *door, cau_dds_writer *writer,

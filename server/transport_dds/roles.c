@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The roles of authenticated identities.
 #include "transport_dds/roles.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "config/named_file.h"
-#include "config/role.h"
+#include "config/config.h"
 
 enum { LINE_BYTES = 512 };
 

@@ -4,15 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "config/named_file.h"
-#include "transport_dds/indices.h"
 #include "transport_dds/internal.h"
-#include "transport_dds/leave.h"
-#include "transport_dds/local.h"
-#include "transport_dds/loopback.h"
-#include "transport_dds/security.h"
 
-enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = 4096 };
+enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64 };
 
 // ---- the sink; called by any thread
 static void on_notify(void *user, cau_audience audience, cau_buffer *text)
@@ -152,50 +146,6 @@ static cau_status fail(cau_error *error, const char *what, dds_return_t code)
 	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));
 }
 
-// Cyclone's setting for the time that a closing writer waits for acknowledgements. It is 0, because
-// a reader may be dead.
-static const char no_linger[] =
-	"<CycloneDDS><Domain Id=\"any\"><Internal>"
-	"<WriterLingerDuration>0 s</WriterLingerDuration></Internal></Domain></CycloneDDS>";
-
-static cau_status open_domain(cau_dds_entities *entities, const cau_config *config,
-                              cau_error *error)
-{
-	char given[CONFIG_BYTES], reason[CAU_NAMED_FILE_REASON_BYTES];
-	FILE *settings = *config->dds_config ? cau_named_file_open(config->dds_config,
-	                                                           CAU_NAMED_FILE_BYTES, NULL, reason)
-	                                     : NULL;
-	if (*config->dds_config && !settings)
-		return cau_fail(error, CAU_IO, "dds_config", "cannot open %.160s: %s", config->dds_config,
-		                reason);
-	if (settings)
-		// The file is opened only as a check. Cyclone opens it again and would wait for the writer
-		// of a FIFO.
-		fclose(settings);
-	if (*config->dds_config)
-		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
-	else
-		snprintf(given, sizeof given, "%s,%s", cau_dds_loopback, no_linger);
-	entities->domain = dds_create_domain((dds_domainid_t)config->dds_domain, given);
-	if (entities->domain < 0)
-		return cau_dds_explain_domain(config, dds_strretcode(entities->domain), error);
-	dds_qos_t *qos = dds_create_qos();
-	cau_status status = *config->dds_config ? CAU_OK : cau_dds_stay_local(error);
-	if (!status)
-		status = cau_dds_secure(qos, config, error);
-	if (!status)
-		entities->participant =
-			dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
-	dds_delete_qos(qos);
-	if (!status && entities->participant < 0 && *config->dds_security)
-		return cau_fail(error, CAU_IO, "dds_security",
-		                "cannot create a DDS participant with this dds_security: %s",
-		                dds_strretcode(entities->participant));
-	if (!status && entities->participant < 0)
-		return fail(error, "cannot create a DDS participant", entities->participant);
-	return status;
-}
-
 static cau_status open_entities(cau_dds *dds, cau_error *error)
 {
 	dds_entity_t p = dds->entities.participant;
@@ -223,7 +173,7 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 	pthread_mutex_init(&dds->mailbox.mutex, NULL);
 	cau_status status = cau_dds_roles_read(&dds->roles, config, error);
 	if (!status)
-		status = open_domain(&dds->entities, config, error);
+		status = cau_dds_open_domain(&dds->entities, config, error);
 	if (!status)
 		status = open_entities(dds, error);
 	if (!status)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "config/role.h"
+#include "config/config.h"
 #include "transport_dds/internal.h"
 
 enum { ONLOOKERS_TOLD_MOST = 16 }; // largest number of log lines a second

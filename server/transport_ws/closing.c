@@ -6,12 +6,70 @@
 // So no socket of a closed connection stays.
 #include <math.h>
 #include <netinet/in.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 
 #include "clock/clock.h"
 #include "log/log.h"
 #include "transport_ws/internal.h"
+
+// ---- the log of connections that end without hello
+// Anyone can open such a connection. So each address has at most one line a minute, which counts
+// the connections since the last line.
+
+static const double line_every_s = 60;
+
+static void write_line(cau_outsider *o, double now_s)
+{
+	cau_log(CAU_LOG_INFO, NULL, "ended_without_hello", "address=%s count=%llu last=\"%s\"",
+	        o->owner, (unsigned long long)o->count, o->reason);
+	o->count = 0;
+	o->told_s = now_s;
+}
+
+// Returns the owner's entry, or a free entry. If all entries are in use, returns the first entry,
+// which all owners without an entry share.
+static cau_outsider *find_row(cau_network *network, const char *owner)
+{
+	cau_outsider *free_row = NULL;
+	for (int i = CAU_OUTSIDERS_MOST - 1; i > 0; i--) {
+		cau_outsider *o = &network->outsiders[i];
+		if (strcmp(o->owner, owner) == 0)
+			return o;
+		if (!o->owner[0])
+			free_row = o;
+	}
+	cau_outsider *row = free_row ? free_row : &network->outsiders[0];
+	if (!row->owner[0])
+		snprintf(row->owner, sizeof row->owner, "%s", free_row ? owner : "others");
+	return row;
+}
+
+void cau_outsiders_note(cau_network *network, const char *owner, const char *reason)
+{
+	double now_s = cau_monotonic_s();
+	cau_outsider *o = find_row(network, owner);
+	bool is_due = o->told_s == 0 || now_s - o->told_s >= line_every_s;
+	o->count++;
+	snprintf(o->reason, sizeof o->reason, "%s", reason);
+	if (is_due)
+		write_line(o, now_s);
+}
+
+void cau_outsiders_tick(cau_network *network, double now_s)
+{
+	for (int i = 0; i < CAU_OUTSIDERS_MOST; i++) {
+		cau_outsider *o = &network->outsiders[i];
+		if (!o->owner[0] || now_s - o->told_s < line_every_s)
+			continue;
+		if (o->count)
+			write_line(o, now_s);
+		else
+			// Nothing came within a minute, so the entry becomes free.
+			*o = (cau_outsider){0};
+	}
+}
 
 enum {
 	CLOSE_WITHIN_S = 2, // enough for a round trip around the world and a busy peer
@@ -205,4 +263,41 @@ void cau_connection_watch(cau_connection *c, double now_s)
 		c->input.heard_s = now_s;
 	if (now_s - c->input.heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
 		cau_connection_close(c, CAU_CLOSE_NO_ANSWER, NULL);
+}
+
+// ---- outgoing bytes, which wait until the socket can take more
+static void queue(cau_connection_output *output, cau_buffer *reply)
+{
+	reply->next = NULL;
+	if (output->last)
+		output->last->next = reply;
+	else
+		output->first = reply;
+	output->last = reply;
+	output->bytes += reply->byte_count;
+}
+
+void cau_connection_send(cau_connection *c, cau_buffer *buffer)
+{
+	if (!buffer || c->end.code) {
+		cau_buffer_release(buffer);
+		return;
+	}
+	queue(&c->output, buffer);
+	if (c->output.bytes > CAU_CONTROL_BYTES_MAX)
+		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, "the client does not read its replies");
+	lws_callback_on_writable(c->wsi);
+}
+
+void cau_connection_want_frame(cau_connection *c)
+{
+	lws_callback_on_writable(c->wsi);
+}
+
+void cau_connection_pong(cau_connection *c, const void *payload, size_t bytes)
+{
+	c->output.pong_due = true; // if several pings came, it is enough to answer the last ping
+	c->output.pong_bytes = bytes;
+	memcpy(c->output.pong, payload, bytes);
+	lws_callback_on_writable(c->wsi);
 }

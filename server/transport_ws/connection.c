@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The libwebsockets callbacks of one connection: its beginning, its writes, its end. sending.c
-// queues bytes to write, reading.c reads, closing.c ends.
+// The libwebsockets callbacks of one connection: its beginning, its writes, its end. closing.c
+// queues bytes to write and ends the connection, reading.c reads.
 #include "transport_ws/connection.h"
 
 #include <netinet/in.h>

@@ -53,7 +53,7 @@ typedef struct cau_connection_turn {
 } cau_connection_turn;
 
 // Outgoing bytes, in this order: the answer to a ping, replies, frames. Only the network thread
-// uses this. sending.c.
+// uses this. closing.c.
 typedef struct cau_connection_output {
 	bool pong_due;
 	unsigned char pong[CAU_CONTROL_FRAME_BYTES];

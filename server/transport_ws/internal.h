@@ -3,13 +3,13 @@
 #pragma once
 
 #include <libwebsockets.h>
+#include <openssl/ssl.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
 #include "cautery/rpc.h"
 #include "http/response.h"
 #include "transport_ws/network.h"
-#include "transport_ws/tls.h"
 
 #define CAU_WS_PATH "/v1"
 
@@ -22,6 +22,8 @@ enum {
 	CAU_CLOSE_FRAME_BYTES = 4 + CAU_CLOSE_REASON_BYTES,
 	CAU_OUTSIDERS_MOST = 64,
 };
+
+typedef struct cau_tls cau_tls;
 
 // A connection whose request has not come yet.
 typedef struct cau_unread {
@@ -91,9 +93,30 @@ void cau_network_comes_round(cau_network *network);
 // bytes read within one deadline may have waited since the thread last ran.
 double cau_network_sent_after_s(const cau_network *network, double now_s);
 
-// ---- refusals.c
+// ---- handshake.c: refusals
 void cau_note_refusal(cau_network *network, struct lws *wsi, const cau_http_refusal *refusal);
 void cau_refuse_request(struct lws *wsi, const cau_http_refusal *refusal);
+
+// ---- tls.c: certificate and key
+// A new pair is read, checked as a whole, and then replaces the old one in one step. Later
+// handshakes use the new pair; existing connections keep theirs.
+
+// Reads the pair that the settings name; *tls is NULL if the settings name no pair. Errors (path
+// tls_certificate or tls_key, and the file in `file`): CAU_IO: the file cannot be read;
+// CAU_BAD_SYNTAX: the file contains no certificate or key, or a key with a passphrase;
+// CAU_BAD_VALUE: the key does not belong to the certificate, or other users may read the key, or
+// the certificate has expired.
+cau_status cau_tls_create(cau_tls **tls, const cau_config *config, cau_error *error);
+void cau_tls_destroy(cau_tls *tls); // `tls` may be NULL
+
+// Reads the pair again. On failure the pair stays as it was. Any thread may call it.
+cau_status cau_tls_reload(cau_tls *tls, const cau_config *config, cau_error *error);
+
+// Sets up a context for TLS 1.2 and 1.3 as in Mozilla's intermediate profile. Each handshake uses
+// the pair of that moment.
+void cau_tls_configure(cau_tls *tls, SSL_CTX *context);
+// The ciphers of TLS 1.2, for libwebsockets.
+extern const char cau_tls_ciphers[];
 
 // ---- unread.c
 // Refuses a request that the library is about to drop, without using the library.
@@ -116,7 +139,7 @@ void cau_strangers_bound_silent(cau_network *network, const cau_connection *newe
 // connections without hello exist.
 void cau_strangers_bound_talk(cau_connection *connection);
 
-// ---- outsiders.c
+// ---- closing.c: connections that end without hello
 // Counts a connection of `owner` that ended without hello.
 void cau_outsiders_note(cau_network *network, const char *owner, const char *reason);
 // Writes the log lines that are due. Call it several times a minute.
@@ -161,7 +184,7 @@ void cau_connection_shut(cau_connection *connection);
 // if it is still sending.
 void cau_wsi_last_words(struct lws *wsi, const void *bytes, size_t count);
 
-// ---- sending.c
+// ---- closing.c: outgoing bytes
 void cau_connection_pong(cau_connection *connection, const void *payload, size_t bytes);
 
 // ---- closing.c
@@ -180,9 +203,6 @@ int cau_connection_write_close(cau_connection *connection);
 void cau_connection_dropped(cau_connection *connection);
 // Closes the connection if nothing has been received for a long time, or if no hello came in time.
 void cau_connection_watch(cau_connection *connection, double now_s);
-
-// Serves a plain HTTP request.
-int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path);
 
 // True if the connection's turn ends, and the next turn waits, until its replies have been written.
 // This never holds for a driver: energy off must not wait until the client reads its replies.

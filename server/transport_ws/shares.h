@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-#include "config/role.h"
+#include "config/config.h"
 
 // The proof of identity that a client has given. Each standing has shares of its own, so that
 // viewers take no time from drivers behind the same address.

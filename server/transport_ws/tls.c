@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "transport_ws/tls.h"
+#include "transport_ws/internal.h"
 
 #include <openssl/err.h>
 #include <openssl/pem.h>
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "config/named_file.h"
+#include "config/config.h"
 
 enum { CHAIN_MOST = 16 };
 

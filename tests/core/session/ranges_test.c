@@ -8,7 +8,7 @@
 #include "cautery/defaults.h"
 #include "cautery/scene_json.h"
 #include "session/session_internal.h"
-#include "json/fields.h"
+#include "json/document.h"
 
 enum { TEXT_BYTES = CAU_SCENE_JSON_MAX_BYTES };
 

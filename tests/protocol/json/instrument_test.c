@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests profiles of instruments, and scenes and commands with tools that name an instrument.
-#include "json/instrument.h"
+#include "json/document.h"
 
 #include <math.h>
 #include <setjmp.h>

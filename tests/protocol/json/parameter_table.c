@@ -10,8 +10,7 @@
 #include <string.h>
 
 #include "cautery/defaults.h"
-#include "json/fields.h"
-#include "json/instrument.h"
+#include "json/document.h"
 
 static const char begin_mark[] = "<!-- parameters: begin (written by parameter_table) -->\n";
 static const char end_mark[] = "<!-- parameters: end -->\n";

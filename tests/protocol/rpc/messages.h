@@ -2,7 +2,7 @@
 // Fills any object of messages.def with valid values, for tests of all objects.
 #pragma once
 
-#include "rpc/message_table.h"
+#include "rpc/message.h"
 
 typedef enum fill { FILL_LEAST, FILL_MOST } fill;
 

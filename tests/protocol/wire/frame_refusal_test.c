@@ -12,7 +12,7 @@
 
 #include "cautery/assert.h"
 #include "protocol/wire/chain.h"
-#include "wire/frame_encoder.h"
+#include "wire/frame.h"
 
 static void test_refused_frames_leave_the_state(void **unused)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dds_identity/proofs.h"
+#include "dds_identity/identity.h"
 
 #include <openssl/evp.h>
 #include <openssl/pem.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests the scene that is made around a block of hexahedra, 120 x 120 x 30 units.
-#include "sim/mesh_scene.h"
+#include "sim/scene.h"
 
 #include <math.h>
 

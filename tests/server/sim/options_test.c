@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/options.h"
+#include "sim/run.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/scene_source.h"
+#include "sim/scene.h"
 
 #include "sim_fixture.h"
 

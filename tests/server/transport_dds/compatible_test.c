@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "transport_dds/compatible.h"
+#include "transport_dds/internal.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "transport_dds/keys.h"
+#include "transport_dds/checks.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
