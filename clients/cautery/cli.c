@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands share: results and exit codes, options, and the connection to a daemon.
+// What commands share: results and exit codes, options, the connection to a daemon, and the words
+// of the protocol.
 #include "cautery/cli.h"
 
 #include <signal.h>
@@ -7,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/contexts.h"
+#include "cautery/message_choices.h"
 #include "cautery/name.h"
 #include "cautery/nearest.h"
 
@@ -296,4 +297,51 @@ cli_exit cli_call(cli *c, cau_method method, const void *params, void *result)
 	if (c->json)
 		cli_print_result(c, method, result ? result : &(cau_wire_nothing){0});
 	return CLI_DONE;
+}
+
+// ---- words -------------------------------------------------------------------------------------
+#define X(code, word) word,
+static const char *const states[] = {CAU_SESSION_STATE_TABLE(X)};
+static const char *const layers[] = {CAU_LAYER_TABLE(X)};
+static const char *const reasons[] = {CAU_ENERGY_OFF_TABLE(X)};
+static const char *const events[] = {CAU_EVENT_TABLE(X)};
+#undef X
+#define X(code, word, ...) #word,
+static const char *const shapes[] = {CAU_TOOL_SHAPE_TABLE(X)};
+#undef X
+
+#define WORD(table, index)                                                                         \
+	((uint32_t)(index) < sizeof(table) / sizeof *(table) ? (table)[(uint32_t)(index)] : "?")
+
+const char *cli_state_word(int32_t state)
+{
+	return WORD(states, state);
+}
+
+const char *cli_layer_word(int32_t kind)
+{
+	return WORD(layers, kind);
+}
+
+const char *cli_shape_word(int32_t shape)
+{
+	return WORD(shapes, shape);
+}
+
+const char *cli_energy_off_word(int32_t reason)
+{
+	return WORD(reasons, reason);
+}
+
+const char *cli_event_word(int32_t kind)
+{
+	return WORD(events, kind);
+}
+
+int32_t cli_shape_of_word(const char *word)
+{
+	for (int32_t i = 0; i < CAU_TOOL_SHAPE_COUNT; i++)
+		if (strcmp(word, shapes[i]) == 0)
+			return i;
+	return -1;
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Declarations for all commands of `cautery`: arguments, connection, results and exit codes.
+// Declarations for all commands of `cautery`: arguments, connection, results, exit codes and local
+// files, and the table of the commands.
 #pragma once
 
 #include <stdio.h>
 
+#include <cjson/cJSON.h>
+
 #include "cautery/client.h"
-#include "cautery/contexts.h"
 #include "cautery/json_writer.h"
 
 // Exit codes, as documented by --help and clients/README.md.
@@ -18,6 +20,34 @@ typedef enum cli_exit {
 	CLI_INCOMPLETE = 5, // a script was partly refused, lost its energy, or was interrupted
 } cli_exit;
 
+// ---- contexts (local_file.c) -------------------------------------------------------------------
+// Contexts: named daemons, each with its URL and the file of its token. They are stored in
+// $XDG_CONFIG_HOME/cautery/contexts.json, or in ~/.config/cautery/contexts.json if that variable is
+// not set. Only the owner can read the file.
+//
+//   {"current": "theatre",
+//    "contexts": {"theatre": {"url": "wss://or1:8740", "token_file": "theatre.token"}}}
+enum { CLI_CONTEXT_TEXT_BYTES = 1024 };
+
+typedef struct cli_context {
+	char url[CLI_CONTEXT_TEXT_BYTES];
+	char token_file[CLI_CONTEXT_TEXT_BYTES]; // "" if there is none
+} cli_context;
+
+// Finds the context `name`. NULL means the current context; if there is none, *context is empty.
+// Errors: CAU_NOT_FOUND, CAU_IO, CAU_BAD_SYNTAX, CAU_NO_MEMORY; error->file names the file.
+cau_status cli_context_find(const char *name, cli_context *context, cau_error *error);
+
+// Reads the whole file. The caller deletes *all. A missing file has no contexts. Errors: CAU_IO,
+// CAU_BAD_SYNTAX, CAU_NO_MEMORY; error->file names the file.
+cau_status cli_contexts_read(cJSON **all, cau_error *error);
+// Replaces the file only after the new one is written completely. Errors: CAU_IO, CAU_NO_MEMORY.
+cau_status cli_contexts_write(const cJSON *all, cau_error *error);
+cJSON *cli_contexts_of(const cJSON *all); // returns the member "contexts"
+const char *cli_context_text(const cJSON *object,
+                             const char *member); // "" if there is no such member
+
+// ---- a command and its arguments ---------------------------------------------------------------
 enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 12 };
 
 typedef struct cli cli;
@@ -137,3 +167,63 @@ cli_exit cli_command_session(cli *c, const cau_command *command, const char *don
 // cli_interrupted is true after SIGINT or SIGTERM, if cli_watch_signals was called before.
 void cli_watch_signals(void);
 bool cli_interrupted(void);
+
+// ---- words -------------------------------------------------------------------------------------
+// The protocol's words for the numbers of enumerations. A number that this version does not know
+// gives "?".
+const char *cli_state_word(int32_t state);       // CAU_SESSION_*
+const char *cli_layer_word(int32_t kind);        // CAU_LAYER_*
+const char *cli_shape_word(int32_t shape);       // CAU_TOOL_*
+const char *cli_energy_off_word(int32_t reason); // CAU_ENERGY_OFF_*
+const char *cli_event_word(int32_t kind);        // CAU_EVENT_*
+int32_t cli_shape_of_word(const char *word);     // -1 if the word is not a shape
+
+// ---- local files (local_file.c) ----------------------------------------------------------------
+// Reads and writes whole local files. Errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY; error->file names
+// the file.
+
+// Reads a file and adds a zero after the last byte. The name "-" means standard input. The caller
+// frees *bytes.
+cau_status cli_read_file(const char *name, size_t bytes_max, char **bytes, size_t *byte_count,
+                         cau_error *error);
+
+// Writes a file. The name "-" means standard output. An incomplete file is removed.
+cau_status cli_write_file(const char *name, const void *bytes, size_t byte_count, cau_error *error);
+
+// ---- driving a tool (tool.c) -------------------------------------------------------------------
+// Joins the session at 60 Hz for the tools, the face mask and the statistics.
+cli_exit cli_join_tools(cli *c, cau_client_stream **stream);
+
+// Becomes the driver of the tool, if the tool exists and this client does not drive it already.
+cli_exit cli_take(cli *c, const cau_client_stream *stream, const char *tool);
+
+// Returns the newest state of a tool, or NULL if there is no such tool.
+const cau_stream_tool *cli_find_tool(const cau_client_stream *stream, const char *tool);
+
+// ---- all commands, each with its file ----------------------------------------------------------
+extern const cli_command *const cli_commands[]; // in completion.c; NULL marks the end
+
+extern const cli_command cli_ls, cli_scenes, cli_instruments;        // list.c
+extern const cli_command cli_create;                                 // create.c
+extern const cli_command cli_info;                                   // list.c
+extern const cli_command cli_watch;                                  // watch.c
+extern const cli_command cli_tool;                                   // tool.c
+extern const cli_command cli_run;                                    // run.c
+extern const cli_command cli_record;                                 // record.c
+extern const cli_command cli_export, cli_log;                        // files.c
+extern const cli_command cli_rm;                                     // list.c
+extern const cli_command cli_pause, cli_resume, cli_step;            // time.c
+extern const cli_command cli_speed, cli_reset;                       // time.c
+extern const cli_command cli_rewind, cli_fork, cli_snapshot;         // history.c
+extern const cli_command cli_snapshots, cli_restore;                 // history.c
+extern const cli_command cli_events;                                 // events.c
+extern const cli_command cli_pin, cli_unpin, cli_force, cli_gravity; // tissue.c
+extern const cli_command cli_material;                               // material.c
+extern const cli_command cli_backup;                                 // daemon.c
+extern const cli_command cli_move;                                   // move.c
+extern const cli_command cli_ping;                                   // daemon.c
+extern const cli_command cli_context_ls, cli_context_set;            // context.c
+extern const cli_command cli_context_use, cli_context_rm;            // context.c
+extern const cli_command cli_token;                                  // token.c
+extern const cli_command cli_mesh;                                   // mesh.c
+extern const cli_command cli_completion, cli_complete;               // completion.c

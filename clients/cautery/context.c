@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command `context`: manages the named daemons of contexts.h.
+// The command `context`: manages the named daemons of cli.h.
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/commands.h"
-#include "cautery/contexts.h"
+#include "cautery/cli.h"
 #include "cautery/name.h"
 
 static cli_exit run_ls(cli *c)

@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/commands.h"
-#include "cautery/words.h"
+#include "cautery/cli.h"
 
 enum { EVENTS_MAX = 4096 }; // largest number of events in one answer
 

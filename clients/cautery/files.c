@@ -3,8 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/commands.h"
-#include "cautery/local_file.h"
+#include "cautery/cli.h"
 #include "cautery/progress.h"
 
 static cli_exit download(cli *c, cau_method method, const void *params, const char *file)

@@ -3,8 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/commands.h"
-#include "cautery/words.h"
+#include "cautery/cli.h"
 
 // Reads the option --name. Complains and returns false if the name is too long.
 static bool take_name(cli *c, bool *has, char name[CAU_NAME_BYTES])

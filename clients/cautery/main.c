@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cautery: the command-line client of cauteryd.
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 
 int main(int argument_count, char **arguments)
 {

@@ -5,8 +5,8 @@
 
 #include <cjson/cJSON.h>
 
+#include "cautery/cli.h"
 #include "cautery/command_json.h"
-#include "cautery/commands.h"
 #include "cautery/defaults.h"
 
 // members of a material command that do not describe the material

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cautery/mcap.h"
+#include "cautery/recording.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 
 enum { WORDS_MAX = 16, PATH_BYTES = 4096 };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 #include "cautery/name.h"
 #include "cautery/progress.h"
 

@@ -4,11 +4,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "cautery/commands.h"
-#include "cautery/mcap.h"
+#include "cautery/cli.h"
 #include "cautery/progress.h"
 #include "cautery/recording.h"
-#include "cautery/scene_update.h"
 
 static const double scene_s = 0.1; // interval between two messages of an MCAP file
 

@@ -4,11 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/cli.h"
 #include "cautery/command_json.h"
-#include "cautery/commands.h"
-#include "cautery/drive.h"
-#include "cautery/faces.h"
-#include "cautery/local_file.h"
 #include "cautery/progress.h"
 
 enum {

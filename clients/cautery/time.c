@@ -2,8 +2,7 @@
 // The commands `pause`, `resume`, `step`, `speed` and `reset`.
 #include <string.h>
 
-#include "cautery/commands.h"
-#include "cautery/words.h"
+#include "cautery/cli.h"
 
 static cli_exit change(cli *c, cau_method method)
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 #include "cautery/defaults.h"
 
 cli_exit cli_command_session(cli *c, const cau_command *command, const char *done)

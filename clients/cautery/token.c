@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 #include "cautery/name.h"
 #include "cautery/sha256.h"
 

@@ -5,11 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cautery/commands.h"
-#include "cautery/faces.h"
+#include "cautery/cli.h"
 #include "cautery/progress.h"
 #include "cautery/recording.h"
-#include "cautery/words.h"
 
 // The data that one line of text shows.
 typedef struct view {

@@ -8,11 +8,9 @@
 // The guard searches between that reduced force and the wanted force. Every force between them
 // differs by slew_n at most from the last one. The guard takes the force nearest to the wanted one
 // for which the tank has the energy.
-#include "haptics/energy_guard.h"
+#include "haptics/internal.h"
 
 #include <string.h>
-
-#include "haptics/vector.h"
 
 double energy_guard_need(const energy_guard_def *def, double force_n, double speed_m_s)
 {

@@ -9,11 +9,9 @@
 // force F means a depth of 1.5 F / K, not F / K. The planes get this compliance along F. Their
 // force is multiplied by the root of its share of F. So the force, its slope at the record, and the
 // position where it becomes 0 follow Hertz's law.
-#include "haptics/local_contact.h"
+#include "haptics/internal.h"
 
 #include <string.h>
-
-#include "haptics/vector.h"
 
 // Largest number of Gauss-Seidel sweeps over the planes (8 at most). They start from the last
 // forces.

@@ -37,7 +37,7 @@ static cau_status rename_session(const cau_client *client, size_t room_before, m
 {
 	size_t bytes = made->byte_count;
 	char *text =
-		cau_follow_text(client->moved_from, client->moved_to, made->bytes + room_before, &bytes);
+		cau_follow_text(client->follow.from, client->follow.to, made->bytes + room_before, &bytes);
 	if (!text)
 		return CAU_OK;
 	char *grown = realloc(made->bytes, room_before + bytes + 1);
@@ -121,7 +121,7 @@ static cau_status send_request(cau_client *client, const writing *w, cau_client_
 	                                .byte_count = made.byte_count};
 	pending->resendable = can_resend(w->method, pending->text, pending->byte_count);
 	if (client->condition == CAU_CLIENT_READY &&
-	    !client->following) // Otherwise the request is sent after the answer to hello.
+	    !client->follow.now) // Otherwise the request is sent after the answer to hello.
 		status = cau_socket_send(client, false, pending->text, pending->byte_count, NULL, 0, error);
 	if (status) {
 		free(pending);
@@ -235,7 +235,7 @@ void cau_calls_answered(cau_client *client, const cau_rpc_message *message)
 	if (pending->answer)
 		pending->answer(pending->user, message, NULL);
 	free(pending);
-	if (client->following)
+	if (client->follow.now)
 		cau_follow_when_answered(client);
 }
 

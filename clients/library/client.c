@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Creates, closes and destroys clients.
+// Creates, closes and destroys clients, and reads the token for one.
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/client.h"
 #include "cautery/name.h"
 #include "library/internal.h"
 
@@ -80,7 +83,7 @@ void cau_client_destroy(cau_client *client)
 	for (int i = 0; i < CAU_CLIENT_STREAMS_MAX; i++)
 		cau_slot_free(client->slots[i]);
 	cau_outbox_clear(&client->outbox);
-	free(client->message);
+	free(client->message.bytes);
 	free(client);
 }
 
@@ -160,4 +163,25 @@ void cau_client_read(cau_client *client, bool on)
 {
 	if (client->wsi)
 		lws_rx_flow_control(client->wsi, on);
+}
+
+// ---- token -------------------------------------------------------------------------------------
+// Tokens are read from files, because every user of the machine could read a token on a command
+// line.
+cau_status cau_client_read_token(const char *file, char token[CAU_CLIENT_TOKEN_BYTES],
+                                 cau_error *error)
+{
+	*token = 0;
+	snprintf(error->file, sizeof error->file, "%.255s", file);
+	FILE *stream = fopen(file, "re");
+	if (!stream)
+		return cau_fail(error, CAU_IO, NULL, "%s", strerror(errno));
+	if (!fgets(token, CAU_CLIENT_TOKEN_BYTES, stream))
+		*token = 0;
+	fclose(stream);
+	token[strcspn(token, "\r\n")] = 0;
+	if (!*token)
+		return cau_fail(error, CAU_BAD_VALUE, NULL, "the first line of the file has no token");
+	*error->file = 0;
+	return CAU_OK;
 }

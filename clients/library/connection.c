@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens a client's connection, says hello, detects its loss and reconnects.
+// Opens a client's connection, says hello, passes on received messages, detects the loss of the
+// connection and reconnects.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,6 +8,9 @@
 #include "library/internal.h"
 
 enum {
+	WIRE_VERSION = 1,
+	HELLO_ID = 0,
+	HELLO_BYTES_MAX = 4096,
 	FIRST_RETRY_US = 100000,
 	LAST_RETRY_US = 2000000,
 	// largest number of attempts to follow a session, for a client that does not reconnect
@@ -55,17 +59,52 @@ static void tick(lws_sorted_usec_list_t *timer)
 	cau_streams_tick(client);
 }
 
+// ---- hello -------------------------------------------------------------------------------------
+// Sends hello, the first message on a connection.
+static cau_status send_hello(cau_client *client, cau_error *error)
+{
+	char text[HELLO_BYTES_MAX];
+	cau_rpc_buffer out = {text, sizeof text, 0};
+	cau_wire_hello hello = {.version = WIRE_VERSION};
+	bool again = client->connections > 0;
+	snprintf(hello.client, sizeof hello.client, "%s", client->name);
+	hello.has_token = *client->token;
+	memcpy(hello.token, client->token, sizeof client->token);
+	// A reconnecting client keeps its identity, because the stored answers belong to that identity.
+	const char *id = again ? client->server.client_id : client->client_id;
+	hello.has_client_id = *id;
+	snprintf(hello.client_id, sizeof hello.client_id, "%s", id);
+	hello.has_resume = again;
+	const char *token =
+		*client->follow.kept_resume ? client->follow.kept_resume : client->server.resume;
+	snprintf(hello.resume, sizeof hello.resume, "%s", token);
+	hello.has_role = client->def.role >= 0;
+	hello.role = client->def.role;
+	cau_status status = cau_rpc_write_request(&out, HELLO_ID, CAU_METHOD_HELLO, &hello, error);
+	if (!status)
+		status = cau_socket_send(client, false, text, out.bytes, NULL, 0, error);
+	return status;
+}
+
+// Closes the connection without reconnecting.
+static void refuse(cau_client *client, const cau_error *error)
+{
+	client->trouble = *error;
+	client->closing = true;
+	lws_callback_on_writable(client->wsi);
+}
+
 void cau_client_opened(cau_client *client)
 {
 	cau_error error = {0};
-	if (cau_hello_send(client, &error))
-		cau_client_refused(client, &error);
+	if (send_hello(client, &error))
+		refuse(client, &error);
 }
 
-void cau_client_greeted(cau_client *client)
+static void become_ready(cau_client *client)
 {
 	client->attempts = 0;
-	client->following = false;
+	client->follow.now = false;
 	client->connections++;
 	lws_sul_cancel(&client->deadline);
 	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
@@ -75,11 +114,60 @@ void cau_client_greeted(cau_client *client)
 	set_condition(client, CAU_CLIENT_READY);
 }
 
-void cau_client_refused(cau_client *client, const cau_error *error)
+// Reads the answer to hello.
+static cau_status read_answer(cau_client *client, const cau_rpc_message *message, cau_error *error)
 {
-	client->trouble = *error;
-	client->closing = true;
-	lws_callback_on_writable(client->wsi);
+	if (message->kind == CAU_RPC_ERROR) {
+		client->fault = message->fault;
+		cau_error_of_fault(&message->fault, error);
+		return error->status;
+	}
+	cau_wire_hello_result server = {0};
+	cau_status status = cau_rpc_result(message, CAU_METHOD_HELLO, &server, error);
+	if (!status)
+		client->server = server;
+	return status;
+}
+
+static void greeted(cau_client *client, const cau_rpc_message *message)
+{
+	cau_error error = {0};
+	if (read_answer(client, message, &error))
+		refuse(client, &error);
+	else
+		become_ready(client);
+}
+
+// ---- messages ----------------------------------------------------------------------------------
+static void answered(cau_client *client, const cau_rpc_message *message)
+{
+	if (message->id.kind != CAU_RPC_ID_NUMBER)
+		return; // an answer to a message that the server could not read, or without an id
+	if (message->id.number == 0 && client->condition == CAU_CLIENT_CONNECTING)
+		greeted(client, message);
+	else
+		cau_calls_answered(client, message);
+}
+
+static void notified(cau_client *client, const cau_rpc_message *message)
+{
+	if (message->method == CAU_METHOD_SESSION_CHANGED)
+		cau_streams_changed(client, message);
+	if (client->def.on_notification)
+		client->def.on_notification(client->def.user, client, message);
+}
+
+void cau_text_received(cau_client *client, const char *text, size_t bytes)
+{
+	cau_rpc_message message;
+	cau_rpc_fault fault;
+	if (cau_rpc_read(text, bytes, CAU_CLIENT_TEXT_MAX, &message, &fault))
+		return; // perhaps a message of a later version; a caller that waits for it times out
+	if (message.kind == CAU_RPC_RESULT || message.kind == CAU_RPC_ERROR)
+		answered(client, &message);
+	else
+		notified(client, &message);
+	cau_rpc_finish(&message);
 }
 
 // ---- lost --------------------------------------------------------------------------------------
@@ -110,7 +198,7 @@ static bool is_final(int code)
 
 void cau_client_lost(cau_client *client, const char *reason)
 {
-	bool follows = client->following && client->attempts < FOLLOWS_MOST;
+	bool follows = client->follow.now && client->attempts < FOLLOWS_MOST;
 	bool again = (client->def.reconnect || follows) && client->connections > 0 &&
 	             !client->closing && !is_final(client->close_code);
 	cau_client_forget_timers(client);
@@ -120,8 +208,9 @@ void cau_client_lost(cau_client *client, const char *reason)
 	cau_streams_lost(client);
 	if (again) {
 		// The first attempt to reach the session's new daemon starts at once.
-		bool at_once = client->following && !client->attempts && !client->ways;
-		int before = client->following ? client->attempts + client->ways - 1 : client->attempts;
+		bool at_once = client->follow.now && !client->attempts && !client->follow.ways;
+		int before =
+			client->follow.now ? client->attempts + client->follow.ways - 1 : client->attempts;
 		double wait_us = at_once ? 0 : fmin(LAST_RETRY_US, FIRST_RETRY_US * exp2(before));
 		lws_sul_schedule(client->loop->context, 0, &client->retry, retry, (lws_usec_t)wait_us);
 	}

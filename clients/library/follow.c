@@ -89,8 +89,8 @@ static bool read_url(const cau_client *client, const char *text, cau_url *url)
 
 static void rename_sessions(cau_client *client, const char *from, const char *to)
 {
-	snprintf(client->moved_from, sizeof client->moved_from, "%s", from);
-	snprintf(client->moved_to, sizeof client->moved_to, "%s", to);
+	snprintf(client->follow.from, sizeof client->follow.from, "%s", from);
+	snprintf(client->follow.to, sizeof client->follow.to, "%s", to);
 	snprintf(client->session, sizeof client->session, "%s", to); // A proxy routes by the session.
 	for (int i = 0; i < CAU_CLIENT_STREAMS_MAX; i++) {
 		cau_client_slot *slot = client->slots[i];
@@ -102,27 +102,28 @@ static void rename_sessions(cau_client *client, const char *from, const char *to
 bool cau_follow(cau_client *client, const char *from, const char *to, const char *url)
 {
 	cau_url found;
-	if (client->following && strcmp(client->moved_to, to) == 0) {
+	if (client->follow.now && strcmp(client->follow.to, to) == 0) {
 		rename_pending(client, from, to);
 		cau_follow_when_answered(client);
 		return true;
 	}
-	if (client->following || !client->def.follow || !*to || strcmp(from, to) == 0 ||
+	if (client->follow.now || !client->def.follow || !*to || strcmp(from, to) == 0 ||
 	    !is_about(client, from) || !read_url(client, url, &found))
 		return false;
 	// The program knows only the first id of a session that moved several times.
 	char first[CAU_NAME_BYTES];
 	snprintf(first, sizeof first, "%s",
-	         strcmp(client->moved_to, from) == 0 ? client->moved_from : from);
+	         strcmp(client->follow.to, from) == 0 ? client->follow.from : from);
 	rename_sessions(client, from, to);
 	rename_pending(client, from, to);
-	snprintf(client->moved_from, sizeof client->moved_from, "%s", first);
+	snprintf(client->follow.from, sizeof client->follow.from, "%s", first);
 	client->url = found;
-	client->following = true;
-	client->ways = 0;
-	client->arrives_until_s = cau_client_now() + ARRIVES_MOST_S;
-	if (!*client->kept_resume)
-		snprintf(client->kept_resume, sizeof client->kept_resume, "%s", client->server.resume);
+	client->follow.now = true;
+	client->follow.ways = 0;
+	client->follow.arrives_until_s = cau_client_now() + ARRIVES_MOST_S;
+	if (!*client->follow.kept_resume)
+		snprintf(client->follow.kept_resume, sizeof client->follow.kept_resume, "%s",
+		         client->server.resume);
 	cau_follow_when_answered(client);
 	return true;
 }
@@ -142,22 +143,22 @@ void cau_follow_when_answered(cau_client *client)
 // session is found, tools are resumed with the old daemon's resume token.
 static bool goes_again(cau_client *client, const char *session, const cau_rpc_fault *fault)
 {
-	bool arrives = fault->code == CAU_RPC_NOT_HERE && *client->moved_to &&
-	               strcmp(session, client->moved_to) == 0 &&
-	               cau_client_now() < client->arrives_until_s;
+	bool arrives = fault->code == CAU_RPC_NOT_HERE && *client->follow.to &&
+	               strcmp(session, client->follow.to) == 0 &&
+	               cau_client_now() < client->follow.arrives_until_s;
 	if (!arrives)
 		return false;
-	if (!client->following)
-		client->ways++;
-	client->following = true;
+	if (!client->follow.now)
+		client->follow.ways++;
+	client->follow.now = true;
 	cau_follow_when_answered(client);
 	return true;
 }
 
 void cau_follow_found(cau_client *client)
 {
-	if (!client->following)
-		client->kept_resume[0] = 0;
+	if (!client->follow.now)
+		client->follow.kept_resume[0] = 0;
 }
 
 // ---- what shows that a session has moved --------------------------------------------------------
@@ -216,11 +217,11 @@ void cau_follow_change(cau_client *client, const cau_wire_session_changed *chang
 
 bool cau_client_follows(const cau_client *client)
 {
-	return client->following;
+	return client->follow.now;
 }
 
 const char *cau_client_called(const cau_client *client, const char *session)
 {
-	bool moved = *client->moved_from && strcmp(client->moved_from, session) == 0;
-	return moved ? client->moved_to : session;
+	bool moved = *client->follow.from && strcmp(client->follow.from, session) == 0;
+	return moved ? client->follow.to : session;
 }

@@ -5,7 +5,6 @@
 #include <libwebsockets.h>
 
 #include "cautery/client.h"
-#include "library/outbox.h"
 #include "library/url.h"
 
 enum {
@@ -16,6 +15,33 @@ enum {
 	CAU_CLIENT_CLOSE_WAIT_US = 1000000,
 };
 
+// ---- outbox ------------------------------------------------------------------------------------
+// A queue of messages that wait to be written to the socket.
+
+// Largest size of all queued messages. A message that would exceed this size is refused with
+// CAU_LIMIT.
+enum { CAU_OUTBOX_BYTES_MAX = 8 << 20 };
+
+typedef struct cau_outbox_message {
+	struct cau_outbox_message *next;
+	bool binary;
+	size_t byte_count;
+	unsigned char bytes[]; // headroom for the WebSocket header, then the message
+} cau_outbox_message;
+
+typedef struct cau_outbox {
+	cau_outbox_message *first, *last;
+	size_t byte_count;
+} cau_outbox;
+
+// Appends a message, a copy of head followed by body. Errors: CAU_LIMIT, CAU_NO_MEMORY.
+cau_status cau_outbox_add(cau_outbox *outbox, bool binary, const void *head, size_t head_bytes,
+                          const void *body, size_t body_bytes, cau_error *error);
+unsigned char *cau_outbox_bytes(cau_outbox_message *message); // the message after its headroom
+cau_outbox_message *cau_outbox_take(cau_outbox *outbox);      // NULL if empty; the caller frees it
+void cau_outbox_clear(cau_outbox *outbox);
+
+// ---- loop and client ---------------------------------------------------------------------------
 struct cau_loop {
 	struct lws_context *context;
 	lws_sorted_usec_list_t wake; // timer that ends a wait
@@ -55,6 +81,22 @@ typedef struct cau_client_incoming {
 	bool broken;
 } cau_client_incoming;
 
+// The message that is being received.
+typedef struct cau_client_message {
+	unsigned char *bytes;
+	size_t byte_count, capacity;
+} cau_client_message;
+
+// How the client follows a session that has moved to another daemon.
+typedef struct cau_client_follow {
+	bool now; // the client is connecting to the session's new daemon
+	int ways; // number of attempts that found the session not yet served by the new daemon
+	double arrives_until_s;
+	char kept_resume[65]; // resume token of the old daemon until the session is found, then ""
+	// the id that the program knows, and the present id; "" if the session has not moved
+	char from[CAU_NAME_BYTES], to[CAU_NAME_BYTES];
+} cau_client_follow;
+
 struct cau_client {
 	cau_loop *loop;
 	cau_client_def def; // its strings are in the arrays below
@@ -68,20 +110,14 @@ struct cau_client {
 	cau_error trouble;
 	cau_rpc_fault fault;
 	cau_outbox outbox;
-	unsigned char *message; // the message that is being received
-	size_t message_bytes, message_capacity;
+	cau_client_message message;
 	cau_client_pending *first_pending, *last_pending;
 	int64_t last_id, last_sequence;
 	cau_wire_hello_result server;
 	uint64_t connections;
 	int attempts;    // number of attempts to connect since the last hello
 	bool keep_alive; // see cau_client_keep_alive
-	bool following;  // the client is connecting to the session's new daemon
-	int ways;        // number of attempts that found the session not yet served by the new daemon
-	double arrives_until_s;
-	char kept_resume[65]; // resume token of the old daemon until the session is found, then ""
-	// the id that the program knows, and the present id; "" if the session has not moved
-	char moved_from[CAU_NAME_BYTES], moved_to[CAU_NAME_BYTES];
+	cau_client_follow follow;
 	lws_sorted_usec_list_t tick, retry, deadline;
 	cau_client_slot *slots[CAU_CLIENT_STREAMS_MAX];
 	cau_client_incoming *incoming; // the file that is arriving, or NULL; only one at a time
@@ -92,11 +128,15 @@ struct cau_client {
 int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes);
 
-// send.c
+// queues.c
 // Closes the connection soon. cau_client_lost is called then.
 void cau_socket_cut(cau_client *client);
 cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,
                            const void *body, size_t body_bytes, cau_error *error);
+void cau_pending_add(cau_client *client, cau_client_pending *pending); // appends to the list
+// Removes and returns the request with this id, for the caller to free. Returns NULL if there is
+// none.
+cau_client_pending *cau_pending_take(cau_client *client, int64_t id);
 
 // connection.c
 void cau_client_begin(cau_client *client);
@@ -105,8 +145,7 @@ void cau_client_beat(cau_client *client); // sends a heartbeat with this machine
 void cau_client_opened(cau_client *client);
 void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes);
 void cau_client_lost(cau_client *client, const char *reason);
-void cau_client_refused(cau_client *client, const cau_error *error); // closes without reconnecting
-void cau_client_greeted(cau_client *client);
+void cau_text_received(cau_client *client, const char *text, size_t bytes);
 
 // wait.c
 bool cau_client_wait_for(cau_client *client, const bool *done, double until_s);
@@ -114,19 +153,6 @@ bool cau_client_wait_for(cau_client *client, const bool *done, double until_s);
 // rewinding, files) may take longer while the server answers heartbeats.
 cau_status cau_client_await(cau_client *client, cau_method method, const bool *done,
                             const void *user, cau_error *error);
-
-// hello.c
-cau_status cau_hello_send(cau_client *client, cau_error *error);
-cau_status cau_hello_answered(cau_client *client, const cau_rpc_message *message, cau_error *error);
-
-// receive.c
-void cau_text_received(cau_client *client, const char *text, size_t bytes);
-
-// pending.c
-void cau_pending_add(cau_client *client, cau_client_pending *pending); // appends to the list
-// Removes and returns the request with this id, for the caller to free. Returns NULL if there is
-// none.
-cau_client_pending *cau_pending_take(cau_client *client, int64_t id);
 
 // calls.c
 void cau_calls_answered(cau_client *client, const cau_rpc_message *message);

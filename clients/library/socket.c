@@ -32,32 +32,32 @@ static int write_one(cau_client *client)
 
 static bool append(cau_client *client, const void *in, size_t bytes)
 {
-	size_t wanted = client->message_bytes + bytes;
+	size_t wanted = client->message.byte_count + bytes;
 	size_t most = lws_frame_is_binary(client->wsi) ? (size_t)CAU_CLIENT_BINARY_MAX
 	                                               : (size_t)CAU_CLIENT_TEXT_MAX;
 	if (wanted > most)
 		return false;
-	if (wanted > client->message_capacity) {
-		size_t capacity = client->message_capacity ? client->message_capacity : 8192;
+	if (wanted > client->message.capacity) {
+		size_t capacity = client->message.capacity ? client->message.capacity : 8192;
 		while (capacity < wanted)
 			capacity *= 2;
-		void *grown = realloc(client->message, capacity);
+		void *grown = realloc(client->message.bytes, capacity);
 		if (!grown)
 			return false;
-		client->message = grown;
-		client->message_capacity = capacity;
+		client->message.bytes = grown;
+		client->message.capacity = capacity;
 	}
 	if (bytes)
-		memcpy(client->message + client->message_bytes, in, bytes);
-	client->message_bytes = wanted;
+		memcpy(client->message.bytes + client->message.byte_count, in, bytes);
+	client->message.byte_count = wanted;
 	return true;
 }
 
 static void deliver(cau_client *client)
 {
-	const unsigned char *message = client->message;
-	size_t bytes = client->message_bytes;
-	client->message_bytes = 0;
+	const unsigned char *message = client->message.bytes;
+	size_t bytes = client->message.byte_count;
+	client->message.byte_count = 0;
 	if (!lws_frame_is_binary(client->wsi))
 		cau_text_received(client, bytes ? (const char *)message : "", bytes);
 	else if (bytes >= 4 && memcmp(message, "CAUC", 4) == 0)
@@ -91,7 +91,7 @@ static void ended(cau_client *client)
 {
 	char reason[256];
 	client->wsi = NULL;
-	client->message_bytes = 0;
+	client->message.byte_count = 0;
 	if (client->close_code)
 		snprintf(reason, sizeof reason, "the server closed the connection: %s (%d)",
 		         *client->close_reason ? client->close_reason : "no reason given",
@@ -131,6 +131,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	}
 }
 
+// ---- event loop --------------------------------------------------------------------------------
 static const struct lws_protocols protocols[] = {
 	{.name = CAU_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = RECEIVE_BYTES},
 	{.name = CAU_FLEET_PROTOCOL, .callback = cau_fleet_on_event},

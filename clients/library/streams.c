@@ -144,8 +144,8 @@ cau_status cau_client_send_join(cau_client *client, const cau_wire_session_join 
                                 cau_error *error)
 {
 	cau_wire_session_join wanted = *params;
-	if (wanted.has_session && strcmp(wanted.session, client->moved_from) == 0)
-		memcpy(wanted.session, client->moved_to, sizeof wanted.session);
+	if (wanted.has_session && strcmp(wanted.session, client->follow.from) == 0)
+		memcpy(wanted.session, client->follow.to, sizeof wanted.session);
 	cau_client_slot *slot = find_slot(client, &wanted, error);
 	if (!slot)
 		return CAU_LIMIT;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calls that wait for an answer.
+// The calls that wait for an answer, and the measurement of the server's clock.
+#include <math.h>
+
 #include "library/internal.h"
 
 bool cau_client_wait_for(cau_client *client, const bool *done, double until_s)
@@ -97,4 +99,26 @@ cau_status cau_client_command(cau_client *client, const char *session, const cau
 	client->fault.code = 0;
 	cau_status status = cau_client_send_command(client, session, command, take_answer, &w, error);
 	return status ? status : wait(client, &w, error);
+}
+
+// ---- clock -------------------------------------------------------------------------------------
+cau_status cau_client_measure_clock(cau_client *client, int32_t count, cau_client_clock *clock,
+                                    cau_error *error)
+{
+	double shortest_s = INFINITY;
+	for (int32_t i = 0; i < count; i++) {
+		cau_wire_heartbeat_result result = {0};
+		double sent_s = cau_client_now();
+		cau_status status = cau_client_call(client, CAU_METHOD_HEARTBEAT,
+		                                    &(cau_wire_heartbeat){.visible = true}, &result, error);
+		double back_s = cau_client_now();
+		if (status)
+			return status;
+		if (back_s - sent_s >= shortest_s)
+			continue;
+		shortest_s = back_s - sent_s;
+		clock->offset_s = 1e-6 * (double)result.server_time_us - 0.5 * (sent_s + back_s);
+		clock->error_s = 0.5 * shortest_s;
+	}
+	return CAU_OK;
 }

@@ -7,7 +7,7 @@
 
 #include "cautery/command_json.h"
 #include "cautery/defaults.h"
-#include "load/fleet.h"
+#include "load/load.h"
 
 // Interval between two moves, s. It is not a multiple of the tick, so commands arrive at every
 // phase of the tick.

@@ -2,7 +2,7 @@
 // Adds a received frame to the measurements.
 #include <string.h>
 
-#include "load/fleet.h"
+#include "load/load.h"
 
 static const double recovery_s = 2.0; // longest time until a key frame must follow a gap
 

@@ -2,8 +2,7 @@
 // cautery-load: puts a load of scripted clients on a running daemon.
 #include <math.h>
 
-#include "load/machine.h"
-#include "load/report.h"
+#include "load/load.h"
 
 static volatile sig_atomic_t interrupted;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "load/options.h"
+#include "load/load.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "robot/control.h"
+#include "robot/robot.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "robot/link.h"
+#include "robot/robot.h"
 
 #include <string.h>
 #include <time.h>

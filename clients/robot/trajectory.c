@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "robot/trajectory.h"
+#include "robot/robot.h"
 
 #include <math.h>
 #include <stdlib.h>

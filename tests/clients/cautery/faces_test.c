@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cautery/faces.h"
+#include "cautery/progress.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

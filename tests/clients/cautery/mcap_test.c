@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes MCAP files and checks their records. tests/browser/page/mcap.test.ts reads such files with
 // the format's own library.
-#include "cautery/mcap.h"
+#include "cautery/recording.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

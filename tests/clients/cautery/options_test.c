@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 
 typedef struct reading {
 	cli c;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "haptics/energy_guard.h"
+#include "haptics/internal.h"
 
 #include <math.h>
 #include <setjmp.h>

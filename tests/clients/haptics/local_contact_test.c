@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "haptics/local_contact.h"
+#include "haptics/internal.h"
 
 #include <math.h>
 #include <setjmp.h>

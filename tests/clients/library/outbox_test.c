@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "library/outbox.h"
+#include "library/internal.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "robot/histogram.h"
+#include "robot/robot.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

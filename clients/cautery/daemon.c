@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command `ping`: measures round trips to the server.
+// The commands about the daemon itself: `ping` measures round trips to it, `backup` copies its
+// store to its own disk.
 #include <math.h>
+#include <string.h>
 
-#include "cautery/commands.h"
+#include "cautery/cli.h"
 
+// ---- ping --------------------------------------------------------------------------------------
 typedef struct round_trips {
 	int count;
 	double least_ms, most_ms, sum_ms;
@@ -46,7 +49,7 @@ static void print_end(const cli *c, const round_trips *trips)
 		        trips->least_ms, mean_ms, trips->most_ms);
 }
 
-static cli_exit run(cli *c)
+static cli_exit run_ping(cli *c)
 {
 	bool bad = false;
 	round_trips trips = {0};
@@ -70,4 +73,35 @@ const cli_command cli_ping = {
 	.summary = "measures the round-trip time of requests",
 	.options = {{"count", "N", "number of requests (default 4)"},
                 {"every", "S", "seconds between requests (default 0.25)"}},
-	.run = run};
+	.run = run_ping};
+
+// ---- backup ------------------------------------------------------------------------------------
+static cli_exit run_backup(cli *c)
+{
+	cau_wire_store_backup params = {.has_name = c->argument_count > 0};
+	cau_wire_store_copy result = {0};
+	if (params.has_name && strlen(c->arguments[0]) >= sizeof params.name) {
+		fprintf(c->complaints, "cautery backup: NAME has at most %zu characters\n",
+		        sizeof params.name - 1);
+		return CLI_USAGE;
+	}
+	if (params.has_name)
+		snprintf(params.name, sizeof params.name, "%s", c->arguments[0]);
+	cli_exit code = cli_connect(c);
+	if (!code)
+		code = cli_call(c, CAU_METHOD_STORE_BACKUP, &params, &result);
+	if (!code && !c->json)
+		fprintf(c->out, "%s: %lld bytes\n", result.file, (long long)result.byte_count);
+	return code;
+}
+
+const cli_command cli_backup = {
+	.name = "backup",
+	.arguments = "[NAME]",
+	.summary = "copies the store of the running daemon; prints the path of the copy",
+	.help =
+		"The copy is on the daemon's machine, in the folder of its setting `backups`, as NAME.db\n"
+		"(by default the time). The copy is checked. No file is replaced. Needs role admin. To\n"
+		"restore: stop the daemon, replace its store with the copy, and start the daemon.\n",
+	.most = 1,
+	.run = run_backup};
