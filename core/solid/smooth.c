@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "mesh/edge_table.h"
 #include "mesh/geometry.h"
-#include "mesh/index_sort.h"
 #include "solid/tets.h"
 
 enum { ROUNDS = 8, HALVINGS = 10 };

@@ -8,8 +8,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_file.h"
-#include "mesh/report.h"
+#include "mesh/mesh.h"
 #include "solid/gmsh_writer.h"
 #include "solid/tets.h"
 
