@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/symmetric.h"
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "constraint/elements_internal.h"

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "base/pages.h"
+#include "base/memory.h"
 #include "base/vector.h"
 #include "cautery/status.h"
 #include "heat/heat_field.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/symmetric.h"
+#include "base/vector.h"
 #include "cautery/assert.h"
 #include "cautery/name.h"
 #include "constraint/law.h"
