@@ -9,7 +9,6 @@
 #include "base/vector.h"
 #include "cautery/status.h"
 #include "heat/heat_field.h"
-#include "heat/heat_surface.h"
 #include "tool/tool_shape.h"
 
 enum {
