@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/pages.h"
+#include "base/memory.h"
 
 #include <fcntl.h>
 #include <stdatomic.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/symmetric.h"
+#include "base/vector.h"
 
 #include <math.h>
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small vectors, poses and quaternions in double, for code that does not run for each element.
+// Small vectors, poses, quaternions and symmetric matrices in double, for code that does not run
+// for each element; and keys that order points.
 #pragma once
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "cautery/assert.h"
 #include "cautery/scene.h"
@@ -111,4 +113,37 @@ static inline cau_pose cau_pose_between(const cau_pose *a, const cau_pose *b, do
 	for (int i = 0; i < 4; i++)
 		out.rotation[i] = norm > 0 ? out.rotation[i] / norm : a->rotation[i];
 	return out;
+}
+
+// ---- symmetric matrices (symmetric.c)
+// Entries of 2x2: 00, 11, 01. Entries of 3x3: 00, 11, 22, 01, 02, 12.
+// Computes eigenvalues (in no particular order) and orthonormal eigenvectors (columns of v,
+// v[row][column]).
+void cau_symmetric_eigen3(const double a[6], double value[3], double v[3][3]);
+
+// Computes A^power by the eigenvalues. Eigenvalues below `floor` are replaced by `floor`.
+void cau_symmetric_power3(const double a[6], double power, double floor, double out[6]);
+void cau_symmetric_power2(const double a[3], double power, double floor, double out[3]);
+
+// ---- keys along a Morton curve
+// Points that are close together have keys that are close together.
+enum { CAU_MORTON_BITS = 10 }; // bits of each coordinate
+
+static inline uint32_t cau_morton_spread(uint32_t x) // moves 10 bits to every third bit
+{
+	CAU_ASSERT(x < 1u << CAU_MORTON_BITS, "%u has more than 10 bits", x);
+	x = (x | x << 16) & 0x030000ffu;
+	x = (x | x << 8) & 0x0300f00fu;
+	x = (x | x << 4) & 0x030c30c3u;
+	return (x | x << 2) & 0x09249249u;
+}
+
+// Returns the key of a point in the unit cube.
+static inline uint32_t cau_morton(const double place[3])
+{
+	const double most = (1 << CAU_MORTON_BITS) - 1;
+	uint32_t key = 0;
+	for (int c = 0; c < 3; c++)
+		key |= cau_morton_spread((uint32_t)(place[c] * most)) << c;
+	return key;
 }

@@ -93,3 +93,7 @@ double cau_bioheat_vapour(const cau_bioheat *bioheat);
 
 // Returns the energy, J, that a cell takes up until it is dry at CAU_BOILING_C.
 double cau_bioheat_until_dry(const cau_bioheat *bioheat, int32_t cell);
+
+// Returns thermal and electric properties of `tissue` (CAU_LIVING_*). Sources: README.md. `sheet`
+// is false: current spreads in space.
+cau_bioheat_material cau_living_tissue(int tissue);

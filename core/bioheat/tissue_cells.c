@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "bioheat/bioheat.h"
 #include "bioheat/element_shape.h"
-#include "bioheat/living_tissue.h"
 #include "cautery/assert.h"
 
 // Largest stretch between an element and its cells that lie outside: such a cell is at most this

@@ -5,10 +5,10 @@
 // has weight 0 and vertex 0. Arrays marked `real` are float or double, as the session's precision
 // says. A removed element keeps its slot with weight 0.
 //
-// Triangles and tetrahedra are handled in pairs that share an edge or a face (pairs.h). The first
-// element of a pair is in a batch with an even number, the second in the same lane of the next
-// batch. Both elements list their shared vertices in the same order, and the apex last. D_m follows
-// this order.
+// Triangles and tetrahedra are handled in pairs that share an edge or a face (elements_pairs.c).
+// The first element of a pair is in a batch with an even number, the second in the same lane of the
+// next batch. Both elements list their shared vertices in the same order, and the apex last. D_m
+// follows this order.
 //
 // The local step is divided into shares of consecutive slots. A share has a record for each vertex
 // of its elements: four reals (x, y, z, 0). The share first copies its vertices' displacements, in
@@ -153,3 +153,19 @@ static inline size_t cau_real_bytes(bool single)
 {
 	return single ? sizeof(float) : sizeof(double);
 }
+
+// ---- laws of fat
+// Properties of a law of fat that the solver needs in addition to its stress. Each is an entry of
+// CAU_MODEL_TABLE.
+typedef struct cau_law {
+	const char *word;    // name in JSON
+	double poisson_most; // largest Poisson's ratio that is accepted
+	bool has_energy;     // the stress is the gradient of an energy, which the solver may compare
+	bool keeps_rotation; // the law uses a rotation that `polar` of the slot keeps between
+	                     // evaluations
+	double lambda_mu, mu_mu; // Lame parameters as evaluated: lambda + lambda_mu mu and mu_mu mu
+	const char *meaning;
+} cau_law;
+
+// Returns the properties of a law; `model` is CAU_MODEL_*.
+const cau_law *cau_law_of(int model);

@@ -4,12 +4,22 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/symmetric.h"
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "constraint/elements_internal.h"
-#include "constraint/law.h"
 
+// ---- laws
+const cau_law *cau_law_of(int model)
+{
+#define X(code, word, poisson_most, has_energy, keeps_rotation, lambda_mu, mu_mu, meaning)         \
+	{#word, poisson_most, has_energy, keeps_rotation, lambda_mu, mu_mu, meaning},
+	static const cau_law laws[] = {CAU_MODEL_TABLE(X)};
+#undef X
+	CAU_ASSERT_INDEX(model, CAU_MODEL_COUNT);
+	return &laws[model];
+}
+
+// ---- elements
 static void set_sheet_law(cau_sheet_group *group, const cau_sheet_material *material)
 {
 	group->limit = material->limit;

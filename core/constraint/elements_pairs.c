@@ -1,8 +1,179 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lays out triangles and tetrahedra in slots, pair by pair (pairs.h).
-#include "cautery/assert.h"
+// Pairs of elements, and the sets of triangles and tetrahedra that are made of the pairs.
 #include "constraint/elements_internal.h"
-#include "constraint/pairs.h"
+
+#include "cautery/assert.h"
+
+// ---- maps between slots and elements, and arrays by slot
+cau_status cau_elements_make_maps(cau_element_slots *slots, int kind, int32_t element_count,
+                                  int32_t slot_count, cau_arena *arena, cau_error *error)
+{
+	CAU_ASSERT_INDEX(kind, CAU_ELEMENT_KINDS);
+	CAU_ASSERT(slot_count >= element_count && slot_count % CAU_BATCH == 0,
+	           "%d slots for %d elements", slot_count, element_count);
+	slots->slot_of[kind] = cau_arena_array(arena, (size_t)element_count, sizeof(int32_t));
+	slots->element_at[kind] = cau_arena_array(arena, (size_t)slot_count, sizeof(int32_t));
+	if (!slots->slot_of[kind] || !slots->element_at[kind])
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the elements");
+	for (int32_t s = 0; s < slot_count; s++)
+		slots->element_at[kind][s] = -1;
+	return CAU_OK;
+}
+
+void cau_elements_assign(cau_element_slots *slots, int kind, int32_t element, int32_t slot)
+{
+	CAU_ASSERT(slots->element_at[kind][slot] < 0, "slot %d has element %d already", slot,
+	           slots->element_at[kind][slot]);
+	slots->slot_of[kind][element] = slot;
+	slots->element_at[kind][slot] = element;
+}
+
+bool cau_real_arrays(cau_arena *arena, void **array, int count, int32_t slots, bool single)
+{
+	for (int i = 0; i < count; i++)
+		if (!(array[i] = cau_arena_array(arena, (size_t)slots, cau_real_bytes(single))))
+			return false;
+	return true;
+}
+
+bool cau_index_arrays(cau_arena *arena, uint16_t **array, int count, int32_t slots)
+{
+	for (int i = 0; i < count; i++)
+		if (!(array[i] = cau_arena_array(arena, (size_t)slots, sizeof(uint16_t))))
+			return false;
+	return true;
+}
+
+bool cau_slot_vertices_make(cau_slot_vertices *vertices, int kind, int count, int32_t slots)
+{
+	CAU_ASSERT(count >= 2 && count <= 4, "%d vertices of kind %d", count, kind);
+	int32_t **at = vertices->at[kind];
+	for (int i = 0; i < count; i++)
+		if (!(at[i] = cau_arena_array(&vertices->arena, (size_t)slots, sizeof(int32_t))))
+			return false;
+	return true;
+}
+
+// ---- pairs
+static const int32_t FREE = -2; // partner of an element that is not paired yet
+
+// most neighbours that are listed; at an edge of many triangles, further neighbours are ignored
+enum { MOST_NEIGHBOURS = 12 };
+
+static bool in_group(const cau_tissue *tissue, int kind, int32_t e, int32_t layer, int32_t material)
+{
+	return kind == CAU_ELEMENT_TRIANGLE
+	           ? tissue->triangle_layer[e] == layer && tissue->triangle_material[e] == material
+	           : tissue->tetrahedron_layer[e] == layer &&
+	                 tissue->tetrahedron_material[e] == material;
+}
+
+static int add_free(const int32_t *partner, int32_t element, int32_t *list, int count)
+{
+	CAU_ASSERT(count >= 0 && count <= MOST_NEIGHBOURS, "%d neighbours", count);
+	if (element < 0 || partner[element] != FREE || count == MOST_NEIGHBOURS)
+		return count;
+	list[count] = element;
+	return count + 1;
+}
+
+// Lists the elements that share a face (tetrahedra) or an edge (triangles) with element e, and have
+// no partner yet. Returns their number.
+static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e,
+                           int32_t list[MOST_NEIGHBOURS])
+{
+	int count = 0;
+	if (kind == CAU_ELEMENT_TETRAHEDRON) {
+		for (int i = 0; i < 4; i++) {
+			const int32_t *owner =
+				tissue->faces.owner + 2 * tissue->faces.tetrahedron_face[4 * e + i];
+			count = add_free(partner, owner[0] == e ? owner[1] : owner[0], list, count);
+		}
+		return count;
+	}
+	const int32_t *first = tissue->edges.first[CAU_PRIMITIVE_TRIANGLE];
+	const int32_t *sharer = tissue->edges.sharer[CAU_PRIMITIVE_TRIANGLE];
+	for (int i = 0; i < 3; i++) {
+		int32_t edge = tissue->edges.triangle_edge[3 * e + i];
+		for (int32_t k = first[edge]; k < first[edge + 1]; k++)
+			count = add_free(partner, sharer[k] == e ? -1 : sharer[k], list, count);
+	}
+	return count;
+}
+
+// Chooses the free neighbour that itself has the fewest free neighbours, so that few elements
+// remain without a partner.
+static int32_t choose(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e)
+{
+	int32_t near[MOST_NEIGHBOURS], of_near[MOST_NEIGHBOURS], best = -1;
+	CAU_ASSERT(partner[e] != FREE, "element %d may choose itself", e);
+	int fewest = MOST_NEIGHBOURS + 1, count = free_neighbours(tissue, kind, partner, e, near);
+	for (int i = 0; i < count; i++) {
+		int others = free_neighbours(tissue, kind, partner, near[i], of_near);
+		if (others < fewest) {
+			fewest = others;
+			best = near[i];
+		}
+	}
+	return best;
+}
+
+int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int32_t material,
+                          int32_t *partner)
+{
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "kind %d has no pairs", kind);
+	int32_t pairs = 0, count = cau_tissue_element_count(tissue, kind);
+	for (int32_t e = 0; e < count; e++)
+		if (in_group(tissue, kind, e, layer, material))
+			partner[e] = FREE;
+	for (int32_t e = 0; e < count; e++) {
+		if (!in_group(tissue, kind, e, layer, material) || partner[e] != FREE)
+			continue;
+		partner[e] = -1;
+		int32_t other = choose(tissue, kind, partner, e);
+		CAU_ASSERT(other < 0 || partner[other] == FREE, "element %d is paired twice", other);
+		partner[e] = other;
+		if (other >= 0)
+			partner[other] = e;
+		pairs++;
+	}
+	return pairs;
+}
+
+static int place_of(const int32_t *vertices, int count, int32_t vertex)
+{
+	for (int i = 0; i < count; i++)
+		if (vertices[i] == vertex)
+			return i;
+	return -1;
+}
+
+void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t other,
+                    int32_t element, int *order)
+{
+	CAU_ASSERT(element == first || element == other, "element %d is in no pair of %d and %d",
+	           element, first, other);
+	int vertices = kind == CAU_ELEMENT_TRIANGLE ? 3 : 4, shared = vertices - 1, found = 0;
+	const int32_t *all = kind == CAU_ELEMENT_TRIANGLE ? tissue->triangle : tissue->tetrahedron;
+	const int32_t *a = all + (size_t)vertices * (size_t)first;
+	const int32_t *own = all + (size_t)vertices * (size_t)element;
+	const int32_t *b = other < 0 ? a : all + (size_t)vertices * (size_t)other;
+	// the sum of all vertex indices, from which the shared vertices' indices are subtracted: what
+	// is left is the apex
+	int apex = vertices * shared / 2;
+	for (int i = 0; i < vertices && found < shared; i++)
+		if (place_of(b, vertices, a[i]) >= 0) {
+			order[found] = place_of(own, vertices, a[i]);
+			apex -= order[found++];
+		}
+	CAU_ASSERT(found == shared, "elements %d and %d share %d vertices", first, other, found);
+	CAU_ASSERT_INDEX(apex, vertices);
+	order[shared] = apex;
+}
+
+// ---- sets
+// Lays out triangles and tetrahedra in slots, pair by pair.
 
 static cau_status no_memory(cau_error *error)
 {

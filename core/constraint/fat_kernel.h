@@ -5,7 +5,7 @@
 #include "constraint/diagonal.h"
 #include "constraint/elements.h"
 #include "constraint/fat_energy.h"
-#include "constraint/strain_limit_fat.h"
+#include "constraint/strain_limit.h"
 
 INLINE rotation_lanes rotation_load(void *const array[4], int32_t slot)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <math.h>
 
-#include "base/symmetric.h"
+#include "base/vector.h"
 
 #define CAU_SINGLE 0
 #include "cautery/assert.h"

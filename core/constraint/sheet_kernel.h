@@ -4,7 +4,7 @@
 
 #include "constraint/diagonal.h"
 #include "constraint/elements.h"
-#include "constraint/strain_limit_sheet.h"
+#include "constraint/strain_limit.h"
 
 INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/morton.h"
+#include "base/vector.h"
 #include "cautery/assert.h"
 
 typedef struct keyed {

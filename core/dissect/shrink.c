@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/symmetric.h"
+#include "base/vector.h"
 #include "cautery/assert.h"
 
 static const double ramp_s = 0.2;

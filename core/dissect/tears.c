@@ -31,7 +31,7 @@
 // element wide.
 #include <string.h>
 
-#include "base/symmetric.h"
+#include "base/vector.h"
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 

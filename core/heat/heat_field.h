@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One of the nested temperature fields of a tool: N x N x N nodes, x fastest. Each field is twice
+// A temperature field of a tool, its step in time, and the hot part's surface in it. Private to
+// core/heat.
+//
+// The field is one of the nested fields of a tool: N x N x N nodes, x fastest. Each field is twice
 // as wide as the next inner field, and its cells are twice as long. Every second node of a field is
-// a node of the next wider field. Private to core/heat.
+// a node of the next wider field.
 #pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "base/vector.h"
+#include "tool/tool_shape.h"
 
 typedef struct cau_heat_field {
 	double step_m; // distance between nodes
@@ -68,3 +72,45 @@ static inline int64_t cau_heat_cell_node(const cau_heat_cell *cell, int32_t node
 	int64_t n = nodes;
 	return cell->first + (corner & 1) + (corner >> 1 & 1) * n + (corner >> 2) * n * n;
 }
+
+// ---- one explicit step of the heat equation on a cubic grid (eq. 18-19, FTCS)
+// Computes next = u + rate (sum of the six neighbours - 6 u) at every inner node of the (nodes x
+// nodes x nodes) grid, x fastest. The outer nodes of `next` are not changed. `rate` is alpha dt /
+// dl^2, at most 1/6 for stability.
+void cau_diffuse(const float *temperature, float rate, float *next, int32_t nodes);
+
+// Computes the step near a surface that is held at held_c: next = u + rate (sum - 6 u + pull
+// (held_c - u)). Each node has its own rate and pull (heat_surface.c). A node with rate 0 keeps its
+// value exactly.
+void cau_diffuse_around(const float *temperature, const float *rate, const float *pull,
+                        float held_c, float *next, int32_t nodes);
+
+// Finds the least and the greatest of `count` values. `count` is at least 1.
+void cau_extremes(const float *values, int64_t count, float *least, float *greatest);
+
+// ---- the hot part's surface in the innermost field (heat_surface.c)
+typedef struct cau_heat_surface {
+	bool held;                // there is a surface: the tool was energized in the last advance
+	float held_c;             // degC: temperature at and inside the surface
+	int32_t least[3], end[3]; // range of the nodes that are less than a cell from the surface
+	// Cells, (N x N x N): signed distance of each node, negative inside. It is valid while `held`
+	// is true. It is exact within a cell of the surface; elsewhere only the sign is valid.
+	float *distance;
+	float *rate; // scratch, (N x N x N): rate of each node for cau_diffuse_around
+	float *pull; // scratch, (N x N x N): pull of each node for cau_diffuse_around
+} cau_heat_surface;
+
+// Finds the hot part's surface at `pose`, and marks it as held.
+void cau_heat_surface_find(cau_heat_surface *surface, const cau_heat_field *field, int32_t nodes,
+                           const cau_tool_def *tool, const cau_pose *pose, double jaw);
+
+// Sets the nodes inside to the held temperature, and computes `rate` and `pull`. The argument
+// `rate` is alpha dt / dl^2.
+void cau_heat_surface_hold(cau_heat_surface *surface, cau_heat_field *field, int32_t nodes,
+                           double rate);
+
+// Returns the field at the point of a cell, degC. Inside the surface this is the tool's
+// temperature. Near the surface, the outer nodes are extrapolated by distance. Elsewhere the nodes
+// are interpolated trilinearly.
+double cau_heat_surface_at(const cau_heat_surface *surface, const cau_heat_field *field,
+                           int32_t nodes, const cau_heat_cell *cell);

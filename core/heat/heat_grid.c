@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "heat/diffuse.h"
+#include "heat/heat_field.h"
 
 static const double REST_C = 0.01; // largest distance from ambient, K, of a node of a field at rest
 

@@ -5,11 +5,10 @@
 
 #include <stdbool.h>
 
-#include "base/pages.h"
+#include "base/memory.h"
 #include "base/vector.h"
 #include "cautery/status.h"
 #include "heat/heat_field.h"
-#include "heat/heat_surface.h"
 #include "tool/tool_shape.h"
 
 enum {

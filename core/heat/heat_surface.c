@@ -16,7 +16,7 @@
 // `sum` contains the neighbours inside with their stored value T. For every theta and any r up to
 // 1/6, new values are means of old values and T. The steady field is that of the terms above, and a
 // node on the surface is at T. So no theta needs a limit, and the surface needs no shorter step.
-#include "heat/heat_surface.h"
+#include "heat/heat_field.h"
 
 #include "cautery/assert.h"
 

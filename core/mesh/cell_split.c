@@ -4,14 +4,11 @@
 // the lowest index. Cells that share the quadrangle therefore choose the same diagonal. The vertex
 // of a cell with the lowest index is the apex. Each face of the cell without this vertex is joined
 // to the apex.
-#include "mesh/cell_split.h"
-
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "mesh/geometry.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/vertex_merge.h"
+#include "mesh/mesh_builder.h"
 
 enum { FACES_MAX = 6 };
 

@@ -4,10 +4,9 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "mesh/edge_table.h"
 #include "mesh/geometry.h"
-#include "mesh/index_sort.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/vertex_merge.h"
+#include "mesh/mesh.h"
 
 // Limits below which an element counts as flat, relative to its longest edge L. They apply to the
 // height of a triangle, 2 A / L^2, and to 6 V / L^3 of a tetrahedron. If coordinates have six

@@ -1,13 +1,88 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of edges, the check of primitives before tables are made, and the sort by vertices.
 #include "mesh/edge_table.h"
 
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/index_sort.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/primitives.h"
+#include "mesh/mesh.h"
 
+// Checks the primitives of one kind, (count x width).
+static cau_status check_rows(const char *kind, const int32_t *row, int32_t count, int width,
+                             int32_t vertex_count, cau_error *error)
+{
+	CAU_ASSERT(row || !count, "%d of kind %s are nowhere", count, kind);
+	CAU_ASSERT(width >= 2 && width <= 4, "%s of %d corners", kind, width);
+	for (int32_t i = 0; i < count; i++, row += width)
+		for (int a = 0; a < width; a++) {
+			if (row[a] < 0 || row[a] >= vertex_count)
+				return cau_fail(error, CAU_BAD_MESH, NULL,
+				                "%s %d names vertex %d, but there are %d vertices", kind, i, row[a],
+				                vertex_count);
+			for (int b = 0; b < a; b++)
+				if (row[a] == row[b])
+					return cau_fail(error, CAU_BAD_MESH, NULL, "%s %d has vertex %d twice", kind, i,
+					                row[a]);
+		}
+	return CAU_OK;
+}
+
+cau_status cau_primitives_check(const cau_primitives *primitives, cau_error *error)
+{
+	const cau_primitives *p = primitives;
+	if (p->vertex_count < 0 || p->vertex_count == INT32_MAX || p->triangle_count < 0 ||
+	    p->tetrahedron_count < 0 || p->link_count < 0 ||
+	    3 * (int64_t)p->triangle_count + 6 * (int64_t)p->tetrahedron_count + p->link_count >=
+	        INT32_MAX)
+		return cau_fail(error, CAU_LIMIT, NULL, "too many primitives for one tissue");
+
+	cau_status status =
+		check_rows("triangle", p->triangle, p->triangle_count, 3, p->vertex_count, error);
+	if (!status)
+		status = check_rows("tetrahedron", p->tetrahedron, p->tetrahedron_count, 4, p->vertex_count,
+		                    error);
+	if (!status)
+		status = check_rows("link", p->link, p->link_count, 2, p->vertex_count, error);
+	return status;
+}
+
+// ---- sorting
+// Makes one stable pass of a counting sort: `to` is `from` ordered by key[row * stride]. bucket
+// (bound + 1) is scratch.
+static void counting_pass(const int32_t *key, int stride, const int32_t *from, int32_t count,
+                          int32_t *bucket, int32_t bound, int32_t *to)
+{
+	memset(bucket, 0, ((size_t)bound + 1) * sizeof *bucket);
+	for (int32_t i = 0; i < count; i++) {
+		CAU_ASSERT_INDEX(key[(size_t)i * (size_t)stride], bound);
+		bucket[key[(size_t)i * (size_t)stride] + 1]++;
+	}
+	for (int32_t k = 0; k < bound; k++)
+		bucket[k + 1] += bucket[k];
+	for (int32_t i = 0; i < count; i++)
+		to[bucket[key[(size_t)from[i] * (size_t)stride]]++] = from[i];
+}
+
+bool cau_index_sort(const int32_t *tuple, int width, int32_t count, int32_t bound, int32_t *order)
+{
+	CAU_ASSERT(width >= 1 && count >= 0 && bound >= 0, "%d rows of %d below %d", count, width,
+	           bound);
+	int32_t *from = cau_mesh_array((size_t)count, sizeof *from);
+	int32_t *bucket = cau_mesh_array((size_t)bound + 1, sizeof *bucket);
+	bool done = from && bucket;
+
+	for (int32_t i = 0; done && i < count; i++)
+		order[i] = i;
+	for (int column = width - 1; done && column >= 0; column--) {
+		memcpy(from, order, (size_t)count * sizeof *from);
+		counting_pass(tuple + column, width, from, count, bucket, bound, order);
+	}
+	free(from);
+	free(bucket);
+	return done;
+}
+
+// ---- the table of edges
 // Every primitive writes its edges into consecutive slots: a triangle three, a tetrahedron six, a
 // link one. Triangles come first, then tetrahedra, then links. The slots are then sorted by the two
 // ends, so that all uses of an edge are next to each other.

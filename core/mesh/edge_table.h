@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The edge-based structure (section 6.1, figure 5): the table lists for every edge the primitives
-// that share it.
+// that share it. The table of faces is made in the same way: by sorting.
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "cautery/status.h"
@@ -18,6 +19,11 @@ typedef struct cau_primitives {
 	int32_t link_count;
 	const int32_t *link; // (link_count x 2)
 } cau_primitives;
+
+// Checks that every index is in [0, vertex_count), that no primitive has a vertex twice, and that
+// tables of 32-bit indices can hold all primitives. Errors: CAU_BAD_MESH, which names the
+// primitive; CAU_LIMIT.
+cau_status cau_primitives_check(const cau_primitives *primitives, cau_error *error);
 
 typedef enum cau_primitive_kind {
 	CAU_PRIMITIVE_TRIANGLE,
@@ -68,3 +74,20 @@ typedef struct cau_face_table {
 cau_status cau_face_table_make(const cau_primitives *primitives, cau_face_table *table,
                                cau_error *error);
 void cau_face_table_finish(cau_face_table *table);
+
+// ---- sorting of edges and faces by their vertices
+// Sorts the tuples of `tuple` (count x width), whose entries are in [0, bound). Fills order (count)
+// with their indices in lexicographic order. Equal tuples keep their order. Uses counting passes:
+// O(width (count + bound)). Returns false if memory ran out.
+bool cau_index_sort(const int32_t *tuple, int width, int32_t count, int32_t bound, int32_t *order);
+
+// Sorts the entries of a small list in ascending order.
+static inline void cau_index_order_row(int32_t *row, int width)
+{
+	for (int i = 1; i < width; i++)
+		for (int j = i; j > 0 && row[j] < row[j - 1]; j--) {
+			int32_t larger = row[j - 1];
+			row[j - 1] = row[j];
+			row[j] = larger;
+		}
+}

@@ -3,9 +3,7 @@
 
 #include "cautery/assert.h"
 #include "mesh/edge_table.h"
-#include "mesh/index_sort.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/primitives.h"
+#include "mesh/mesh.h"
 
 // Slots hold the sheets' triangles first, then four faces of each tetrahedron. Slots are sorted by
 // their vertices. Then the slots of one face are next to each other, and triangles that cover the

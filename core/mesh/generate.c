@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
+#include "mesh/mesh.h"
 
 static cau_status check_sizes(const cau_mesh_def *def, int axes, cau_error *error)
 {

@@ -7,9 +7,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/node_map.h"
-#include "mesh/readers.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_builder.h"
 
 enum { KNOWN_TYPES = 32, NODES_MAX = 64 };
 

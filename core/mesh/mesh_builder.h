@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mesh that grows while a file is read. Failures go to the scan, which reports where.
+// A mesh that grows while a file is read, and the readers that fill it. Failures go to the scan,
+// which reports where.
 #pragma once
 
 #include "mesh/mesh.h"
@@ -79,3 +80,52 @@ void cau_mesh_builder_name(cau_mesh_builder *builder, int32_t dimension, int32_t
 void cau_mesh_builder_map_regions(cau_mesh_builder *builder, const int32_t *of, int64_t count);
 
 void cau_mesh_builder_finish(cau_mesh_builder *builder); // frees everything
+
+// Cuts a polygon into `count` - 2 triangles and writes the indices of their corners to `triangle`.
+// A polygon that is convex as seen from its first corner becomes a fan around that corner. So does
+// every polygon of more than 4096 corners. Any other polygon is cut by removing ears. `position`
+// has the positions of all vertices. Returns false if memory ran out.
+bool cau_polygon_cut(const double *position, const int32_t *vertex, int32_t count,
+                     int32_t (*triangle)[3]);
+
+// ---- node numbers
+// Maps the node numbers of a file to vertices. Node numbers may be sparse and in any order.
+typedef struct cau_node_map {
+	struct cau_node {
+		int64_t number;
+		int32_t vertex;
+	} * node;
+	int32_t count;
+	int32_t capacity;
+} cau_node_map;
+
+// Appends a node. Its vertex is the number of nodes before this call. Failures go to the scan.
+void cau_node_map_add(cau_node_map *map, int64_t number, cau_scan *scan);
+// Prepares the map for cau_node_map_find. Fails if a number occurs twice.
+void cau_node_map_seal(cau_node_map *map, cau_scan *scan);
+// Returns the vertex of a node, or -1.
+int32_t cau_node_map_find(const cau_node_map *map, int64_t number);
+void cau_node_map_finish(cau_node_map *map);
+
+// ---- splitting
+// Splits the builder's cells into triangles and tetrahedra. Cells that share a quadrangle split it
+// in the same way.
+void cau_cell_split(cau_mesh_builder *builder);
+
+// ---- the readers of all formats
+// Each reader reads builder->scan into the builder, and returns the scan's status.
+cau_status cau_mesh_read_gmsh(cau_mesh_builder *builder); // 1, 2.x, 4.0, 4.1; text, binary
+cau_status cau_mesh_read_vtk(cau_mesh_builder *builder);  // legacy VTK; text, binary
+cau_status cau_mesh_read_vtu(cau_mesh_builder *builder);  // VTU and VTP (XML)
+cau_status cau_mesh_read_obj(cau_mesh_builder *builder);  // Wavefront OBJ
+cau_status cau_mesh_read_stl(cau_mesh_builder *builder);  // STL; text
+cau_status cau_mesh_read_stl_binary(cau_mesh_builder *builder);
+cau_status cau_mesh_read_ply(cau_mesh_builder *builder);    // PLY; text, binary
+cau_status cau_mesh_read_medit(cau_mesh_builder *builder);  // Medit .mesh
+cau_status cau_mesh_read_meshb(cau_mesh_builder *builder);  // Medit .meshb
+cau_status cau_mesh_read_tetgen(cau_mesh_builder *builder); // TetGen .node, then .ele or .face
+cau_status cau_mesh_read_usda(cau_mesh_builder *builder);   // UsdGeom.TetMesh and Mesh as text
+
+// ---- report
+// Lists the regions that were read, with their names in the file.
+void cau_mesh_report_regions(const cau_mesh_builder *builder, cau_mesh_report *report);

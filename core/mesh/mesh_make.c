@@ -3,9 +3,7 @@
 #include <math.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_file.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/report.h"
+#include "mesh/mesh.h"
 
 // Joins `directory` and `file`. If `file` is absolute, `directory` is ignored.
 static cau_status join_path(const char *directory, const char *file, char path[static 600],

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/readers.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_builder.h"
 
 enum { MAX_REGIONS = 256, MAX_CORNERS = 1 << 20 };
 

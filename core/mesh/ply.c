@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/readers.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_builder.h"
 
 enum { ELEMENTS_MAX = 16, PROPERTIES_MAX = 64, CORNERS_MAX = 4096 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/report.h"
+#include "mesh/mesh_builder.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "cautery/assert.h"
 #include "mesh/edge_table.h"
 #include "mesh/geometry.h"
-#include "mesh/mesh_memory.h"
+#include "mesh/mesh.h"
 
 // ---- regions
 // Returns the index of a region in the ascending list. If the region is not in the list, returns

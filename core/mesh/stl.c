@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/readers.h"
+#include "mesh/mesh_builder.h"
 
 // Adds three new vertices and their triangle.
 static void add_facet(cau_mesh_builder *builder, double position[3][3], int32_t region)

@@ -2,7 +2,7 @@
 // Reads TetGen meshes: the lines of a .node file, followed by those of its .ele or .face file.
 // TetGen writes two files, which cau_mesh_file_load joins. Format: TetGen's manual, "File formats".
 #include "cautery/assert.h"
-#include "mesh/readers.h"
+#include "mesh/mesh_builder.h"
 
 // Reads the next word. Skips comments, which extend from '#' to the end of the line.
 static cau_word next_word(cau_scan *scan)

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/readers.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_builder.h"
 
 enum { NUMBERS_MAX = 4 * CAU_MESH_MAX_ELEMENTS };
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Merges vertices with a spatial hash. Its cells have the width `distance`. Only kept vertices are
 // entered. They are farther than `distance` from each other, so a cell holds few of them.
-#include "mesh/vertex_merge.h"
+#include "mesh/mesh.h"
 
 #include <math.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
 
 static const double near = 1e-5; // share of the bounding diagonal within which vertices merge
 
@@ -70,8 +69,11 @@ static void enter(grid *g, int32_t vertex, const int64_t cell[3])
 	*bucket = vertex;
 }
 
-bool cau_vertex_merge(const double *position, int32_t vertex_count, const double origin[3],
-                      double distance, int32_t *map)
+// Fills map (vertex_count). Each vertex is mapped to the lowest kept vertex that is nearer than
+// `distance` (above zero), or to itself. `position` (vertex_count x 3) is at most 1e15 distances
+// above `origin`. O(vertex_count). Returns false if memory ran out.
+static bool merge(const double *position, int32_t vertex_count, const double origin[3],
+                  double distance, int32_t *map)
 {
 	CAU_ASSERT(distance > 0 && vertex_count >= 0, "%d vertices nearer than %g m", vertex_count,
 	           distance);
@@ -104,7 +106,7 @@ bool cau_vertex_merge_near(const double *position, int32_t vertex_count, int32_t
 	}
 	double diagonal = hypot(hypot(most[0] - least[0], most[1] - least[1]), most[2] - least[2]);
 	if (diagonal > 0 && isfinite(diagonal))
-		return cau_vertex_merge(position, vertex_count, least, near * diagonal, map);
+		return merge(position, vertex_count, least, near * diagonal, map);
 	for (int32_t v = 0; v < vertex_count; v++)
 		map[v] = v;
 	return true;

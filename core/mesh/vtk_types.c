@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/vtk_types.h"
+#include "mesh/vtk.h"
 
 #include <stdlib.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
+#include "mesh/mesh.h"
 
 enum { VTK_PIXEL = 8, VTK_VOXEL = 11, KNOWN_TYPES = 82 };
 
@@ -138,4 +138,14 @@ void cau_vtk_add_cell(cau_mesh_builder *builder, int64_t type, const int64_t *co
 		add_known(builder, type, corner, corners, cell);
 	else
 		cau_mesh_builder_skip(builder, named ? types[type].name : "cells of unknown type", 1);
+}
+
+bool cau_vtk_is_region_name(cau_word name)
+{
+	static const char *const names[] = {"region",        "material",      "MaterialIds",
+	                                    "CellEntityIds", "gmsh:physical", "medit:ref"};
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+		if (cau_word_is(name, names[i]))
+			return true;
+	return false;
 }

@@ -7,11 +7,9 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
-#include "mesh/readers.h"
-#include "mesh/vtk_part.h"
-#include "mesh/vtk_types.h"
-#include "mesh/vtu_data.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_builder.h"
+#include "mesh/vtk.h"
 
 typedef struct tag {
 	cau_word name;   // with a leading '/' in a closing tag

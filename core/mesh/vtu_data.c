@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/vtu_data.h"
+#include "mesh/vtk.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
 #include "cautery/assert.h"
-#include "mesh/mesh_memory.h"
+#include "mesh/mesh.h"
 
 enum {
 	DEFLATE_RATIO_MAX = 1032,    // largest factor by which a zlib stream grows

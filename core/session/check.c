@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/symmetric.h"
+#include "base/vector.h"
 #include "cautery/assert.h"
 #include "cautery/name.h"
-#include "constraint/law.h"
+#include "constraint/elements.h"
 #include "session/session_internal.h"
 
 enum { PATH_BYTES = 160 };

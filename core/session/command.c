@@ -5,7 +5,7 @@
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
-#include "tissue/regions.h"
+#include "tissue/tissue.h"
 
 // ---- submission
 // Checks a SET_MATERIAL. Region 0 is always accepted: it means the layer's default if the layer's

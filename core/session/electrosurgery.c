@@ -4,7 +4,7 @@
 // longer join its vertices.
 #include <string.h>
 
-#include "bioheat/generator.h"
+#include "bioheat/current.h"
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 

@@ -15,7 +15,7 @@
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
-#include "tool/face_distance.h"
+#include "tool/tool_shape.h"
 
 static const double touch_m = 1e-5; // a face nearer than this touches the tool
 // Two depths of a face in a tool. A face deeper than `dip` gets a contact constraint from the next

@@ -2,7 +2,6 @@
 // The structure of a session, shared by the files of core/session.
 #pragma once
 
-#include "base/image.h"
 #include "base/memory.h"
 #include "base/pool.h"
 #include "bioheat/tissue_cells.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Memory shared by sessions of equal tissue. Most of a session's memory never changes, and much of
-// the rest does not change before the first cut (base/image.h).
+// the rest does not change before the first cut (base/image.c).
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 

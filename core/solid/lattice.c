@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "cautery/assert.h"
-#include "solid/tets.h"
+#include "solid/mesher.h"
 
 static const double cells_most = 16e6;
 // Cells of a block along an axis. Measured for 2, 3, 4 and 8: blocks of 2 query most boxes, blocks

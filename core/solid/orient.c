@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/orient.h"
+#include "solid/mesher.h"
 
 #include <math.h>
 #include <stdlib.h>

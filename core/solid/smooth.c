@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "mesh/edge_table.h"
 #include "mesh/geometry.h"
-#include "mesh/index_sort.h"
-#include "solid/tets.h"
+#include "solid/mesher.h"
 
 enum { ROUNDS = 8, HALVINGS = 10 };
 static const double good = 0.8;    // quality above which a vertex is not moved

@@ -13,7 +13,7 @@
 
 #include "cautery/assert.h"
 #include "mesh/geometry.h"
-#include "solid/tets.h"
+#include "solid/mesher.h"
 
 enum { HALVINGS = 12 };
 // Distance, as a share of an edge's length, within which a vertex moves to the cut.

@@ -7,8 +7,7 @@
 
 #include "cautery/assert.h"
 #include "mesh/geometry.h"
-#include "solid/domain.h"
-#include "solid/orient.h"
+#include "solid/mesher.h"
 
 enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // UNEVEN = 8 keeps the depth of the tree below 125
 // Distance, in radii of a node, from which on the node counts as one dipole.

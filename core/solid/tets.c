@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/tets.h"
+#include "solid/mesher.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "cautery/assert.h"
 #include "mesh/geometry.h"
-#include "mesh/mesh_memory.h"
+#include "mesh/mesh.h"
 
 // ---- growing
 static bool grow(void **array, int32_t capacity, size_t item_bytes)

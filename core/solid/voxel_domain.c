@@ -5,7 +5,7 @@
 
 #include "cautery/assert.h"
 #include "mesh/geometry.h"
-#include "solid/domain.h"
+#include "solid/mesher.h"
 
 enum { REACH = 4 }; // voxels along each axis that vote
 // Largest number of voxels that is_uniform() reads for a box; it returns false for larger boxes. A

@@ -10,7 +10,7 @@
 #include "solve/coupling.h"
 #include "solve/follow.h"
 #include "solve/hold.h"
-#include "tool/face_distance.h"
+#include "tool/tool_shape.h"
 
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error)

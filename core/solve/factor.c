@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/large.h"
+#include "base/memory.h"
 #include "cautery/assert.h"
 
 struct cau_factor {

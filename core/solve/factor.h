@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/pages.h"
+#include "base/memory.h"
 #include "cautery/status.h"
 
 typedef struct cau_factor cau_factor;

@@ -5,7 +5,7 @@
 
 #include "cautery/assert.h"
 #include "solve/coupling.h"
-#include "tool/face_distance.h"
+#include "tool/tool_shape.h"
 
 // Depth of a point inside the tool, as a share of the tip's radius, from which the point is not
 // moved along its face and only pushed out.

@@ -9,7 +9,7 @@
 // the new factor exist from the start of its computation to just after the swap.
 #pragma once
 
-#include "base/background.h"
+#include "base/pool.h"
 #include "solve/solver.h"
 
 enum {

@@ -165,7 +165,7 @@ static void add_target(sheet_answer *answer, const cau_vec3 f[2], symmetric2 roo
 		add_target_hessian(answer, f, root, &polar);
 }
 
-// Adds K for strains that are limited to a range (strain_range.h). A column of F beyond the range
+// Adds K for strains that are limited to a range (strain_limit.h). A column of F beyond the range
 // adds stiffness along the column. Across the column it adds the stiffness of its tension or
 // pressure.
 static void add_stretch(sheet_answer *answer, int a, cau_vec3 f, double least, double most)

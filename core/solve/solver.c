@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "constraint/law.h"
+#include "constraint/elements.h"
 #include "solve/contact.h"
 
 static cau_status no_memory(cau_error *error)

@@ -25,7 +25,6 @@
 #include <stdint.h>
 
 #include "base/memory.h"
-#include "base/pages.h"
 #include "base/pool.h"
 #include "solve/factor.h"
 #include "solve/vectors.h"

@@ -88,7 +88,15 @@ void cau_tissue_finish(cau_tissue *tissue);
 int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selection,
                           uint8_t *chosen);
 
-// materials.c
+// Regions of a layer's elements (layers.c).
+// Lists the regions of `count` elements. The list is in the arena's memory.
+cau_status cau_region_list_make(cau_region_list *list, const int32_t *region, int32_t count,
+                                cau_arena *arena, cau_error *error);
+// Returns CAU_NOT_FOUND at `path`, with the existing regions, if the list lacks `region`.
+cau_status cau_region_list_check(const cau_region_list *list, const char *layer, int32_t region,
+                                 const char *path, cau_error *error);
+
+// Layers and materials (element_map.c).
 int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1: no such layer
 
 // Return the material of an element.
@@ -98,7 +106,7 @@ const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32
 int32_t cau_tissue_layer_of(const cau_tissue *tissue, int primitive, int32_t index);
 const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material);
 
-// element_map.c: elements in the form that the system needs: maps G of rank r with a weight w. The
+// Elements in the form that the system needs: maps G of rank r with a weight w. The
 // first kinds are the primitives (mesh/edge_table.h), with the same numbers.
 typedef enum cau_element_kind {
 	CAU_ELEMENT_TRIANGLE = CAU_PRIMITIVE_TRIANGLE,

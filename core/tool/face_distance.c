@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tool/face_distance.h"
+#include "tool/tool_shape.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/pages.h"
+#include "base/memory.h"
 #include "bench/bench.h"
 #include "session/session_internal.h"
 

@@ -8,7 +8,6 @@
 #include "fuzz/fuzz_target.h"
 #include "mesh/edge_table.h"
 #include "mesh/mesh.h"
-#include "mesh/report.h"
 
 static void demand(int promise)
 {

@@ -5,7 +5,6 @@
 
 #include "bioheat/bioheat.h"
 #include "bioheat/current.h"
-#include "bioheat/generator.h"
 
 // ---- a cross-section of jaws, and of a wire that lies on tissue
 // A slice across the jaws, one cell thick. Only half of it is simulated, because it is symmetric.

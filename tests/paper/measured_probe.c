@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bioheat/living_tissue.h"
+#include "bioheat/bioheat.h"
 #include "measured.h"
 #include "vessel/vessels.h"
 

@@ -237,7 +237,7 @@ typedef struct cau_link_material {
 	X(LINKS, "links")       /* trusses from each vertex of layer `of` to the nearest of `to` */
 
 // The living tissue of a layer, for heat and current with energy `tissue`.
-// core/bioheat/living_tissue.c has the values of each entry.
+// core/bioheat/bioheat.c has the values of each entry.
 #define CAU_LIVING_TABLE(X)                                                                        \
 	X(CONNECTIVE, "connective") /* fascia, membranes and strands: values of muscle */              \
 	X(FAT, "fat")                                                                                  \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/background.h"
+#include "base/pool.h"
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equal pages of several owners share memory. No owner sees another owner's writes, and nothing is
 // left afterwards.
-#include "base/image.h"
+#include "base/memory.h"
 
 #include <errno.h>
 #include <setjmp.h>

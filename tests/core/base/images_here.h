@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds whether this system supports images (core/base/image.h): files in memory that can be
+// Finds whether this system supports images (core/base/image.c): files in memory that can be
 // sealed. If it does, a session without shared pages is a failure, and the test must not be
 // skipped.
 #pragma once

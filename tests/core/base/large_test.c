@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small pieces come from malloc, large ones are whole pages. Reallocation keeps the content.
-#include "base/large.h"
+#include "base/memory.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of symmetric matrices against their definitions.
-#include "base/symmetric.h"
+#include "base/vector.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

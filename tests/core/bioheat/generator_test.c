@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests that a generator keeps its power within its limits of voltage and current.
-#include "bioheat/generator.h"
+#include "bioheat/current.h"
 
 #include <math.h>
 #include <setjmp.h>

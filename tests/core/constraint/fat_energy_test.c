@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The energies of fat against closed forms, and against a stress that the test computes.
-#include "constraint/law.h"
+#include "constraint/elements.h"
 #include "core/constraint/element.h"
 #include "reference/stress.h"
 #include "reference/uniaxial.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of the table of laws: properties on which the solver relies.
-#include "constraint/law.h"
+#include "constraint/elements.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

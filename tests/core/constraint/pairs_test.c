@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs: every element of a group is in one pair, with a neighbour if one is left.
-#include "constraint/pairs.h"
+#include "constraint/elements_internal.h"
 
 #include "core/dissect/cutting.h"
 

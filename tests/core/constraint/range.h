@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A second computation of the nearest member of a strain range, for tests of strain_range.h. This
-// one uses the angle between two columns of F; strain_range.h uses their dot products.
+// A second computation of the nearest member of a strain range, for tests of strain_limit.h. This
+// one uses the angle between two columns of F; strain_limit.h uses their dot products.
 #pragma once
 
 #include "core/rig/rig.h"
 
-// Largest error of a residual. RANGE_ROUNDING of strain_range.h, in double, moves limits by 1e-10.
+// Largest error of a residual. RANGE_ROUNDING of strain_limit.h, in double, moves limits by 1e-10.
 // The effect is up to ten times as large for the columns drawn here.
 static const double RANGE_TOLERANCE = 1e-8;
 

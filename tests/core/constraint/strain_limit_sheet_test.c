@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strain limits of triangles against the formulas of section 5.1 in plain double.
-#include "base/symmetric.h"
+#include "base/vector.h"
 #include "core/constraint/element.h"
 #include "core/constraint/range.h"
 

@@ -3,7 +3,7 @@
 // diag(S) R T^(1/2). Also tests the ramp, and that a target is set only once.
 #include <string.h>
 
-#include "base/symmetric.h"
+#include "base/vector.h"
 #include "core/dissect/cutting.h"
 
 static const double RAMP_S = 0.2, STEP_S = 1.0 / 60;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests the field around a hot part whose surface is between the nodes: against the solution around
 // a ball, and against finer grids for a moving ball.
-#include "heat/heat_surface.h"
+#include "heat/heat_field.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

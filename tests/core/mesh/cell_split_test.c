@@ -5,9 +5,8 @@
 
 #include <math.h>
 
-#include "mesh/cell_split.h"
 #include "mesh/geometry.h"
-#include "mesh/polygon.h"
+#include "mesh/mesh_builder.h"
 
 enum { SIDE = 4, POINTS = SIDE * SIDE * SIDE };
 

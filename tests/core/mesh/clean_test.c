@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "mesh/mesh_memory.h"
+#include "mesh/mesh.h"
 
 // Makes a mesh with copies of these arrays. Its triangles have the regions 10, 11, ..., its
 // tetrahedra 20, 21, ...

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_fixture.h"
 
-#include "mesh/index_sort.h"
+#include "mesh/edge_table.h"
 
 enum { ROWS = 2000, WIDTH = 3, BOUND = 11 }; // with a small BOUND many tuples are equal
 

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "constraint/law.h"
+#include "constraint/elements.h"
 #include "session/session_internal.h"
 
 static const double SIZE_M[3] = {0.06, 0.04, 0.02};

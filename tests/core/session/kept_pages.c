@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replaces base/pages.h, by the linker, in tests that restore thousands of snapshots. Pages that
+// Replaces base/pages.c, by the linker, in tests that restore thousands of snapshots. Pages that
 // are given back are kept for the next request. Unmapping them took half of the time of such a
 // test, because each time the kernel interrupts the other processors. Kept pages are filled with
 // ones (not a number, or -1), so a read after their return finds no valid state. The replacement is
@@ -7,7 +7,7 @@
 #include <pthread.h>
 #include <string.h>
 
-#include "base/pages.h"
+#include "base/memory.h"
 
 // KEPT_MOST: largest number of kept blocks. BYTES_MOST: size up to which a block is kept. SPENT:
 // the byte with which kept blocks are filled. An arena's block that is large because of an

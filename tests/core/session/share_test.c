@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions that share memory have the same bits as alone, and do not influence each other.
-#include "base/image.h"
-#include "base/pages.h"
+#include "base/memory.h"
 #include "core/base/images_here.h"
 #include "core/session/busy_scene.h"
 #include "session/session_internal.h"

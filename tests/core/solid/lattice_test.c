@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "mesh/mesh.h"
-#include "solid/tets.h"
+#include "solid/mesher.h"
 
 enum { SIDE = 24, BOXES = 4000 };
 

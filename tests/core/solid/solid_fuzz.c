@@ -6,7 +6,7 @@
 #include "cautery/solid.h"
 #include "fuzz/fuzz_target.h"
 #include "mesh/mesh.h"
-#include "solid/domain.h"
+#include "solid/mesher.h"
 
 enum { MOST_BYTES = 1 << 16, ONE_IN = 64, TETRAHEDRA = 500 }; // larger limits only take time
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The distance between a tool and a triangle, against sampling and known results.
-#include "tool/face_distance.h"
+#include "tool/tool_shape.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,9 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads arrays of numbers in VTK's XML files: text, base64 or appended bytes, uncompressed or
-// compressed by zlib. Format: "VTK File Formats", XML formats.
+// Parts that the readers of VTK's files use.
 #pragma once
 
-#include "mesh/scan.h"
+#include "mesh/mesh_builder.h"
+
+// ---- types of cells, for legacy files and XML files
+enum { CAU_VTK_STRIP = 6, CAU_VTK_POLYGON = 7 };
+
+// Adds a cell of one of VTK's types, or counts it as skipped. The region of the new elements is
+// `cell`, the cell's index, until the regions of the file are known. Fails if the cell has points
+// that do not exist.
+void cau_vtk_add_cell(cau_mesh_builder *builder, int64_t type, const int64_t *corner,
+                      int64_t corners, int32_t cell);
+
+// Whether this name is used for the region of cells.
+bool cau_vtk_is_region_name(cau_word name);
+
+// ---- arrays of numbers in XML files
+// They are text, base64 or appended bytes, uncompressed or compressed by zlib. Format: "VTK File
+// Formats", XML formats.
 
 // Properties that all arrays of a file share.
 typedef struct cau_vtu_coding {
