@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Heat and dissection of one tick, tool by tool (sections 6.1 to 6.3).
+// Dissection of one tick: by the heat of tools with energy `paper`, and by stretch.
 #include "cautery/assert.h"
 #include "session/session_internal.h"
+
+// ---- heat
+
+// Heat and dissection of one tick, tool by tool (sections 6.1 to 6.3).
 
 // Divides the tool's motion in the tick into equal parts. In each part the heat grid follows the
 // tool, and the edges that the tool meets are exposed to heat (eq. 18-20).
@@ -65,4 +69,25 @@ void cau_session_end_burn(cau_session *session)
 	cau_session_mark_changed(session); // energy.c
 	cau_shrink_advance(&session->shrink, &session->tissue, session->solver.step_s,
 	                   &session->solver.elements, &session->solver.slots);
+}
+
+// ---- tears
+
+// Tears the elements that a tick's stretch breaks (dissect/tears.c). As with parted elements, a
+// torn element leaves the local step at once and the factor in its turn. Nothing shrinks beside a
+// tear.
+
+// Whether the step has converged. Stretches of an unfinished iterate may be far too large.
+static bool has_converged(const cau_session *session)
+{
+	const cau_accuracy *accuracy = &session->solver.accuracy;
+	return accuracy->error <= accuracy->wanted;
+}
+
+void cau_session_tear(cau_session *session)
+{
+	int32_t first = session->dissection.removed_count;
+	cau_dissection_tear(&session->dissection, session->vertices.position, has_converged(session),
+	                    session->pool);
+	cau_session_take_out(session, first);
 }

@@ -253,7 +253,7 @@ static const double most_gain = 1e-4;
 static void take_gain_off(cau_session *session)
 {
 	double gain_j = session->energy.gain_j;
-	cau_session_take_mean(session, 1); // substep.c
+	cau_session_take_mean(session, 1); // motion.c
 	measure_gain(session);
 	double with_mean_j = session->energy.gain_j;
 	double share = with_mean_j < gain_j ? fmin(gain_j / (gain_j - with_mean_j), 1) : 0;

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// States of tissue that go wrong: impossible states, vertices far away, and inverted tetrahedra.
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+// ---- impossible states
+
 // States that no tissue can have. A step that ends in such a state faults its session, with the
 // tick and the layer. Showing the state as tissue would be worse than no step. The bounds are far
 // beyond what tissue resists and what any tool or parted strip does here. So only a diverged solver
@@ -15,11 +24,6 @@
 //
 // Edges are checked only when one may be too long. Each check finds the least length by which an
 // edge may still grow. Each tick subtracts twice the farthest motion of a vertex from that length.
-#include <math.h>
-#include <string.h>
-
-#include "cautery/assert.h"
-#include "session/session_internal.h"
 
 static const double fastest_m_s = 1540; // speed of sound in soft tissue
 static const double most_stretch = 50, most_sizes = 2;
@@ -244,4 +248,135 @@ cau_status cau_session_check_inverted(const cau_session *session, cau_error *err
 	snprintf(what, sizeof what, "%d of %d tetrahedra are inverted", session->inversion.count,
 	         tissue->tetrahedron_count);
 	return refuse(session, error, layer_of_most_fat(tissue), what);
+}
+
+// ---- strays
+
+// Tissue that was cut free falls for ever. Far away, single precision cannot distinguish an
+// element's corners. The noise of such energies would dominate the objective of all the other
+// tissue. So a vertex that is many tissue sizes away is stopped there, like a vertex without
+// elements.
+
+// Greatest distance of a vertex, in tissue sizes. There, the rounding of single precision is 1e-5
+// of a size, far below an edge.
+static const double farthest_sizes = 200;
+
+double cau_session_size(const cau_session *session)
+{
+	const double *rest = session->tissue.rest;
+	double squared = 0;
+	for (size_t c = 0; c < 3; c++) {
+		double least = INFINITY, most = -INFINITY;
+		for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
+			least = fmin(least, rest[3 * v + c]);
+			most = fmax(most, rest[3 * v + c]);
+		}
+		squared += (most - least) * (most - least);
+	}
+	return sqrt(squared);
+}
+
+double cau_session_farthest_from_rest(const cau_session *session)
+{
+	CAU_ASSERT(session->watch.size_m > 0, "tissue of %g m", session->watch.size_m);
+	return farthest_sizes * session->watch.size_m;
+}
+
+static void stop(cau_session *session, size_t vertex, cau_vec3 way)
+{
+	CAU_ASSERT(!session->vertices.fixed[vertex], "vertex %zu is stopped twice", vertex);
+	double *position = session->vertices.position + 3 * vertex;
+	cau_vec3 rest = cau_vec3_of(session->tissue.rest + 3 * vertex);
+	double reach_m = cau_session_farthest_from_rest(session);
+	cau_vec3_to(cau_add_scaled(rest, reach_m / cau_length(way), way), position);
+	memset(session->vertices.velocity + 3 * vertex, 0, 3 * sizeof(double));
+	session->vertices.fixed[vertex] = 1;
+	session->vertices.frozen_count++;
+}
+
+void cau_session_stop_strays(cau_session *session)
+{
+	CAU_ASSERT(session->vertices.frozen_count <= session->tissue.vertex_count,
+	           "%d vertices frozen of %d", session->vertices.frozen_count,
+	           session->tissue.vertex_count);
+	bool stopped = false;
+	double reach_m = cau_session_farthest_from_rest(session);
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
+		cau_vec3 way = cau_sub(cau_vec3_of(session->vertices.position + 3 * v),
+		                       cau_vec3_of(session->tissue.rest + 3 * v));
+		if (session->vertices.fixed[v] || cau_dot(way, way) <= reach_m * reach_m)
+			continue;
+		stop(session, v, way);
+		stopped = true;
+	}
+	if (!stopped)
+		return;
+	session->watch.left_m = 0; // vertices were moved, so the edges are checked again
+	session->energy.stale = true;
+	cau_session_drop_frozen_grasps(session);
+}
+
+// ---- inverted tetrahedra
+
+// Inverted tetrahedra. A step may leave some, and the next steps usually restore them. The energy
+// of StVK has a minimum at an inverted shape, so this law can keep them inverted with every number
+// finite. Tetrahedra that stay inverted are counted by layer, and the session reports the counts.
+
+// Time, s, from which on an inversion is counted as long. Inversions of a fast motion last only
+// some ticks. An inversion of half a second has another cause.
+static const double long_s = 0.5;
+
+cau_status cau_session_make_inversion(cau_session *session, cau_error *error)
+{
+	cau_inversion *inversion = &session->inversion;
+	inversion->ticks =
+		cau_arena_array(&session->memory.arena, (size_t)session->tissue.tetrahedron_count + 1,
+	                    sizeof *inversion->ticks);
+	CAU_ASSERT(session->solver.step_s >= long_s / UINT16_MAX, "steps of %g s",
+	           session->solver.step_s);
+	inversion->long_ticks = (uint16_t)ceil(long_s / session->solver.step_s);
+	return inversion->ticks ? CAU_OK
+	                        : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+}
+
+bool cau_session_is_inverted(const double *position, const int32_t vertex[4])
+{
+	cau_vec3 from = cau_vec3_of(position + 3 * (size_t)vertex[0]), side[3];
+	for (int k = 0; k < 3; k++)
+		side[k] = cau_sub(cau_vec3_of(position + 3 * (size_t)vertex[k + 1]), from);
+	// at rest the volume is positive (mesh/mesh.h)
+	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0);
+}
+
+void cau_session_forget_inversion(cau_session *session)
+{
+	cau_inversion *inversion = &session->inversion;
+	memset(inversion->ticks, 0,
+	       (size_t)session->tissue.tetrahedron_count * sizeof *inversion->ticks);
+	memset(inversion->long_count, 0, sizeof inversion->long_count);
+	inversion->followed = false;
+}
+
+void cau_session_follow_inversion(cau_session *session)
+{
+	cau_inversion *inversion = &session->inversion;
+	const cau_tissue *tissue = &session->tissue;
+	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
+	CAU_ASSERT(inversion->long_ticks > 0, "nothing stays for %d ticks", inversion->long_ticks);
+	if (!inversion->count) {
+		if (inversion->followed)
+			cau_session_forget_inversion(session);
+		return;
+	}
+	memset(inversion->long_count, 0, sizeof inversion->long_count);
+	inversion->followed = true;
+	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
+		uint16_t *ticks = &inversion->ticks[i];
+		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
+		if (!alive[i] || !cau_session_is_inverted(session->vertices.position, vertex))
+			*ticks = 0;
+		else if (*ticks < inversion->long_ticks)
+			++*ticks;
+		inversion->long_count[tissue->tetrahedron_layer[i]] += *ticks == inversion->long_ticks;
+	}
 }

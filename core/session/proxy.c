@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tool has a commanded pose and an actual pose. A driver leads the commanded pose within the
 // tool's speed limits (tool_motion.c). The actual pose is coupled to the commanded pose by a spring
-// (solve/coupling.h). A tick begins with a guess of the actual pose, with which contacts are found.
+// (solve/answer.c). A tick begins with a guess of the actual pose, with which contacts are found.
 // The solve then returns the actual pose.
 //
 // If a step cannot hold tissue that a tool would pass, the tool would move too far for one tick.
@@ -13,7 +13,6 @@
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
-#include "solve/coupling.h"
 
 // Distance, m, to the commanded pose beyond which a tool jumps to that pose: ten times the spring's
 // greatest extension.

@@ -65,7 +65,7 @@ typedef struct cau_energy {
 	double *sum_j;    // (chunk_count x 4): scratch for sums
 } cau_energy;
 
-// inversion.c: inverted tetrahedra. Snapshots do not hold the ticks, so a count begins at 0 after a
+// possible.c: inverted tetrahedra. Snapshots do not hold the ticks, so a count begins at 0 after a
 // restore.
 typedef struct cau_inversion {
 	int32_t count;                      // inverted after the last tick
@@ -92,7 +92,7 @@ typedef struct cau_spin {
 	int32_t *first;  // (piece_count + 1): index of a piece's first vertex in `member`
 } cau_spin;
 
-// substep.c: the present substep of a tick. If a tick has one substep, the arrays are NULL.
+// motion.c: the present substep of a tick. If a tick has one substep, the arrays are NULL.
 typedef struct cau_substep {
 	int32_t index, count;
 	double part;     // length as a share of the tick
@@ -113,7 +113,7 @@ typedef struct cau_contact_watch cau_contact_watch; // contact records of tools:
 
 // Results of the last check of edge lengths (possible.c), and its scratch memory.
 typedef struct cau_watch {
-	double size_m;        // diagonal of the tissue's box at rest: stray.c
+	double size_m;        // diagonal of the tissue's box at rest: possible.c
 	double left_m;        // least length by which an edge may still grow before it is too long
 	double *farthest2_m2; // by chunk of vertices: squared farthest motion in the tick
 	int32_t *astray;      // by chunk of vertices: a vertex that moved too far, or -1
@@ -126,7 +126,7 @@ typedef struct cau_watch {
 typedef struct cau_session_memory {
 	cau_arena arena;
 	cau_arena rebuilt; // system that was built when the pins last changed: pins.c
-	cau_image *image;  // share.c: memory shared with other sessions, or NULL
+	cau_image *image;  // create.c: memory shared with other sessions, or NULL
 } cau_session_memory;
 
 // State of the tissue's n vertices.
@@ -155,7 +155,7 @@ typedef struct cau_touch {
 	double farthest_m, unheld_farthest_m;
 } cau_touch;
 
-// drive.c: pinned vertices that the next step moves.
+// pins.c: pinned vertices that the next step moves.
 typedef struct cau_driven {
 	int32_t count;
 	int32_t *vertex;  // (n)
@@ -242,15 +242,10 @@ bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_comm
 // target is the actual pose already.
 void cau_session_stay(cau_tool *tool);
 bool cau_session_stays(const cau_tool *tool);
-// sound.c: checks the invariants of tools, energy and waiting commands as a step begins, in every
-// build.
-cau_status cau_session_check_sound(const cau_session *session, cau_error *error);
-// layer_material.c: puts the material of a SET_MATERIAL into the layer. Returns false if the
+// level.c: puts the material of a SET_MATERIAL into the layer. Returns false if the
 // material is for another kind of layer.
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
-// Whether the command would change nothing in the layer.
-bool cau_layer_has_material(const cau_layer_def *def, const cau_command *command);
-// substep.c. A tick's motion is: begin_substeps; for each substep the prediction, contact and the
+// motion.c. A tick's motion is: begin_substeps; for each substep the prediction, contact and the
 // solve, with next_substep before the second; end_substeps. end_substeps is also called after a
 // failed solve, and has no effect if the tick has one substep. Afterwards vertices.start is again
 // the tick's start.
@@ -261,8 +256,6 @@ void cau_session_end_substeps(cau_session *session);
 // Changes the velocities after end_substeps. They become a mixture: `share` of the tick's mean
 // velocity, as with implicit Euler, and the rest of their present value.
 void cau_session_take_mean(cau_session *session, double share);
-// Predicts the second substep.
-void cau_session_predict_on(cau_session *session);
 // Returns the distance, m, that a vertex would move in a tick along axis c at its velocity at the
 // tick's end.
 double cau_session_way(const cau_session *session, int32_t vertex, int c);
@@ -366,10 +359,6 @@ void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index)
 // begin_collide finds the touching pairs as the tick begins, and filters the first guess by them.
 cau_status cau_session_make_collide(cau_session *session, cau_error *error);
 void cau_session_begin_collide(cau_session *session);
-// exempt.c: excludes vertices from tissue contact for this tick, among them those whose `guess` (m,
-// n x 3) is more than `most_m` away. *told gets whether a diverged or inverted vertex is among
-// them. Returns false if tissue contact is off for the tick.
-bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
 // electrosurgery.c: energy `tissue`. make_cells creates the cells if the scene has this energy.
 // blade_of returns the blade of a tool that is added. operate computes power, heat and parting of a
 // tick. has_cooled returns whether all tissue and tools have cooled down.
@@ -391,15 +380,15 @@ void cau_session_end_burn(cau_session *session);
 // Removes the tick's removed elements, from number `first` on, from the local step. Queues them for
 // removal from the factor.
 void cau_session_take_out(cau_session *session, int32_t first);
-// tear.c: tears elements that are stretched more than their layer permits.
+// burn.c: tears elements that are stretched more than their layer permits.
 void cau_session_tear(cau_session *session);
 // relax.c: brings built-in tension to its equilibrium.
 cau_status cau_session_relax(cau_session *session, cau_error *error);
 // pins.c: sets the pinned vertices, and builds the systems that depend on them.
 cau_status cau_session_set_pins(cau_session *session, const cau_selection *selection, int pin,
                                 cau_error *error);
-// Analyses and factors the system for session->pinned. The order of its rows depends on the pins
-// only.
+// Analyses and factors the system for session->vertices.pinned. The order of its rows depends on
+// the pins only.
 cau_status cau_session_rebuild_system(cau_session *session, cau_error *error);
 // view.c. show_scalars computes the watched scalars of the vertices that changed in a tick.
 // renew_scalars computes those of all vertices, after a restore.
@@ -416,15 +405,15 @@ void cau_session_read_contact(cau_session *session);
 const cau_tool_contact *cau_session_show_contact(const cau_session *session);
 // view.c: finds layer and texture coordinates of the faces.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
-// drive.c: moves pinned vertices to the positions given by cau_session_drive, in this tick.
+// pins.c: moves pinned vertices to the positions given by cau_session_drive, in this tick.
 void cau_session_lead_driven(cau_session *session);
-// stray.c. stop_strays stops vertices that have moved too far. size returns the diagonal of all
+// possible.c. stop_strays stops vertices that have moved too far. size returns the diagonal of all
 // tissue's box at rest, m.
 void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
 // Returns the greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
-// inversion.c. make_inversion allocates its array. follow_inversion counts, after a tick's solve,
+// possible.c. make_inversion allocates its array. follow_inversion counts, after a tick's solve,
 // the tetrahedra that stay inverted. is_inverted returns whether a tetrahedron's volume is 0 or
 // less; `position` in m, (n x 3).
 cau_status cau_session_make_inversion(cau_session *session, cau_error *error);
@@ -468,7 +457,7 @@ void cau_session_predict(cau_session *session);
 void cau_session_update_velocities(cau_session *session);
 // step.c: computes plastic flow and counts inverted tetrahedra after a solve.
 void cau_session_settle(cau_session *session);
-// share.c: lists the pages of the session's large arrays, in the same order for equal scenes.
+// create.c: lists the pages of the session's large arrays, in the same order for equal scenes.
 // Returns their count.
 int32_t cau_session_pages(const cau_session *session, cau_pages pages[CAU_IMAGE_PARTS]);
 // Measure the time of the stages of a step.

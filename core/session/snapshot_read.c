@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "session/snapshot_records.h"
 #include "session/snapshot_state.h"
 
 static cau_status corrupt(cau_error *error, const char *why)
@@ -163,7 +162,7 @@ static cau_status check_head(const cau_session *session, const snapshot_head *he
 // ---- consistency of the parts
 
 // Whether a vertex is within the distance from its rest position at which strays are stopped
-// (stray.c). Its velocity must not lead farther than twice that distance in a tick.
+// (possible.c). Its velocity must not lead farther than twice that distance in a tick.
 static bool is_near(const cau_session *session, const snapshot_state *state, int32_t vertex)
 {
 	const double rounding = 1 + 1e-9;

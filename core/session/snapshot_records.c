@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/snapshot_records.h"
+#include "session/snapshot_state.h"
 
 #include <string.h>
 

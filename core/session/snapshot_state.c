@@ -6,7 +6,6 @@
 
 #include "base/hash.h"
 #include "cautery/assert.h"
-#include "session/snapshot_records.h"
 
 static const char magic[8] = "CAUSNAP";
 

@@ -136,3 +136,15 @@ uint64_t cau_snapshot_hash(const void *bytes, size_t count);
 // Whether a session restored from the snapshot continues with the same bits as the session that
 // wrote it.
 bool cau_snapshot_is_exact(const cau_session *session, const snapshot_head *head);
+
+// ---- snapshot_records.c: records that are not plain arrays, member by member
+
+// Passes a tool without its heat grid. `session` has the tissue that the tool holds.
+void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *session, cau_tool *tool);
+// Passes origin and temperatures of a created grid.
+void cau_snapshot_pass_grid(snapshot_archive *archive, cau_heat_grid *grid);
+// Passes a waiting command. Only the values of its kind are passed; reading sets all other values
+// to zero.
+void cau_snapshot_pass_command(snapshot_archive *archive, cau_command *command);
+// Passes the materials of a layer, of the layer's kind.
+void cau_snapshot_pass_layer(snapshot_archive *archive, cau_layer_def *layer);

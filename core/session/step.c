@@ -1,11 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One tick. cau_session_step lists all stages; each line names the stage and the file of its
 // equations.
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
+
+// ---- invariants
+
+// Checks the invariants of tools, energy and waiting commands as a step begins, in every build. A
+// violation is an error in this program, and a further step could heat tissue by mistake. So the
+// step faults its session, only that session, and reports the finding.
+
+static cau_status unsound(cau_error *error, const char *tool, const char *what)
+{
+	return cau_fail(error, CAU_FAULTED, NULL,
+	                "a safety rule was broken before the step: tool \"%.64s\" %s", tool, what);
+}
+
+static bool is_pose(const cau_pose *pose)
+{
+	double length2 = 0;
+	for (int c = 0; c < 4; c++)
+		length2 += pose->rotation[c] * pose->rotation[c];
+	return isfinite(pose->position_m[0]) && isfinite(pose->position_m[1]) &&
+	       isfinite(pose->position_m[2]) && length2 > 0.5 && length2 < 2;
+}
+
+static cau_status check_tool(const cau_tool *tool, cau_error *error)
+{
+	const cau_tool_state *state = &tool->state;
+	const char *name = state->name;
+	if (!memchr(name, 0, sizeof state->name) || !*name)
+		return unsound(error, "", "has no name");
+	if (state->definition.shape < 0 || state->definition.shape >= CAU_TOOL_SHAPE_COUNT)
+		return unsound(error, name, "has a shape that does not exist");
+	if (!is_pose(&state->pose) || !is_pose(&tool->target) || !is_pose(&tool->anchor))
+		return unsound(error, name, "has a pose that is not finite");
+	if (!(state->jaw >= 0) || !isfinite(state->jaw) || !isfinite(tool->jaw_target))
+		return unsound(error, name, "has an opening of its jaws that is not finite");
+	if (tool->grasp_count < 0 || tool->grasp_count > CAU_MAX_GRASPED)
+		return unsound(error, name, "holds more points than jaws can");
+	if (tool->grasp_count > 0 && !state->grasping)
+		return unsound(error, name, "holds tissue with open jaws");
+	if (!tool->grid.field[0].temperature)
+		return unsound(error, name, "has no heat grid");
+	return CAU_OK;
+}
+
+static cau_status check_names(const cau_session *session, cau_error *error)
+{
+	for (int32_t i = 0; i < session->tool_count; i++)
+		for (int32_t k = 0; k < i; k++)
+			if (strcmp(session->tool[i].state.name, session->tool[k].state.name) == 0)
+				return unsound(error, session->tool[i].state.name, "exists twice");
+	return CAU_OK;
+}
+
+static cau_status check_sound(const cau_session *session, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	if (session->tool_count < 0 || session->tool_count > CAU_MAX_TOOLS)
+		return unsound(error, "", "is beyond the largest number of tools");
+	if (session->queue.count < 0 || session->queue.count > session->queue.capacity)
+		return unsound(error, "", "has more waiting commands than the queue can hold");
+	for (int32_t i = 0; i < session->tool_count && !status; i++)
+		status = check_tool(&session->tool[i], error);
+	return status ? status : check_names(session, error);
+}
+
+// ---- the step
 
 void cau_session_stage_begin(cau_session *session)
 {
@@ -207,7 +273,7 @@ static void end_solve_stages(cau_session *session)
 		session->solver.result.local_s + session->solver.result.contact_s;
 }
 
-// Computes the tick's motion, in one or two substeps (substep.c).
+// Computes the tick's motion, in one or two substeps (motion.c).
 static cau_status move(cau_session *session, cau_status status, cau_error *error)
 {
 	for (int32_t k = 0; k < session->substep.count; k++) {
@@ -218,7 +284,7 @@ static cau_status move(cau_session *session, cau_status status, cau_error *error
 			cau_solver_take_strain(&session->solver, 1);
 		}
 		cau_session_predict(session);       // eq. 4: motion.c
-		cau_session_lead_driven(session);   // drive.c
+		cau_session_lead_driven(session);   // pins.c
 		cau_session_begin_collide(session); // meet.c
 		cau_session_find_contacts(session); // touch.c
 		cau_session_stage_end(session, CAU_STAGE_PREDICT);
@@ -241,7 +307,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 {
 	if (session->faulted)
 		return cau_fail(error, CAU_FAULTED, NULL, "the session is faulted: restore a snapshot");
-	cau_status sound = cau_session_check_sound(session, error); // sound.c
+	cau_status sound = check_sound(session, error);
 	if (sound) {
 		session->faulted = true; // the faulted session is not changed any more
 		return sound;
@@ -262,14 +328,14 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_end_energy(session);                     // energy.c
 	cau_session_update_velocities(session);              // eq. 2: motion.c
 	cau_session_settle(session);                         // plasticity, section 5.2
-	cau_session_follow_inversion(session);               // inversion.c
+	cau_session_follow_inversion(session);               // possible.c
 	status = cau_session_check_inverted(session, error); // possible.c
 	if (status)
 		return fault(session, status);
 	cau_session_read_forces(session); // touch.c
 	end_solve_stages(session);
 	cau_session_read_contact(session); // tool_contact.c
-	cau_session_tear(session);         // tear.c
+	cau_session_tear(session);         // burn.c
 	if (session->heat.cells)
 		cau_session_operate(session); // electrosurgery.c
 	else
@@ -277,7 +343,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_end_burn(session);
 	cau_session_stage_end(session, CAU_STAGE_HEAT);
 	freeze_isolated(session);
-	cau_session_stop_strays(session); // stray.c
+	cau_session_stop_strays(session); // possible.c
 	cau_session_stage_end(session, CAU_STAGE_DISSECT);
 	cau_frame_update(&session->view.frame, &session->dissection, session->vertices.start,
 	                 session->vertices.position); // frame/frame_state.c

@@ -16,7 +16,6 @@
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
-#include "solve/coupling.h"
 #include "solve/tangent.h"
 
 enum { MOST_LOADS = 3 * CAU_MAX_CONTACTS };

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes S W^T of a contact constraint: how a load on the constraint moves the vertices of the
-// kept columns, and the constraint's own point.
+// How a load on a contact constraint moves tissue, and how its reaction moves the tool.
+#include <math.h>
+
 #include "cautery/assert.h"
 #include "solve/contact.h"
+
+// ---- tissue
+
+// Computes S W^T of a contact constraint: how a load on the constraint moves the vertices of the
+// kept columns, and the constraint's own point.
 
 // True if the list of used columns has all columns. Reading all columns is faster, because a loop
 // over all columns handles two at a time (find_used).
@@ -129,4 +135,57 @@ void cau_contact_motion(const cau_contact_set *set, const cau_step_solver *solve
 	*apart = cau_sub(step_of(set, row), given);
 	*slip =
 		cau_sub(cau_contact_place(set, solver, row), cau_contact_weighted(row, row->no_slip[0]));
+}
+
+// ---- the tool
+
+// The virtual coupling between the commanded and the actual pose of a tool (J. E. Colgate 1995; the
+// actual pose is the god-object of C. B. Zilles and J. K. Salisbury 1995).
+//
+// A spring connects the tool with its commanded position. The tool's offset from this position is
+// the sum of the forces of tissue on the tool over the spring's stiffness, and 0 without contact.
+// The spring's force grows with its extension up to force_max_n, and is constant from there. So the
+// tool pushes with at most force_max_n. If tissue resists more, the tool stops and the commanded
+// position moves on.
+//
+// The energy of the spring is quadratic in the extension up to force_max_n, then linear. Each
+// iteration uses a parabola that touches this energy at the tool's present offset and is nowhere
+// below it. So the iteration lowers the energy (P. Huber 1981). Within an iteration the tool is a
+// further unknown of the contact system, in balance with all its constraints. So the method is
+// implicit, whatever the stiffness. The tool's rotation is always the commanded rotation.
+
+cau_pose cau_coupling_pose(const cau_pose *anchor, cau_vec3 offset)
+{
+	cau_pose pose = *anchor;
+	if (cau_dot(offset, offset) != 0) // adding 0 would change a -0 to 0
+		cau_vec3_to(cau_add(cau_vec3_of(anchor->position_m), offset), pose.position_m);
+	return pose;
+}
+
+// Returns |offset| over the spring's force. Beyond cau_coupling_reach_m the force is force_max_n.
+static double compliance_of(const cau_contact_tool *tool)
+{
+	double most = tool->def->force_max_n;
+	CAU_ASSERT(most > 0, "a tool that pushes with %g N at most", most);
+	return fmax(cau_coupling_reach_m, cau_length(cau_vec3_of(tool->offset))) / most;
+}
+
+bool cau_coupling_begin(cau_contact_set *set)
+{
+	bool changed = false;
+	for (int32_t i = 0; i < set->tool_count; i++) {
+		cau_contact_tool *tool = &set->tool[i];
+		double before = tool->compliance;
+		tool->compliance = compliance_of(tool);
+		changed = changed || tool->compliance != before;
+		cau_vec3_to((cau_vec3){0, 0, 0}, tool->offset);
+	}
+	for (int32_t i = 0; i < set->row_count; i++)
+		cau_coupling_take(&set->tool[set->row[i].tool], cau_vec3_of(set->row[i].reaction));
+	return changed;
+}
+
+void cau_coupling_take(cau_contact_tool *tool, cau_vec3 by)
+{
+	cau_vec3_to(cau_add_scaled(cau_vec3_of(tool->offset), -tool->compliance, by), tool->offset);
 }

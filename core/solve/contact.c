@@ -6,10 +6,6 @@
 
 #include "base/hash.h"
 #include "cautery/assert.h"
-#include "solve/active.h"
-#include "solve/coupling.h"
-#include "solve/follow.h"
-#include "solve/hold.h"
 #include "tool/tool_shape.h"
 
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,

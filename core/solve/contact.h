@@ -11,7 +11,7 @@
 //     against slip attachment   r = -k (x + d + S dr - anchor), its length at most the slip force
 //
 // The tool itself is an unknown of the same correction. A spring connects it with the commanded
-// pose (coupling.h). So S gains the compliance of this spring between all constraints of one tool.
+// pose (answer.c). So S gains the compliance of this spring between all constraints of one tool.
 //
 // A constraint stores its side of the tool. A face that the tool has passed within the tick is
 // pushed back to its own side.
@@ -57,7 +57,7 @@ typedef struct cau_contact_tool {
 	cau_pose anchor; // commanded pose at the tick's end
 	double jaw;
 	int part;           // the cau_tool_part that pushes
-	double offset[3];   // m, from the commanded to the actual position: coupling.h
+	double offset[3];   // m, from the commanded to the actual position: answer.c
 	double measured[3]; // m, value of offset[] when the gaps were measured
 	double compliance;  // m/N, of the virtual coupling
 	bool passing;       // the tool would pass tissue that no contact constraint holds
@@ -69,7 +69,7 @@ typedef struct cau_contact_row {
 	int32_t face, above;  // face of the point, and its side at the tool, as in cau_contact_memory
 	int32_t vertex[3];    // vertices of the point's corners
 	double weight[3];     // shares of the corners in the point, sum 1
-	double went;          // sum of the changes of weight[] in this iteration (follow.h)
+	double went;          // sum of the changes of weight[] in this iteration (follow.c)
 	bool free[3];         // whether each corner can move
 	int32_t column[3];    // index of each free corner's kept column; -1 for a fixed corner
 	int32_t answer;       // index of S W^T in cau_contact_set.answer; -1: the row of S of column[0]
@@ -133,14 +133,14 @@ typedef struct cau_contact_sides {
 	cau_contact_memory touched[CAU_MAX_MEMORY];
 } cau_contact_sides;
 
-// Attachments, all solved together (hold.h).
+// Attachments, all solved together (hold.c).
 typedef struct cau_contact_holds {
 	int32_t count;
 	int32_t row[CAU_MAX_HELD];
 	double *factor; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over the attachments
 } cau_contact_holds;
 
-// Active constraints, solved together (active.h).
+// Active constraints, solved together (active.c).
 typedef struct cau_contact_active {
 	int32_t row[CAU_MAX_ACTIVE];
 	bool sticks[CAU_MAX_ACTIVE];
@@ -290,3 +290,43 @@ bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, do
 // Returns a bound for the work (J) of the reactions along the trial step. The objective may rise by
 // this amount.
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver);
+
+// ---- answer.c: the virtual coupling of a tool
+
+// Distance (m) between the commanded and the actual position of a tool that pushes with
+// force_max_n. A hand moves that far before the driver feels the full force. At 20 N the spring has
+// 5,000 N/m, many times the stiffness of fat under a ball of 3 mm. So a light touch moves the tool
+// hardly away from its commanded position.
+static const double cau_coupling_reach_m = 0.004;
+
+// Returns the anchor's pose moved by `offset` (m). If `offset` is 0, the result is bit for bit the
+// anchor.
+cau_pose cau_coupling_pose(const cau_pose *anchor, cau_vec3 offset);
+
+// Sets each spring's compliance from its extension, and the offsets from the present reactions.
+// Returns true if a compliance has changed.
+bool cau_coupling_begin(cau_contact_set *set);
+
+// Moves the tool for a reaction on the tissue that changed by `by` (N), in the opposite direction.
+void cau_coupling_take(cau_contact_tool *tool, cau_vec3 by);
+
+// ---- hold.c
+
+// Factors S + 1/k over the attachments. Called once a step, after the columns are ready.
+void cau_hold_prepare(cau_contact_set *set);
+
+// Sets the attachments' reactions to the solution for set->step, and updates set->step. Does
+// nothing if an attachment would slip: Gauss-Seidel then finds which attachments slip.
+void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver);
+
+// ---- active.c
+
+// Moves the reactions of the active constraints towards their common solution, and updates
+// set->step and the tools' offsets. Attachments keep their reactions.
+void cau_active_solve(cau_contact_set *set, const cau_step_solver *solver);
+
+// ---- follow.c
+
+// Moves the point of constraint `row`, at solver->position. The tool must not have passed its face;
+// otherwise the point stays.
+void cau_contact_follow(cau_contact_set *set, const cau_step_solver *solver, int32_t row);

@@ -6,7 +6,6 @@
 
 #include "cautery/assert.h"
 #include "solve/contact.h"
-#include "solve/hold.h"
 
 // Solves for up to three columns at once, with one unit load each in x, y and z. Enters the columns
 // in S.

@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/follow.h"
-
+// Moves the contact point of a face to the point that is nearest to the tool, in every iteration.
+// The nearest point changes as the face tilts.
+//
+// A move to the nearest point in one go would oscillate. A face that is pushed at its nearest point
+// tilts away there. Then another point is nearest, and a push there tilts the face back. But the
+// tilt can be predicted. If the point of a push r moves by dw, in weights, the face tilts by r S
+// dw, where S belongs to the face's corners. The nearest point of a tip of radius R then moves by r
+// R L S dw, in weights, with L_kl = grad w_k . grad w_l. So of the way dw_n to the nearest point,
+// the contact point moves by
+//
+//     (I + r R L S)^-1 dw_n.
+//
+// The moved point is then the nearest one, if the face responds linearly.
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "solve/coupling.h"
+#include "solve/contact.h"
 #include "tool/tool_shape.h"
 
 // Depth of a point inside the tool, as a share of the tip's radius, from which the point is not
@@ -21,7 +32,7 @@ static void corners_of(const cau_contact_set *set, const cau_step_solver *solver
 			cau_pose_to_local(&pose, cau_vec3_of(solver->position + 3 * (size_t)row->vertex[k]));
 }
 
-// Computes tilt = r R L S for the constraint's corners (follow.h). Fixed corners contribute 0.
+// Computes tilt = r R L S for the constraint's corners. Fixed corners contribute 0.
 static void find_tilt(const cau_contact_set *set, const cau_contact_row *row,
                       const cau_vec3 corner[3], double tilt[3][3])
 {

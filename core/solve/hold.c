@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/hold.h"
-
+// Solves all attachments together. One by one they converge far too slowly. The reason is that the
+// vertices of a light strip of tissue move together. So all entries of S are nearly equal, and are
+// many times an attachment's own compliance 1/k.
 #include "cautery/assert.h"
-#include "solve/coupling.h"
+#include "solve/contact.h"
 
 static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact_row *row)
 {

@@ -114,7 +114,7 @@ struct cau_step_solver {
 
 	cau_solver_settings settings;
 	bool none_loose;  // in this tick no tissue counts as loose: some is inverted, diverges or
-	                  // crosses (exempt.c)
+	                  // crosses (session/meet.c)
 	double step_s;    // s: one tick
 	double inertia_s; // s: h of M / h^2 in eq. 4 and in A: step_s with implicit Euler
 	cau_accuracy accuracy;

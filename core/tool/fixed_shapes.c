@@ -133,8 +133,8 @@ const cau_tool_family cau_shape_spatula = {
 // ---- hook
 // Monopolar L hook. The hot wire is a foot along x through the tip, and a heel that bends up. A
 // cold, insulated neck leads from above the heel back to the axis, where the shaft begins. As on
-// real hooks, the foot crosses the shaft's axis near its middle, and the heel is at the shaft's
-// side.
+// real hooks, the shaft's axis crosses the foot near the foot's middle, and the heel is at the
+// shaft's side.
 
 // Returns half the foot's length: toe and heel are at x = +- half_foot.
 static double half_foot(const cau_tool_def *tool)

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "core/session/pressing.h"
-#include "solve/coupling.h"
+#include "solve/contact.h"
 
 static cau_vec3 behind(const cau_tool_state *tool)
 {

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "core/rig/rig.h"
-#include "solve/coupling.h"
 
 // Largest error of a force, relative to the largest reaction, for a step that has converged to a
 // residual of 1e-10.
