@@ -18,6 +18,13 @@ static cau_status fail(const char *name, cau_status status, const char *reason, 
 	return cau_fail(error, status, NULL, "%s", reason);
 }
 
+static cau_status fail_as_too_long(const char *name, size_t bytes_max, cau_error *error)
+{
+	char reason[64];
+	snprintf(reason, sizeof reason, "the file is longer than %zu bytes", bytes_max);
+	return fail(name, CAU_LIMIT, reason, error);
+}
+
 static cau_status read_all(FILE *file, const char *name, size_t bytes_max, char **bytes,
                            size_t *byte_count, cau_error *error)
 {
@@ -30,7 +37,7 @@ static cau_status read_all(FILE *file, const char *name, size_t bytes_max, char 
 		if (ferror(file))
 			return fail(name, CAU_IO, strerror(errno), error);
 		if (*byte_count > bytes_max)
-			return fail(name, CAU_LIMIT, "the file is too large", error);
+			return fail_as_too_long(name, bytes_max, error);
 		if (*byte_count < capacity - 1) {
 			grown[*byte_count] = 0;
 			return CAU_OK;
@@ -98,7 +105,9 @@ static cau_status find_folder(char *folder, size_t bytes, cau_error *error)
 		snprintf(folder, bytes, "%s%s/cautery", set ? config : home, set ? "" : "/.config");
 	if (length < 0 || (size_t)length >= bytes)
 		return cau_fail(error, CAU_LIMIT, NULL,
-		                "the name of the folder of the contexts is too long");
+		                "the path of the folder of the contexts is longer than %zu bytes: set "
+		                "XDG_CONFIG_HOME to a shorter one",
+		                bytes - 1);
 	return CAU_OK;
 }
 

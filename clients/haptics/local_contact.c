@@ -63,8 +63,9 @@ static bool is_within(const double *values, int count, double most)
 const char *local_contact_check(const cau_tool_contact *record)
 {
 	const double tolerance = CAU_UNIT_TOLERANCE;
+	_Static_assert(CAU_CONTACT_PLANES == 8, "the message below names the limit");
 	if (record->plane_count < 0 || record->plane_count > CAU_CONTACT_PLANES)
-		return "the contact has too many planes";
+		return "the count of planes is not within 0 to 8";
 	for (int i = 0; i < record->plane_count; i++) {
 		const cau_contact_plane *plane = &record->plane[i];
 		if (!(fabs(length3(plane->normal) - 1) <= tolerance))

@@ -19,7 +19,9 @@ typedef struct question {
 static int take(question *q, const char *in, size_t bytes)
 {
 	if (bytes > sizeof q->text - q->bytes) {
-		q->trouble = "the answer is too long for a list of daemons";
+		snprintf(q->trouble_text, sizeof q->trouble_text,
+		         "the list of daemons is longer than %zu bytes", sizeof q->text);
+		q->trouble = q->trouble_text;
 		return -1;
 	}
 	memcpy(q->text + q->bytes, in, bytes);

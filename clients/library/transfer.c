@@ -101,8 +101,8 @@ static void announced(void *user, const cau_rpc_message *answer, const cau_error
 	if (cau_rpc_result(answer, d->method, d->transfer, &d->error))
 		return;
 	if (d->transfer->byte_count > CAU_CLIENT_BINARY_MAX) {
-		cau_fail(&d->error, CAU_LIMIT, NULL, "a file of %lld bytes is too large",
-		         (long long)d->transfer->byte_count);
+		cau_fail(&d->error, CAU_LIMIT, NULL, "a file of %lld bytes is above the limit of %lld",
+		         (long long)d->transfer->byte_count, (long long)CAU_CLIENT_BINARY_MAX);
 		return;
 	}
 	d->incoming.byte_count = (size_t)d->transfer->byte_count;

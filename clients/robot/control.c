@@ -100,8 +100,14 @@ static const char *why_lost(const control *c, double now_s, bool energy)
 {
 	if (c->options->standby || (c->driving_s == 0 && now_s - c->begun_s < ANSWER_S))
 		return NULL;
-	if (!robot_link_drives(c->link))
-		return "another client drives the tool";
+	if (!robot_link_drives(c->link) && !*c->link->state.driver_name)
+		return "no client drives the tool: the server does not accept the commands of this program "
+			   "(look for event=dds_refused and event=dds_no_place in its log)";
+	if (!robot_link_drives(c->link)) {
+		snprintf(c->report->lost_text, sizeof c->report->lost_text, "\"%s\" drives the tool",
+		         c->link->state.driver_name);
+		return c->report->lost_text;
+	}
 	if (energy && !c->link->state.energized && now_s - c->following_s > ANSWER_S)
 		return "energy is off";
 	return NULL;

@@ -97,9 +97,15 @@ bool robot_link_open(robot_link *link, const robot_options *options, FILE *error
 	link->waitset = dds_create_waitset(link->participant);
 	const dds_entity_t made[] = {link->participant, link->writer, link->reader, link->force_reader,
 	                             link->waitset};
+	static const char *const names[] = {"participant", "writer of cautery/tool_command",
+	                                    "reader of cautery/tool_state", "reader of measured_cf",
+	                                    "waitset"};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] < 0) {
-			fprintf(errors, "cautery-robot: DDS: %s\n", dds_strretcode(made[i]));
+			fprintf(errors,
+			        "cautery-robot: cannot create the DDS %s in domain %d: %s (check --domain and "
+			        "CYCLONEDDS_URI)\n",
+			        names[i], options->domain, dds_strretcode(made[i]));
 			return false;
 		}
 	write_name(link);

@@ -90,21 +90,37 @@ static void on_signal(int signal_number)
 	stop = 1;
 }
 
+static void print_json_text(const char *text)
+{
+	putchar('"');
+	for (; *text; text++)
+		if (*text == '"' || *text == '\\')
+			printf("\\%c", *text);
+		else if ((unsigned char)*text < 0x20)
+			printf("\\u%04x", (unsigned)*text);
+		else
+			putchar(*text);
+	putchar('"');
+}
+
 static void print_json(const robot_report *report, const robot_link *link)
 {
 	printf("{\"seconds\": %.3f, \"commands\": %llu, \"missed\": %llu, "
 	       "\"jitter_p50_s\": %.6f, \"jitter_p99_s\": %.6f, \"jitter_most_s\": %.6f, "
 	       "\"latency_count\": %llu, \"latency_p50_s\": %.6f, \"latency_p99_s\": %.6f, "
 	       "\"latency_most_s\": %.6f, \"force_most_n\": %.3f, \"backed_off_m\": %.4f, "
-	       "\"took_over\": %s, \"lost\": %s%s%s}\n",
+	       "\"took_over\": %s, \"lost\": ",
 	       report->seconds, (unsigned long long)report->commands,
 	       (unsigned long long)report->missed, robot_histogram_quantile(&report->jitter, 0.5),
 	       robot_histogram_quantile(&report->jitter, 0.99), report->jitter.most_s,
 	       (unsigned long long)link->latency.count, robot_histogram_quantile(&link->latency, 0.5),
 	       robot_histogram_quantile(&link->latency, 0.99), link->latency.most_s,
-	       report->force_most_n, report->backed_off_m, report->took_over ? "true" : "false",
-	       report->lost ? "\"" : "", report->lost ? report->lost : "null",
-	       report->lost ? "\"" : "");
+	       report->force_most_n, report->backed_off_m, report->took_over ? "true" : "false");
+	if (report->lost)
+		print_json_text(report->lost);
+	else
+		printf("null");
+	printf("}\n");
 }
 
 static int drive(const robot_options *options, const robot_trajectory *trajectory)

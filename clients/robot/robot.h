@@ -112,6 +112,7 @@ typedef struct robot_report {
 	double backed_off_m;    // largest retreat
 	bool took_over;         // true if this program waited in standby and then became the driver
 	const char *lost;       // why the loop ended early, or NULL
+	char lost_text[128];    // text of `lost`, if the text has a name
 	robot_histogram jitter; // how late the loop woke
 } robot_report;
 

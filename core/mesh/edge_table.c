@@ -34,7 +34,11 @@ cau_status cau_primitives_check(const cau_primitives *primitives, cau_error *err
 	    p->tetrahedron_count < 0 || p->link_count < 0 ||
 	    3 * (int64_t)p->triangle_count + 6 * (int64_t)p->tetrahedron_count + p->link_count >=
 	        INT32_MAX)
-		return cau_fail(error, CAU_LIMIT, NULL, "too many primitives for one tissue");
+		return cau_fail(
+			error, CAU_LIMIT, NULL,
+			"%d vertices, %d triangles, %d tetrahedra and %d links: counts are at least 0, "
+			"and 3 triangles + 6 tetrahedra + links below %d",
+			p->vertex_count, p->triangle_count, p->tetrahedron_count, p->link_count, INT32_MAX);
 
 	cau_status status =
 		check_rows("triangle", p->triangle, p->triangle_count, 3, p->vertex_count, error);

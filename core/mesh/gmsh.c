@@ -494,7 +494,9 @@ static void read_byte_order(cau_scan *scan)
 	if (one == 0x01000000)
 		scan->swap = true;
 	else if (one != 1)
-		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected the number one, found %lld", (long long)one);
+		cau_scan_fail(scan, CAU_BAD_SYNTAX,
+		              "expected the number one, which shows the byte order; found %lld",
+		              (long long)one);
 }
 
 // Reads $MeshFormat: version, whether binary, size of a number. Returns the version's sections.

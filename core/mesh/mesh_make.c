@@ -12,7 +12,7 @@ static cau_status join_path(const char *directory, const char *file, char path[s
 	bool alone = file[0] == '/' || !directory || !directory[0];
 	int length = snprintf(path, 600, "%s%s%s", alone ? "" : directory, alone ? "" : "/", file);
 	if (length >= 600)
-		return cau_fail(error, CAU_BAD_VALUE, "file", "the path is too long");
+		return cau_fail(error, CAU_BAD_VALUE, "file", "the path is longer than 599 bytes");
 	return CAU_OK;
 }
 

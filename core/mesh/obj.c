@@ -203,7 +203,7 @@ cau_status cau_mesh_read_obj(cau_mesh_builder *builder)
 	free(o.corner_vertex);
 	free(o.corner_texture);
 	if (o.bare && o.texture_count)
-		cau_mesh_builder_skip(builder, "texture points of some corners", o.texture_count);
+		cau_mesh_builder_skip(builder, "texture points (some corners have none)", o.texture_count);
 	if (o.bare) {
 		free(builder->mesh.texture);
 		builder->mesh.texture = NULL;

@@ -79,9 +79,13 @@ static void read_property(ply *p)
 {
 	cau_scan *scan = p->scan;
 	element *of = p->element_count ? &p->element[p->element_count - 1] : NULL;
-	if (!of || of->property_count == PROPERTIES_MAX) {
-		cau_scan_fail(scan, CAU_BAD_SYNTAX,
-		              "a property before the first element, or too many properties");
+	if (!of) {
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the header has a property before the first element");
+		return;
+	}
+	if (of->property_count == PROPERTIES_MAX) {
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "element %s has more than %d properties", of->name,
+		              PROPERTIES_MAX);
 		return;
 	}
 	property made = {0};

@@ -144,8 +144,8 @@ static void read_array(vtk_file *vtk, cau_word name, const number_type *type, in
 		return;
 	if (components > INT32_MAX || count > INT32_MAX)
 		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX,
-		              "an array is too large: %lld items with %lld numbers each", (long long)count,
-		              (long long)components);
+		              "an array has %lld items with %lld numbers each; both are at most %d",
+		              (long long)count, (long long)components, INT32_MAX);
 	else if (cells && components == 1 && cau_vtk_is_region_name(name))
 		read_regions(vtk, type, count);
 	else

@@ -178,8 +178,9 @@ cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau
 		                matrix->n);
 	if (factor->l->minor < factor->l->n || !(cau_factor_least_pivot(factor) > 0))
 		return cau_fail(error, CAU_NUMERICAL, NULL,
-		                "the system matrix is not positive definite (row %d)",
-		                (int)factor->l->minor);
+		                "the solver cannot factor the system matrix of this scene: its masses and "
+		                "stiffnesses are not finite or too far apart in size; check the materials, "
+		                "step_s and the mesh for slivers");
 	factor->canonical = true;
 	return CAU_OK;
 }

@@ -56,7 +56,9 @@ static cau_status build_pattern(cau_system *system, const cau_tissue *tissue, ca
 		if (!k || keys[k] != keys[k - 1])
 			keys[unique++] = keys[k];
 	if (unique > INT32_MAX)
-		return cau_fail(error, CAU_LIMIT, NULL, "the system has too many entries");
+		return cau_fail(error, CAU_LIMIT, NULL,
+		                "the solver's matrix has %lld entries, more than %d: take a coarser mesh",
+		                (long long)unique, INT32_MAX);
 	cau_matrix *matrix = &system->matrix;
 	matrix->n = system->row_count;
 	matrix->first = cau_arena_array(arena, (size_t)system->row_count + 1, sizeof(int32_t));

@@ -92,7 +92,11 @@ void cau_write_command(cau_json_writer *writer, const char *key, const cau_comma
 	// A part's base is not const, but writing does not change it.
 	cau_command *shared = (cau_command *)command;
 	if (!kinds_exist(command)) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "the kind of the command does not exist");
+		bool layer = command->kind == CAU_COMMAND_SET_MATERIAL;
+		cau_json_fail(writer, CAU_BAD_VALUE, "%s is %d, not 0 to %d",
+		              layer ? "the kind of the material's layer" : "the kind of the command",
+		              layer ? (int)command->as.material.kind : (int)command->kind,
+		              layer ? CAU_LAYER_COUNT - 1 : CAU_COMMAND_COUNT - 1);
 		return;
 	}
 	cau_json_open(writer, key, '{');

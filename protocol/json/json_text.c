@@ -271,7 +271,7 @@ static cau_status scan_number(scanner *s)
 		return fail_at(s, start, CAU_LIMIT, "a number of more than 63 characters");
 	double value = number_value(s->text + start, s->at - start);
 	if (!isfinite(value))
-		return fail_at(s, start, CAU_BAD_SYNTAX, "a number too large for a double");
+		return fail_at(s, start, CAU_BAD_SYNTAX, "a number too large for a double (above 1.8e308)");
 	// 2^53 + 1 rounds to 2^53, so the bound itself is ambiguous as well.
 	if (integer && fabs(value) >= 9007199254740992.0)
 		return fail_at(s, start, CAU_BAD_SYNTAX, "an integer of 2^53 or more, which readers round");

@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <locale.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,13 +14,22 @@
 // Bound of integers, 2^53: a double represents every smaller integer.
 static const double integer_bound = 9007199254740992.0;
 
-void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reason)
+void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reason, ...)
 {
+	va_list values;
 	CAU_ASSERT(status != CAU_OK && reason, "a failure that is none: %s", reason);
 	if (writer->status)
 		return;
 	writer->status = status;
-	writer->reason = reason;
+	va_start(values, reason);
+	vsnprintf(writer->reason, sizeof writer->reason, reason, values);
+	va_end(values);
+}
+
+// Returns the name of a value for a message.
+static const char *name_of(const char *key)
+{
+	return key ? key : "a value without a name";
 }
 
 static void put(cau_json_writer *writer, const char *text, size_t bytes)
@@ -56,7 +66,9 @@ static void put_quoted(cau_json_writer *writer, const char *text)
 		size_t length = cau_utf8_length(text, left);
 		const char *special = strchr(plain, *text);
 		if (length == 0) {
-			cau_json_fail(writer, CAU_BAD_VALUE, "a string that is not UTF-8");
+			cau_json_fail(writer, CAU_BAD_VALUE,
+			              "a string is not UTF-8: its last %zu bytes begin with byte 0x%02x", left,
+			              (unsigned)(unsigned char)*text);
 			break;
 		}
 		if (special) {
@@ -86,7 +98,9 @@ static void put_lead(cau_json_writer *writer, const char *key)
 		writer->occupied[top] = true;
 		put_line_break(writer);
 		if ((key != NULL) != (writer->closing[top] == '}'))
-			cau_json_fail(writer, CAU_BAD_STATE, "a name in an array or none in an object");
+			cau_json_fail(writer, CAU_BAD_STATE,
+			              key ? "%s is a name inside an array" : "%s is inside an object",
+			              name_of(key));
 	}
 	if (!key)
 		return;
@@ -110,7 +124,8 @@ void cau_json_open(cau_json_writer *writer, const char *key, char bracket)
 	           bracket);
 	put_lead(writer, key);
 	if (writer->depth == CAU_JSON_MAX_DEPTH) {
-		cau_json_fail(writer, CAU_BAD_STATE, "too many levels");
+		cau_json_fail(writer, CAU_BAD_STATE, "more than %d levels of objects and arrays",
+		              CAU_JSON_MAX_DEPTH);
 		return;
 	}
 	int32_t top = writer->depth++;
@@ -123,7 +138,7 @@ void cau_json_open(cau_json_writer *writer, const char *key, char bracket)
 void cau_json_close(cau_json_writer *writer)
 {
 	if (writer->depth == 0) {
-		cau_json_fail(writer, CAU_BAD_STATE, "a level closed too often");
+		cau_json_fail(writer, CAU_BAD_STATE, "an object or array was closed that was not open");
 		return;
 	}
 	int32_t top = writer->depth - 1;
@@ -157,7 +172,8 @@ void cau_json_number(cau_json_writer *writer, const char *key, double value)
 	char text[40];
 	put_lead(writer, key);
 	if (!isfinite(value)) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "a number that is not finite");
+		cau_json_fail(writer, CAU_BAD_VALUE, "%s is %g, which JSON cannot represent", name_of(key),
+		              value);
 		return;
 	}
 	format_number(value, text);
@@ -169,7 +185,8 @@ void cau_json_integer(cau_json_writer *writer, const char *key, int64_t value)
 	char text[32];
 	put_lead(writer, key);
 	if (value >= INT64_C(1) << 53 || value <= -(INT64_C(1) << 53))
-		cau_json_fail(writer, CAU_BAD_VALUE, "an integer of 2^53 or more");
+		cau_json_fail(writer, CAU_BAD_VALUE, "%s is %" PRId64 ", an integer of 2^53 or more",
+		              name_of(key), value);
 	snprintf(text, sizeof text, "%" PRId64, value);
 	put_text(writer, text);
 }
@@ -177,7 +194,8 @@ void cau_json_integer(cau_json_writer *writer, const char *key, int64_t value)
 void cau_json_unsigned(cau_json_writer *writer, const char *key, uint64_t value)
 {
 	if (value >= UINT64_C(1) << 53)
-		cau_json_fail(writer, CAU_BAD_VALUE, "an integer of 2^53 or more");
+		cau_json_fail(writer, CAU_BAD_VALUE, "%s is %" PRIu64 ", an integer of 2^53 or more",
+		              name_of(key), value);
 	cau_json_integer(writer, key, (int64_t)(value & INT64_MAX));
 }
 
@@ -222,7 +240,7 @@ cau_status cau_json_end(cau_json_writer *writer, size_t *bytes, cau_error *error
 	if (writer->capacity > 0)
 		writer->buffer[writer->bytes < writer->capacity ? writer->bytes : writer->capacity - 1] = 0;
 	if (writer->depth != 0)
-		cau_json_fail(writer, CAU_BAD_STATE, "a level left open");
+		cau_json_fail(writer, CAU_BAD_STATE, "%d objects or arrays are still open", writer->depth);
 	if (writer->status)
 		return cau_fail(error, writer->status, NULL, "JSON cannot be written: %s", writer->reason);
 	if (writer->bytes >= writer->capacity)

@@ -130,7 +130,8 @@ static void write_choice(cau_json_writer *writer, const cau_field *field, int ch
 {
 	CAU_ASSERT(field->choices && field->choices->count > 0, "\"%s\" has no choices", field->name);
 	if (choice < 0 || choice >= field->choices->count)
-		cau_json_fail(writer, CAU_BAD_VALUE, "the value is not one of the choices");
+		cau_json_fail(writer, CAU_BAD_VALUE, "%s is %d, not one of the choices 0 to %d",
+		              field->name, choice, field->choices->count - 1);
 	else
 		cau_json_string(writer, field->name, field->choices->names[choice]);
 }
@@ -140,7 +141,8 @@ static void write_text(cau_json_writer *writer, const char *key, const char *tex
 	if (memchr(text, 0, bytes))
 		cau_json_string(writer, key, text);
 	else
-		cau_json_fail(writer, CAU_BAD_VALUE, "the text does not end with a zero byte");
+		cau_json_fail(writer, CAU_BAD_VALUE, "the text of %s has no zero byte within %zu bytes",
+		              key, bytes);
 }
 
 static void write_integers(cau_json_writer *writer, const cau_field *field, const int32_t *value)

@@ -246,10 +246,11 @@ static void write_regions(cau_json_writer *writer, const cau_layer_def *layer)
 	cau_json_close(writer);
 }
 
-static void write_layer(cau_json_writer *writer, const cau_layer_def *layer)
+static void write_layer(cau_json_writer *writer, const cau_layer_def *layer, int32_t index)
 {
 	if (layer->material_count < 1 || layer->material_count > CAU_MAX_MATERIALS) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "the layer has no materials, or too many");
+		cau_json_fail(writer, CAU_BAD_VALUE, "layers[%d] has %d materials, not 1 to %d", index,
+		              layer->material_count, CAU_MAX_MATERIALS);
 		return;
 	}
 	cau_json_open(writer, NULL, '{');
@@ -276,10 +277,11 @@ static void write_tool(cau_json_writer *writer, const cau_tool_def *tool)
 	cau_json_close(writer);
 }
 
-static void write_vessel(cau_json_writer *writer, const cau_vessel_def *vessel)
+static void write_vessel(cau_json_writer *writer, const cau_vessel_def *vessel, int32_t index)
 {
 	if (vessel->point_count < 0 || vessel->point_count > CAU_MAX_VESSEL_POINTS) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "the vessel has too many points");
+		cau_json_fail(writer, CAU_BAD_VALUE, "vessels[%d] has %d points, more than %d", index,
+		              vessel->point_count, CAU_MAX_VESSEL_POINTS);
 		return;
 	}
 	cau_json_open(writer, NULL, '{');
@@ -300,7 +302,7 @@ static void write_vessels(cau_json_writer *writer, const cau_scene_def *scene)
 		return;
 	cau_json_open(writer, "vessels", '[');
 	for (int32_t i = 0; i < scene->vessel_count; i++)
-		write_vessel(writer, &scene->vessels[i]);
+		write_vessel(writer, &scene->vessels[i], i);
 	cau_json_close(writer);
 }
 
@@ -331,7 +333,13 @@ static bool counts_fit(const cau_scene_def *scene)
 void cau_write_scene(cau_json_writer *writer, const char *key, const cau_scene_def *scene)
 {
 	if (!counts_fit(scene)) {
-		cau_json_fail(writer, CAU_BAD_VALUE, "a count of the scene is out of range");
+		cau_json_fail(
+			writer, CAU_BAD_VALUE,
+			"the scene has %d meshes, %d layers, %d pins, %d tools and %d vessels; the limits "
+			"are %d, %d, %d, %d and %d",
+			scene->mesh_count, scene->layer_count, scene->pin_count, scene->tool_count,
+			scene->vessel_count, CAU_MAX_MESHES, CAU_MAX_LAYERS, CAU_MAX_PINS, CAU_MAX_TOOLS,
+			CAU_MAX_VESSELS);
 		return;
 	}
 	cau_json_open(writer, key, '{');
@@ -345,7 +353,7 @@ void cau_write_scene(cau_json_writer *writer, const char *key, const cau_scene_d
 	cau_json_close(writer);
 	cau_json_open(writer, "layers", '[');
 	for (int32_t i = 0; i < scene->layer_count; i++)
-		write_layer(writer, &scene->layers[i]);
+		write_layer(writer, &scene->layers[i], i);
 	cau_json_close(writer);
 	cau_json_open(writer, "pins", '[');
 	for (int32_t i = 0; i < scene->pin_count; i++)

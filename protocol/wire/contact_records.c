@@ -76,10 +76,11 @@ static bool are_finite(const double *numbers, int count)
 const char *cau_tool_contact_check(const cau_tool_contact *contact)
 {
 	double numbers[NUMBERS];
+	_Static_assert(CAU_CONTACT_PLANES == 8, "a message below names the limit");
 	if (!cau_name_is_valid(contact->name))
 		return "the name of the tool breaks the rule for names";
 	if (contact->plane_count < 0 || contact->plane_count > CAU_CONTACT_PLANES)
-		return "it has too many planes";
+		return "the count of planes is not within 0 to 8";
 	list(contact, numbers);
 	if (!are_finite(numbers, NUMBERS))
 		return "a number of the contact is not finite";
@@ -167,10 +168,15 @@ const char *cau_contacts_read(const uint8_t *payload, size_t bytes, cau_tool_con
 {
 	const uint8_t *at = payload + 4, *end = payload + bytes;
 	uint32_t announced = bytes >= 4 ? load_u32(payload) : UINT32_MAX;
+	_Static_assert(CAU_MAX_TOOLS == 8, "the message below names the limit");
+	if (bytes < 4)
+		return "the list of contacts is shorter than its count of 4 bytes";
 	if (announced > CAU_MAX_TOOLS)
-		return "contacts of too many tools, or a damaged list of them";
+		return "the list announces contacts of more than 8 tools";
 	for (uint32_t i = 0; i < announced && at; i++)
 		at = read_contact(at, end, &contacts[i]);
 	*count = at ? (int32_t)announced : 0;
-	return at == end ? NULL : "a contact is damaged, or the list has the wrong length";
+	if (!at)
+		return "a contact in the list is damaged";
+	return at == end ? NULL : "the list of contacts has bytes after its last contact";
 }

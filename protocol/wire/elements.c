@@ -265,8 +265,10 @@ static const char *read_head(const uint8_t *payload, size_t bytes, const element
 	if (head->reference > ELEMENTS_HELD ||
 	    (head->reference == ELEMENTS_HELD && !target->may_refer_to_held))
 		return "the reference of a section is unknown or not allowed here";
-	if (head->count > target->count || (target->all && head->count != target->count))
-		return "a section has too many or too few elements";
+	if (head->count > target->count)
+		return "a section has more elements than the topology";
+	if (target->all && head->count != target->count)
+		return "a section of all elements has fewer elements than the topology";
 	size_t room = bytes - ELEMENTS_HEAD_BYTES;
 	if (head->run_bytes > room || round_up_4(head->run_bytes) > room)
 		return "a run list is longer than its section";

@@ -116,8 +116,9 @@ cau_status cau_frame_header_read(const void *bytes, size_t byte_count, cau_frame
 {
 	const uint8_t *at = bytes;
 	if (byte_count < CAU_FRAME_HEADER_BYTES)
-		return cau_fail(error, CAU_CORRUPT, "header", "%zu bytes are too few for a frame",
-		                byte_count);
+		return cau_fail(error, CAU_CORRUPT, "header",
+		                "%zu bytes are too few for a frame, whose header has %d", byte_count,
+		                CAU_FRAME_HEADER_BYTES);
 	if (memcmp(at, magic, sizeof magic) != 0)
 		return cau_fail(error, CAU_CORRUPT, "magic", "the bytes do not start with CAUF");
 	load_header(at, header);

@@ -41,8 +41,11 @@ const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream
                                 int32_t *count)
 {
 	uint32_t announced = bytes >= 4 ? load_u32(payload) : UINT32_MAX;
+	_Static_assert(CAU_MAX_TOOLS == 8, "the message below names the limit");
+	if (bytes < 4)
+		return "the list of tools is shorter than its count of 4 bytes";
 	if (announced > CAU_MAX_TOOLS)
-		return "too many tools, or a damaged list of them";
+		return "the list announces more than 8 tools";
 	size_t at = 4;
 	for (uint32_t i = 0; i < announced; i++) {
 		if (bytes - at < 2 || bytes - at - 2 < payload[at + 1] || payload[at + 1] >= CAU_NAME_BYTES)

@@ -21,8 +21,9 @@ const char *cau_vessel_state_check(const cau_vessel_state *vessel)
 {
 	if (!cau_name_is_valid(vessel->name))
 		return "the name of the vessel breaks the rule for names";
+	_Static_assert(CAU_VESSEL_SHOWN_POINTS == 64, "the message below names the limit");
 	if (vessel->point_count < 0 || vessel->point_count > CAU_VESSEL_SHOWN_POINTS)
-		return "the vessel has too many points";
+		return "the count of the vessel's points is not within 0 to 64";
 	const double scalars[] = {vessel->radius_m, vessel->bleeding_m3_s, vessel->shed_m3,
 	                          vessel->burst_pa};
 	for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
@@ -100,10 +101,15 @@ const char *cau_vessels_read(const uint8_t *payload, size_t bytes, cau_vessel_st
 {
 	const uint8_t *at = payload + 4, *end = payload + bytes;
 	uint32_t announced = bytes >= 4 ? load_u32(payload) : UINT32_MAX;
+	_Static_assert(CAU_MAX_VESSELS == 8, "the message below names the limit");
+	if (bytes < 4)
+		return "the list of vessels is shorter than its count of 4 bytes";
 	if (announced > CAU_MAX_VESSELS)
-		return "too many vessels, or a damaged list of them";
+		return "the list announces more than 8 vessels";
 	for (uint32_t i = 0; i < announced && at; i++)
 		at = read_vessel(at, end, &vessels[i]);
 	*count = at ? (int32_t)announced : 0;
-	return at == end ? NULL : "a vessel is damaged, or the list has the wrong length";
+	if (!at)
+		return "a vessel in the list is damaged";
+	return at == end ? NULL : "the list of vessels has bytes after its last vessel";
 }

@@ -155,12 +155,16 @@ cau_status cau_agent_create(cau_agent **made, const cau_agent_def *def, cau_erro
 	agent->measured_s = -INFINITY;
 	agent->ending = eventfd(0, EFD_CLOEXEC);
 	cau_status status = agent->ending < 0
-	                        ? cau_fail(error, CAU_IO, NULL, "no descriptor for the agent")
+	                        ? cau_fail(error, CAU_IO, NULL, "cannot create the agent's eventfd: %s",
+	                                   strerrordesc_np(errno))
 	                        : open_socket(agent, error);
 	if (!status) {
-		agent->started = pthread_create(&agent->thread, NULL, serve, agent) == 0;
-		if (!agent->started)
-			status = cau_fail(error, CAU_NO_MEMORY, NULL, "no thread for the agent");
+		int code = pthread_create(&agent->thread, NULL, serve, agent);
+		agent->started = code == 0;
+		if (code)
+			status = cau_fail(error, CAU_NO_MEMORY, NULL,
+			                  "cannot start the agent's thread: %s (its limit: ulimit -u)",
+			                  strerrordesc_np(code));
 	}
 	if (status) {
 		cau_agent_destroy(agent);

@@ -197,7 +197,9 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 	for (int number = 1; !status && fgets(line, sizeof line, stream); number++)
 		status = strlen(line) + 1 < sizeof line
 		             ? read_line(list, line, number, error)
-		             : cau_fail(error, CAU_LIMIT, "tokens", "line %d is too long", number);
+		             : cau_fail(error, CAU_LIMIT, "tokens",
+		                        "line %d is longer than %zu bytes with its line end", number,
+		                        sizeof line - 2);
 	fclose(stream);
 	explicit_bzero(line, sizeof line);
 	if (!status && list->count == 0)

@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cautery/assert.h"
 #include "clock/clock.h"
@@ -90,13 +91,17 @@ static void *take_all(void *builder)
 	return live(builder, true);
 }
 
-static bool start_threads(cau_builder *builder, int32_t count)
+static cau_status start_threads(cau_builder *builder, int32_t count, cau_error *error)
 {
-	while (builder->thread_count < count &&
-	       pthread_create(&builder->thread[builder->thread_count], NULL,
-	                      builder->thread_count ? take_all : take_shorts, builder) == 0)
-		builder->thread_count++;
-	return builder->thread_count == count;
+	for (; builder->thread_count < count; builder->thread_count++) {
+		int code = pthread_create(&builder->thread[builder->thread_count], NULL,
+		                          builder->thread_count ? take_all : take_shorts, builder);
+		if (code)
+			return cau_fail(error, CAU_NO_MEMORY, NULL,
+			                "cannot start thread %d of %d of %s: %s (its limit: ulimit -u)",
+			                builder->thread_count + 1, count, builder->name, strerrordesc_np(code));
+	}
+	return CAU_OK;
 }
 
 cau_status cau_builder_create(cau_builder **made, const char *name, int32_t threads, int nice,
@@ -111,10 +116,11 @@ cau_status cau_builder_create(cau_builder **made, const char *name, int32_t thre
 	builder->nice = nice;
 	pthread_mutex_init(&builder->mutex, NULL);
 	pthread_cond_init(&builder->work, NULL);
-	if (!start_threads(builder, 1 + threads)) {
+	cau_status status = start_threads(builder, 1 + threads, error);
+	if (status) {
 		cau_builder_stop(builder);
 		cau_builder_destroy(builder);
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread for the builder");
+		return status;
 	}
 	*made = builder;
 	return CAU_OK;

@@ -130,13 +130,20 @@ static cau_status read_members(cau_config *config, const char *at, cau_error *er
 	at = skip_space(at + 1);
 	while (*at != '}') {
 		if (!take_string(&at, name, sizeof name))
-			return cau_fail(error, CAU_NOT_FOUND, "",
-			                "a name is too long to be a setting, or not a string");
+			return cau_fail(
+				error, CAU_NOT_FOUND, "",
+				"a name is longer than %zu bytes or has an escape other than \\\", \\\\ "
+				"and \\/, so it is no setting",
+				sizeof name - 1);
 		at = skip_space(skip_space(at) + 1); // past the colon
 		bool quoted = *at == '"';
 		if (!(quoted ? take_string(&at, text, sizeof text) : take_plain(&at, text, sizeof text)))
-			return cau_fail(error, CAU_BAD_VALUE, name,
-			                "the value is too long, or is an object or array");
+			return *at == '{' || *at == '['
+			           ? cau_fail(error, CAU_BAD_VALUE, name, "must not be an object or an array")
+			           : cau_fail(error, CAU_BAD_VALUE, name,
+			                      "is longer than %zu bytes or has an escape other than \\\", \\\\ "
+			                      "and \\/",
+			                      sizeof text - 1);
 		cau_status status = store_member(config, name, text, quoted, error);
 		if (status)
 			return status;

@@ -267,9 +267,12 @@ static void destroy(cau_lease *lease)
 static cau_status start_thread(cau_lease *lease, cau_error *error)
 {
 	publish(lease);
-	lease->started = pthread_create(&lease->thread, NULL, keep, lease) == 0;
-	return lease->started ? CAU_OK
-	                      : cau_fail(error, CAU_NO_MEMORY, NULL, "no thread for the lease");
+	int code = pthread_create(&lease->thread, NULL, keep, lease);
+	lease->started = code == 0;
+	return code ? cau_fail(error, CAU_NO_MEMORY, NULL,
+	                       "cannot start the lease's thread: %s (its limit: ulimit -u)",
+	                       strerrordesc_np(code))
+	            : CAU_OK;
 }
 
 cau_status cau_lease_take(cau_lease **made, const cau_lease_def *def, cau_error *error)
@@ -284,7 +287,8 @@ cau_status cau_lease_take(cau_lease **made, const cau_lease_def *def, cau_error 
 	lease->rules = cau_lease_rules_of(def->ttl_s);
 	lease->ending = eventfd(0, EFD_CLOEXEC);
 	cau_status status = lease->ending < 0
-	                        ? cau_fail(error, CAU_IO, NULL, "no descriptor for the lease")
+	                        ? cau_fail(error, CAU_IO, NULL, "cannot create the lease's eventfd: %s",
+	                                   strerrordesc_np(errno))
 	                        : cau_etcd_create(&lease->etcd, def->addresses, error);
 	if (!status)
 		status = read_stored(lease, error);

@@ -131,7 +131,10 @@ void cau_call_hello(cau_call *call)
 	peer->client.connection = peer->connection->id;
 	if (!cau_hub_attach(service->hub, &peer->client, params.has_resume ? params.resume : NULL,
 	                    &replaced)) {
-		answer_refusal(call, CAU_RPC_LIMIT, "too many clients");
+		answer_refusal(
+			call, CAU_RPC_LIMIT,
+			"the daemon cannot keep another client: its memory, its random numbers or its "
+			"limit of clients is used up; try again later");
 		cau_connection_close(peer->connection, CAU_CLOSE_FULL, NULL);
 		return;
 	}

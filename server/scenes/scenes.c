@@ -276,5 +276,8 @@ cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t by
 		at += sizeof length + length;
 		left -= sizeof length + length;
 	}
-	return left ? cau_fail(error, CAU_CORRUPT, "", "the stored meshes are too long") : CAU_OK;
+	return left ? cau_fail(error, CAU_CORRUPT, "",
+	                       "the stored meshes have %zu bytes more than the scene's meshes need",
+	                       left)
+	            : CAU_OK;
 }

@@ -179,7 +179,10 @@ static cau_status load_name(const char *name, const char *folder, cau_scene_def 
 		folder = installed;
 	int bytes = snprintf(path, sizeof path, "%s/%s.json", folder, name);
 	if (bytes < 0 || (size_t)bytes >= sizeof path)
-		return cau_fail(error, CAU_LIMIT, NULL, "the folder's name is too long");
+		return cau_fail(
+			error, CAU_LIMIT, NULL,
+			"the path of scene \"%s\" is longer than %d bytes: give a shorter --scenes DIR", name,
+			PATH_BYTES - 1);
 	if (access(path, F_OK) != 0)
 		return cau_fail(error, CAU_NOT_FOUND, NULL, "no scene \"%s\" in %s", name, folder);
 	return cau_scene_from_file(path, scene, error);

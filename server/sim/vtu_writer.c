@@ -33,7 +33,10 @@ static cau_status make_path(const sim_vtu *vtu, const char *name, char path[PATH
 {
 	int bytes = snprintf(path, PATH_BYTES, "%s/%s", vtu->folder, name);
 	if (bytes < 0 || bytes >= PATH_BYTES)
-		return cau_fail(error, CAU_LIMIT, NULL, "the folder's name is too long");
+		return cau_fail(
+			error, CAU_LIMIT, NULL,
+			"the path of %s is longer than %d bytes: choose a folder with a shorter name", name,
+			PATH_BYTES - 1);
 	return CAU_OK;
 }
 

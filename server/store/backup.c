@@ -96,7 +96,11 @@ cau_status cau_store_backup(const char *path, const char *file, cau_error *error
 	char made[NAME_BYTES];
 	enum cau_store_found found = CAU_STORE_ABSENT;
 	if ((size_t)snprintf(made, sizeof made, "%s.%d.new", file, (int)getpid()) >= sizeof made)
-		return cau_fail(error, CAU_BAD_VALUE, NULL, "the name is too long");
+		return cau_fail(
+			error, CAU_BAD_VALUE, NULL,
+			"the path of the copy, with the suffix of an unfinished copy, is longer than "
+			"%d bytes",
+			NAME_BYTES - 1);
 	if (access(path, F_OK) != 0)
 		return cau_fail(error, CAU_NOT_FOUND, NULL, "there is no store %.200s", path);
 	if (access(file, F_OK) == 0)

@@ -44,7 +44,8 @@ cau_status cau_store_lock_take(struct cau_store_lock *lock, const char *path, ca
 	lock->descriptor = lock->database = -1;
 	int length = snprintf(lock->path, sizeof lock->path, "%s-lock", path);
 	if ((size_t)length >= sizeof lock->path)
-		return cau_fail(error, CAU_BAD_VALUE, NULL, "the path is too long");
+		return cau_fail(error, CAU_BAD_VALUE, NULL, "the path is longer than %zu bytes",
+		                sizeof lock->path - sizeof "-lock");
 	for (;;) {
 		int descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 		if (descriptor < 0)

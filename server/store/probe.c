@@ -200,7 +200,7 @@ cau_status cau_store_probe(const char *path, const char *label, enum cau_store_f
 {
 	struct stat file;
 	if (strlen(path) > 4000)
-		return cau_fail(error, CAU_BAD_VALUE, NULL, "the path is too long");
+		return cau_fail(error, CAU_BAD_VALUE, NULL, "the path is longer than 4000 bytes");
 	if (stat(path, &file)) {
 		if (errno != ENOENT)
 			return cau_fail(error, CAU_IO, NULL, "cannot examine the file: %s",

@@ -91,7 +91,8 @@ static cau_status find_path(const char *given, char path[4096], cau_error *error
 {
 	char folder[PATH_MAX], resolved[PATH_MAX], name[PATH_MAX];
 	if (strlen(given) >= sizeof folder)
-		return cau_fail(error, CAU_BAD_VALUE, "path", "is too long");
+		return cau_fail(error, CAU_BAD_VALUE, "path", "is longer than %zu bytes",
+		                sizeof folder - 1);
 	if (realpath(given, resolved)) {
 		snprintf(path, 4096, "%s", resolved);
 		return CAU_OK;
@@ -101,7 +102,8 @@ static cau_status find_path(const char *given, char path[4096], cau_error *error
 	if (!realpath(dirname(folder), resolved))
 		return cau_fail(error, CAU_IO, "path", "no folder %s", folder);
 	if ((size_t)snprintf(path, 4096, "%s/%s", resolved, basename(name)) >= 4096)
-		return cau_fail(error, CAU_BAD_VALUE, "path", "is too long");
+		return cau_fail(error, CAU_BAD_VALUE, "path",
+		                "is longer than 4095 bytes after its links are followed");
 	return CAU_OK;
 }
 
@@ -288,12 +290,20 @@ static void destroy(struct cau_store *store)
 static cau_status start_threads(struct cau_store *store, cau_error *error)
 {
 	bool folds = !store->config.memory;
-	if (folds && cau_store_folder_start(&store->folder, store->folding))
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to checkpoint the write-ahead log");
-	if (pthread_create(&store->thread, NULL, cau_store_commit_run, store)) {
+	int code = folds ? cau_store_folder_start(&store->folder, store->folding) : 0;
+	if (code)
+		return cau_fail(
+			error, CAU_NO_MEMORY, NULL,
+			"cannot start the thread that checkpoints the write-ahead log: %s (its limit: "
+			"ulimit -u)",
+			strerrordesc_np(code));
+	code = pthread_create(&store->thread, NULL, cau_store_commit_run, store);
+	if (code) {
 		if (folds)
 			cau_store_folder_stop(&store->folder);
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to commit");
+		return cau_fail(error, CAU_NO_MEMORY, NULL,
+		                "cannot start the store's commit thread: %s (its limit: ulimit -u)",
+		                strerrordesc_np(code));
 	}
 	return CAU_OK;
 }

@@ -305,12 +305,17 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	cau_status status = CAU_OK;
 	if (!request) {
 		unkept = cau_dds_describe_request(writer, sample);
-		status = cau_fail(&error, CAU_LIMIT, "",
-		                  "too many requests of this participant wait for an answer");
+		status =
+			cau_fail(&error, CAU_LIMIT, "",
+		             "too many requests wait for an answer (limits: %d of one participant, %d of "
+		             "all): wait for replies before the next request",
+		             REQUESTS_OF_ONE_MOST, REQUESTS_MOST);
 	} else if (cau_dds_is_too_fast(dds->config, writer)) {
 		code = CAU_RPC_RATE;
-		status =
-			cau_fail(&error, CAU_LIMIT, "", "the participant sends too many requests a second");
+		status = cau_fail(&error, CAU_LIMIT, "",
+		                  "this writer sends more than %lld requests a second (setting "
+		                  "max_requests_per_s)",
+		                  (long long)dds->config->max_requests_per_s);
 	} else {
 		status = serve(&a, &code, &error);
 	}

@@ -217,7 +217,10 @@ static cau_status secure(dds_qos_t *qos, const cau_config *config, cau_error *er
 		return CAU_OK;
 	const char *library = cau_dds_identity_library();
 	if (!library)
-		return cau_fail(error, CAU_NOT_FOUND, "dds_security", "no library of DDS identities");
+		return cau_fail(error, CAU_NOT_FOUND, "dds_security",
+		                "the daemon cannot find the file of its own library "
+		                "libcautery_dds_identity.so, which DDS Security needs: install the daemon "
+		                "again");
 	set_authentication(qos, library);
 	set_plugins(qos);
 	return set_identity(qos, config->dds_security, error);
@@ -262,9 +265,12 @@ cau_status cau_dds_open_domain(cau_dds_entities *entities, const cau_config *con
 			dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
 	dds_delete_qos(qos);
 	if (!status && entities->participant < 0 && *config->dds_security)
-		return cau_fail(error, CAU_IO, "dds_security",
-		                "cannot create a DDS participant with this dds_security: %s",
-		                dds_strretcode(entities->participant));
+		return cau_fail(
+			error, CAU_IO, "dds_security",
+			"Cyclone DDS made no participant with the identity in %.100s (%s): check that "
+			"cert.pem fits key.pem, that identity_ca.cert.pem signed it, that "
+			"permissions_ca.cert.pem signed the .p7s files, and that none has expired",
+			config->dds_security, dds_strretcode(entities->participant));
 	if (!status && entities->participant < 0)
 		return cau_fail(error, CAU_IO, "dds", "cannot create a DDS participant: %s",
 		                dds_strretcode(entities->participant));

@@ -34,7 +34,9 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 		dds->entities.topics[i] =
 			dds_create_topic(dds->entities.participant, topics[i].type, topics[i].name, NULL, NULL);
 		if (dds->entities.topics[i] < 0)
-			return cau_fail(error, CAU_IO, "dds", "no topic %s: %s", topics[i].name,
+			return cau_fail(error, CAU_IO, "dds",
+			                "Cyclone DDS cannot create topic %s in domain %lld: %s", topics[i].name,
+			                (long long)dds->config->dds_domain,
 			                dds_strretcode(dds->entities.topics[i]));
 	}
 	return CAU_OK;
@@ -59,8 +61,13 @@ static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, con
 	door->reader = dds_create_reader(subscriber, door->topic, qos, listener);
 	dds_delete_listener(listener);
 	if (door->reader < 0) {
-		cau_log(CAU_LOG_ERROR, door->session ? cau_hosted_id(door->session->hosted) : NULL,
-		        "dds_no_reader", "tool=%s reason=\"%s\"", door->tool, dds_strretcode(door->reader));
+		char topic[TOPIC_BYTES] = "";
+		dds_get_name(door->topic, topic, sizeof topic);
+		cau_log(
+			CAU_LOG_ERROR, door->session ? cau_hosted_id(door->session->hosted) : NULL,
+			"dds_no_reader",
+			"topic=%s tool=%s reason=\"no DDS reader (%s): samples of this topic are not taken\"",
+			topic, door->tool, dds_strretcode(door->topic < 0 ? door->topic : door->reader));
 		door->reader = 0;
 		return false;
 	}
@@ -120,9 +127,15 @@ cau_status cau_dds_open_control(cau_dds *dds, cau_error *error)
 	dds_delete_qos(partition);
 	dds_delete_qos(taken);
 	dds_delete_qos(kept);
-	return done && dds->control.reply_writer > 0
+	if (!done)
+		return cau_fail(error, CAU_IO, "dds",
+		                "Cyclone DDS cannot create the reader of cautery/session_request: see "
+		                "event=dds_no_reader above");
+	return dds->control.reply_writer > 0
 	           ? CAU_OK
-	           : cau_fail(error, CAU_IO, "dds", "no session_request or session_reply");
+	           : cau_fail(error, CAU_IO, "dds",
+	                      "Cyclone DDS cannot create the writer of cautery/session_reply: %s",
+	                      dds_strretcode(dds->control.reply_writer));
 }
 
 static void open_writers(cau_dds *dds, cau_dds_session *session)

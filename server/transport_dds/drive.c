@@ -62,7 +62,7 @@ static cau_status claim(cau_dds_hand *hand, const cau_hosted_tool *tool, double 
 	hand->claim_until_s = 0;
 	if (!would_drive(hand->tool, hand->client, driver, now_s))
 		return cau_fail(error, CAU_BAD_STATE, "tool", "%s drives the tool",
-		                driver ? tool->driver.name : "another client");
+		                driver ? tool->driver.name : "another DDS client, which asked earlier,");
 	if (!ask_for_tool(hand, driver ? silent_driver(hand->tool, driver, now_s) : NULL))
 		return cau_fail(error, CAU_LIMIT, "tool", "the session takes no orders at the moment");
 	hand->claim_until_s = now_s + CLAIM_S;

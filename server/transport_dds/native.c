@@ -127,7 +127,9 @@ static cau_status find_tool(const cau_dds *dds, const cau_door *door, cau_dds_wr
 		                "only the participant that drives the tool can set its generator");
 	if (cau_dds_is_too_fast(dds->config, writer))
 		return cau_fail(error, CAU_LIMIT, "tool",
-		                "the participant sends too many settings a second");
+		                "this writer sends more than %lld settings a second (setting "
+		                "max_requests_per_s)",
+		                (long long)dds->config->max_requests_per_s);
 	*definition = state.state.definition;
 	return CAU_OK;
 }

@@ -315,9 +315,13 @@ cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error)
 	dds->peers.readers = dds_create_reader(dds->entities.participant,
 	                                       DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, NULL, listener);
 	dds_delete_listener(listener);
-	return dds->peers.writers > 0 && dds->peers.readers > 0
+	dds_return_t code = dds->peers.writers < 0 ? dds->peers.writers : dds->peers.readers;
+	return code > 0
 	           ? CAU_OK
-	           : cau_fail(error, CAU_IO, "dds", "cannot read the participants of the domain");
+	           : cau_fail(error, CAU_IO, "dds",
+	                      "cannot create the DDS readers that find writers and readers in domain "
+	                      "%lld: %s",
+	                      (long long)dds->config->dds_domain, dds_strretcode(code));
 }
 
 void cau_dds_forget_peers(cau_dds_peers *peers)

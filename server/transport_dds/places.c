@@ -169,7 +169,11 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 				"the participant or identity has %d clients without a tool, which is the limit",
 				idle);
 	if (dds->counts.clients >= cau_dds_places_most(dds->config))
-		return cau_fail(error, CAU_LIMIT, "", "the daemon has too many DDS clients");
+		return cau_fail(
+			error, CAU_LIMIT, "",
+			"the daemon has %llu DDS clients, which is the limit (%d for each of max_sessions, "
+			"and %d)",
+			(unsigned long long)dds->counts.clients, CAU_MAX_TOOLS, CLIENTS_BESIDE_DRIVERS);
 	return CAU_OK;
 }
 
@@ -229,7 +233,9 @@ cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_
 	if (writer->client)
 		return writer->client;
 	if (!drives_now && cau_monotonic_s() < writer->retry_s) {
-		cau_fail(error, CAU_LIMIT, "", "too many DDS writers wait for the tool");
+		cau_fail(error, CAU_LIMIT, "",
+		         "this writer was refused as a client less than %g s ago, see event=dds_no_place",
+		         DENIED_S);
 		return NULL;
 	}
 	if (check_quota(dds, writer, error)) {

@@ -41,7 +41,9 @@ void cau_dds_count_dropped(cau_dds_session *session)
 		return;
 	}
 	cau_fail(&error, CAU_LIMIT, "tool",
-	         "too many samples name a tool that the session does not have");
+	         "samples were dropped because their session or tool does not exist (only the first %d "
+	         "such names get a refusal each)",
+	         CAU_DDS_STRANGERS_MOST);
 	tell_refused(session, "", "", &error);
 	session->drops_untold = session->refused > 0;
 }

@@ -50,8 +50,11 @@ static void finish(const cau_dds_control *control, cau_dds_request *request,
 {
 	dds_return_t code = dds_write(control->reply_writer, reply);
 	if (code)
-		cau_log(CAU_LOG_WARNING, NULL, "dds_reply_lost", "number=%llu reason=\"%s\"",
-		        (unsigned long long)request->number, dds_strretcode(code));
+		cau_log(
+			CAU_LOG_WARNING, NULL, "dds_reply_lost",
+			"number=%llu reason=\"cannot write cautery/session_reply (%s): the requester gets no "
+			"answer\"",
+			(unsigned long long)request->number, dds_strretcode(code));
 	*request = (cau_dds_request){0};
 }
 

@@ -65,7 +65,9 @@ static cau_status read_file(cau_dds_roles *roles, const char *file, cau_error *e
 	for (int number = 1; !status && fgets(line, sizeof line, stream); number++)
 		status = strlen(line) + 1 < sizeof line
 		             ? read_line(roles, line, number, error)
-		             : cau_fail(error, CAU_LIMIT, "dds_roles", "line %d is too long", number);
+		             : cau_fail(error, CAU_LIMIT, "dds_roles",
+		                        "line %d is longer than %zu bytes with its line end", number,
+		                        sizeof line - 2);
 	fclose(stream);
 	return status;
 }

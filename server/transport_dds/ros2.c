@@ -33,8 +33,13 @@ static cau_status check_jaw(const cau_hosted_tool *tool,
                             const sensor_msgs_msg_dds__JointState_ *sample, double *jaw,
                             cau_error *error)
 {
-	double angle_rad = sample->position_._length ? sample->position_._buffer[0] : NAN;
 	double open_rad = tool->state.definition.jaw_open_rad;
+	if (!sample->position_._length)
+		return cau_fail(
+			error, CAU_BAD_VALUE, "position",
+			"the sample has no position: position[0] is the angle of the jaws, 0 to %g rad",
+			open_rad);
+	double angle_rad = sample->position_._buffer[0];
 	if (!(angle_rad >= 0 && angle_rad <= open_rad))
 		return cau_fail(error, CAU_BAD_VALUE, "position", "%g rad is not within 0 to %g", angle_rad,
 		                open_rad);

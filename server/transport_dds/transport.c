@@ -155,11 +155,14 @@ static cau_status open_entities(cau_dds *dds, cau_error *error)
 	dds->wakeup.guard = dds_create_guardcondition(p);
 	const dds_entity_t made[] = {dds->entities.subscriber, dds->entities.publisher,
 	                             dds->entities.waitset, dds->wakeup.guard};
+	static const char *const failures[] = {
+		"cannot create the DDS subscriber", "cannot create the DDS publisher",
+		"cannot create the DDS waitset", "cannot create the DDS guard condition"};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] < 0)
-			return fail(error, "cannot create a DDS entity", made[i]);
+			return fail(error, failures[i], made[i]);
 	dds_return_t code = dds_waitset_attach(dds->entities.waitset, dds->wakeup.guard, 0);
-	return code ? fail(error, "cannot create a DDS waitset", code) : CAU_OK;
+	return code ? fail(error, "cannot attach to the DDS waitset", code) : CAU_OK;
 }
 
 cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub, cau_error *error)
@@ -194,9 +197,12 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 cau_status cau_dds_start(cau_dds *dds, cau_error *error)
 {
 	cau_dds_wake(&dds->wakeup, &dds->wakeup.sessions_changed);
-	dds->started = pthread_create(&dds->thread, NULL, run, dds) == 0;
-	if (!dds->started)
-		return cau_fail(error, CAU_NO_MEMORY, "dds", "cannot start the DDS thread");
+	int code = pthread_create(&dds->thread, NULL, run, dds);
+	dds->started = code == 0;
+	if (code)
+		return cau_fail(error, CAU_NO_MEMORY, "dds",
+		                "cannot start the DDS thread: %s (its limit: ulimit -u)",
+		                strerrordesc_np(code));
 	cau_log(CAU_LOG_NOTICE, NULL, "dds_open", "domain=%lld config=\"%s\" security=\"%s\"",
 	        (long long)dds->config->dds_domain,
 	        *dds->config->dds_config ? dds->config->dds_config : "loopback",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transport_ws/network.h"
 
+#include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -77,7 +78,12 @@ static cau_status open_context(cau_network *network, cau_error *error)
 		                (long long)config->port);
 	config->port = lws_get_vhost_listen_port(network->vhost);
 	if (!cau_input_open(network))
-		return cau_fail(error, CAU_IO, NULL, "no epoll descriptor");
+		return network->input < 0
+		           ? cau_fail(error, CAU_IO, NULL,
+		                      "cannot create the epoll descriptor of the connections: %s",
+		                      strerrordesc_np(errno))
+		           : cau_fail(error, CAU_IO, NULL,
+		                      "libwebsockets refuses the epoll descriptor of the connections");
 	return CAU_OK;
 }
 
@@ -130,8 +136,12 @@ static void *serve(void *argument)
 
 cau_status cau_network_start(cau_network *network, cau_error *error)
 {
-	network->started = pthread_create(&network->thread, NULL, serve, network) == 0;
-	return network->started ? CAU_OK : cau_fail(error, CAU_NO_MEMORY, NULL, "no network thread");
+	int code = pthread_create(&network->thread, NULL, serve, network);
+	network->started = code == 0;
+	return code ? cau_fail(error, CAU_NO_MEMORY, NULL,
+	                       "cannot start the network thread: %s (its limit: ulimit -u)",
+	                       strerrordesc_np(code))
+	            : CAU_OK;
 }
 
 void cau_network_wake(cau_network *network)

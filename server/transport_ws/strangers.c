@@ -144,7 +144,10 @@ static cau_connection *find_silent(const cau_network *network, const char *owner
 static void close_silent(cau_connection *c)
 {
 	c->network->counts.strangers_closed++;
-	cau_connection_close(c, CAU_CLOSE_FULL, "too many connections without hello");
+	_Static_assert(OF_ADDRESS_MOST == 128 && STRANGERS_MOST == 256, "the reason names both");
+	cau_connection_close(
+		c, CAU_CLOSE_FULL,
+		"too many connections without hello (at most 128 of an address, 256 of all)");
 }
 
 // Closes the oldest connection without hello if there are too many. Only the oldest is checked for

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "clock/clock.h"
 #include "worker/pool.h"
@@ -64,10 +65,13 @@ cau_status cau_watchdog_create(cau_watchdog **made, double (*look)(void *user, d
 	pthread_condattr_destroy(&monotonic);
 	w->look = look;
 	w->user = user;
-	w->started = pthread_create(&w->thread, NULL, watch, w) == 0;
-	if (!w->started) {
+	int code = pthread_create(&w->thread, NULL, watch, w);
+	w->started = code == 0;
+	if (code) {
 		cau_watchdog_destroy(w);
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no watchdog thread");
+		return cau_fail(error, CAU_NO_MEMORY, NULL,
+		                "cannot start the watchdog's thread: %s (its limit: ulimit -u)",
+		                strerrordesc_np(code));
 	}
 	*made = w;
 	return CAU_OK;

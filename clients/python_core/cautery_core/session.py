@@ -135,7 +135,7 @@ class Session:
     def __init__(self, scene: str | os.PathLike[str] | Mapping[str, Any], *, directory: str | None = None,
                  threads: int = 1, command_capacity: int = 1024, instruction_set: str | None = None) -> None:
         if instruction_set not in (None, *layout.INSTRUCTION_SETS):
-            raise ValueError(f"{instruction_set!r} is not one of {', '.join(layout.INSTRUCTION_SETS)}")
+            raise ValueError(f"instruction_set {instruction_set!r} is not one of {', '.join(layout.INSTRUCTION_SETS)}")
         self._core = core()
         self._lock = threading.Lock()
         definition = self._core.cau_default_session_def()
@@ -321,7 +321,7 @@ class Session:
         From the first call on, steps also compute stress, temperature or blood.
         """
         if name not in layout.SCALARS:
-            raise ValueError(f"{name!r} is not one of {', '.join(layout.SCALARS)}")
+            raise ValueError(f"scalar {name!r} is not one of {', '.join(layout.SCALARS)}")
         with self._lock:
             pointer = self._opened()
             if not self._watched & layout.SCALARS[name]:

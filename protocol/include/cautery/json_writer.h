@@ -38,7 +38,7 @@ typedef struct cau_json_writer {
 	bool occupied[CAU_JSON_MAX_DEPTH]; // the level has a value
 	bool flat[CAU_JSON_MAX_DEPTH];     // the level stays on one line despite `indent`
 	cau_status status;                 // the first failure
-	const char *reason;                // reason of the first failure; borrowed
+	char reason[240];                  // reason of the first failure
 } cau_json_writer;
 
 // Begins a text in `buffer`. `indent` is the number of spaces a level; 0 writes one line.
@@ -65,9 +65,10 @@ void cau_json_numbers(cau_json_writer *writer, const char *key, const double *va
 // Appends a text that is already JSON.
 void cau_json_raw(cau_json_writer *writer, const char *key, const char *json, size_t bytes);
 
-// Marks the text as invalid. cau_json_end reports the first failure. `reason` is borrowed until
-// cau_json_end.
-void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reason);
+// Marks the text as invalid. cau_json_end reports the first failure with its reason, a format of
+// printf and its values, of which 239 bytes are kept.
+__attribute__((format(printf, 3, 4))) void cau_json_fail(cau_json_writer *writer, cau_status status,
+                                                         const char *reason, ...);
 
 // Ends the text with a zero byte. *bytes (may be NULL) is the needed length without the zero, even
 // if it did not fit. Errors: CAU_LIMIT (the buffer is too small), CAU_BAD_VALUE (a number or string

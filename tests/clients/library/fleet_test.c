@@ -115,7 +115,7 @@ static void more_than_a_fleet_needs_is_not_taken(void **state)
 	                    CAU_FLEET_JSON_MAX_BYTES + 1);
 	memset(answer + head, ' ', CAU_FLEET_JSON_MAX_BYTES + 1);
 	assert_int_equal(ask(answer, patience_s, &fleet, &error), CAU_IO);
-	assert_non_null(strstr(error.reason, "too long"));
+	assert_non_null(strstr(error.reason, "longer than 65536 bytes"));
 }
 
 int main(void)

@@ -172,8 +172,8 @@ static void bad_primitives_are_named(void **state)
 		{{4, 0, NULL, 1, twice, 0, NULL}, CAU_BAD_MESH, "tetrahedron 0 has vertex 1 twice"},
 		{{4, 1, twice + 1, 0, NULL, 0, NULL}, CAU_BAD_MESH, "triangle 0 has vertex 1 twice"},
 		{{4, 0, NULL, 0, NULL, 1, negative}, CAU_BAD_MESH, "link 0 names vertex -1"},
-		{{4, 0, NULL, INT32_MAX / 6, good, 100, good}, CAU_LIMIT, "too many"},
-		{{4, -1, NULL, 0, NULL, 0, NULL}, CAU_LIMIT, "too many"},
+		{{4, 0, NULL, INT32_MAX / 6, good, 100, good}, CAU_LIMIT, "counts are at least 0"},
+		{{4, -1, NULL, 0, NULL, 0, NULL}, CAU_LIMIT, "counts are at least 0"},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		cau_edge_table table;

@@ -251,7 +251,7 @@ def all_obj():
          "mesh: 4 vertices, 2 triangles, 1 component, open surface with 4 edges on its rim",
          "size: 0.04 x 0.03 x 0 m, unit_m 1 (metres)", "regions: 0 (2 triangles)")
     case("half-textured.obj", square + "f 1 3 4\n",
-         "format: OBJ, 4 vertices", "read: 2 triangles", "passed over: 4 texture points of some corners",
+         "format: OBJ, 4 vertices", "read: 2 triangles", "passed over: 4 texture points (some corners have none)",
          "mesh: 4 vertices, 2 triangles, 1 component, open surface with 4 edges on its rim",
          "size: 0.04 x 0.03 x 0 m, unit_m 1 (metres)", "regions: 0 (2 triangles)")
     arrow = [(0, 0, 0), (.04, .015, 0), (0, .03, 0), (.01, .015, 0)]

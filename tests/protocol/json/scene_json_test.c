@@ -380,6 +380,12 @@ static void writing_refuses_what_it_cannot_say(void **state)
 	assert_int_equal(cau_scene_to_json(scene, text, sizeof text, &bytes, &error), CAU_LIMIT);
 	assert_true(bytes > sizeof text);
 	for (int kind = 0; kind < 6; kind++) {
+		static const char *const reasons[] = {"step_s is ",
+		                                      "solver is 77, not one of",
+		                                      "99 layers",
+		                                      "layers[0] has 0 materials, not 1 to 16",
+		                                      "the text of description has no zero byte",
+		                                      "seed is 18446744073709551615"};
 		cau_scene_def *bad = scene_of(everything);
 		if (kind == 0)
 			bad->step_s = 0.0 / (bad->damping_per_s - 1.0);
@@ -394,6 +400,7 @@ static void writing_refuses_what_it_cannot_say(void **state)
 		else
 			bad->seed = UINT64_MAX;
 		assert_int_equal(cau_scene_to_json(bad, text, sizeof text, NULL, &error), CAU_BAD_VALUE);
+		assert_non_null(strstr(error.reason, reasons[kind]));
 		free(bad);
 	}
 	free(scene);

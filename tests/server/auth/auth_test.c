@@ -231,7 +231,7 @@ static void a_broken_file_changes_nothing(void **state)
 		{"admin 0123456789abcdef\n\nroot fedcba9876543210\n", 0600, "line 3"},
 		{"view aaaaaaaaaaaaaaaa\nview short\n", 0600, "line 2"},
 		{"view\n", 0600, "line 1"},
-		{long_line, 0600, "line 1 is too long"},
+		{long_line, 0600, "line 1 is longer than 510 bytes"},
 		{"# none\n", 0600, "contains no token"},
 		{"", 0600, "contains no token"},
 		{"view aaaaaaaaaaaaaaaa\n", 0640, "read by other users"},

@@ -45,7 +45,7 @@ class Task(abc.ABC):
                  tissue: Tissue | None = None, tissue_count: int = _TISSUES, steps_most: int | None = None,
                  **settings: object) -> None:
         if render_mode not in (None, *self.metadata["render_modes"]):
-            raise ValueError(f"{render_mode!r} is not one of {self.metadata['render_modes']}")
+            raise ValueError(f"render_mode {render_mode!r} is not one of {self.metadata['render_modes']}")
         self._steps_most = self.steps_usual if steps_most is None else steps_most
         if not 1 <= tissue_count <= _TISSUES or self._steps_most < 1:
             raise ValueError(f"tissue_count must be 1 to {_TISSUES}, and steps_most at least 1")

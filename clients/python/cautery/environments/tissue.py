@@ -156,7 +156,8 @@ class RemoteTissue:
         self._done.update({wanted.tool: wanted for wanted in commands})
         for name, done in self._done.items():
             if state.tools[name]["energized"] != done.energized:
-                raise Error("energy went off without a command: another client uses this session")
+                raise Error(f"tool {name!r}: energy went on or off without a command of this environment "
+                            f"(energy_off: {state.tools[name].get('energy_off')}): is another client in this session?")
         assert state.positions is not None and state.removed is not None
         return Seen(state.tick, state.positions, state.removed, state.scalars,
                     {name: _seen_tool(tool) for name, tool in state.tools.items()},
