@@ -99,7 +99,7 @@ static bool exempt(cau_session *session, const double *guess, double most_m, boo
 
 // Largest number of substeps of the first guess. Each substep starts where the substep before it
 // ended.
-enum { MOST_LEGS = 16 };
+enum { MOST_SUBSTEPS = 16 };
 
 cau_status cau_session_make_collide(cau_session *session, cau_error *error)
 {
@@ -145,10 +145,10 @@ static void go(cau_session *session, double *position)
 
 // Moves the vertices towards the guess in several substeps, if the guess would lead through tissue.
 // Each substep starts where the last one ended, and is filtered.
-static void go_in_legs(cau_session *session, const double *guess, double *at)
+static void go_in_substeps(cau_session *session, const double *guess, double *at)
 {
 	cau_collide *collide = &session->collide;
-	for (int leg = 0; leg < MOST_LEGS; leg++) {
+	for (int substep = 0; substep < MOST_SUBSTEPS; substep++) {
 		go(session, at);
 		if (!collide->filter.out_of_reach)
 			return;
@@ -164,7 +164,7 @@ static void stop_guess(cau_session *session, double *guess)
 	cau_collide *collide = solver->collide;
 	double *at = solver->iterate.before; // the solver does not use this array before the solve
 	memcpy(at, session->vertices.start, 3 * (size_t)session->tissue.vertex_count * sizeof(double));
-	go_in_legs(session, guess, at);
+	go_in_substeps(session, guess, at);
 	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {
 		size_t v = (size_t)collide->surface.vertices.item[k];
 		if (!session->vertices.fixed[v])
@@ -179,7 +179,7 @@ void cau_session_begin_collide(cau_session *session)
 	if (session->scene->contact_thickness_m == 0)
 		return;
 	cau_surface_list(&collide->surface, session->dissection.face_mask);
-	double most_m = MOST_LEGS * cau_collide_most_step(collide);
+	double most_m = MOST_SUBSTEPS * cau_collide_most_step(collide);
 	bool cut_short, touches = exempt(session, guess, most_m, &cut_short);
 	session->solver.collide = touches ? collide : NULL;
 	collide->cut_short_count = cut_short;

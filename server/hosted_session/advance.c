@@ -53,7 +53,7 @@ static void apply(cau_hosted *h, const cau_order *order, cau_command *command)
 		        command->tool,
 		        error.reason); // cannot fail: the commands were checked just before
 	cau_record_command(&h->record, command, NULL, NULL, 0);
-	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE && command->as.energized && !drive.lit)
+	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE && command->as.energized && !drive.energized)
 		cau_timeline_add(&h->timeline, CAU_EVENT_ENERGY_ON, command->tool, order->asker.name, 0,
 		                 NULL);
 }

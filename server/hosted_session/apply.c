@@ -12,7 +12,7 @@ static void note_energy(cau_hosted_timeline *timeline, const cau_order *order,
                         const cau_action *action)
 {
 	bool on = order->as.command.as.energized;
-	if (action->was_lit != on)
+	if (action->was_energized != on)
 		cau_timeline_add(timeline, on ? CAU_EVENT_ENERGY_ON : CAU_EVENT_ENERGY_OFF,
 		                 order->as.command.tool, order->asker.name, 0, NULL);
 }

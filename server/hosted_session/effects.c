@@ -176,7 +176,7 @@ static void compare(cau_hosted_decisions *decisions, const cau_session *core)
 	int32_t count = 0;
 	for (int32_t i = 0; i < decisions->logic->drive_count; i++) {
 		const cau_drive *drive = &decisions->logic->drives[i];
-		if (drive->enabled && drive->lit && !drive->freeze)
+		if (drive->enabled && drive->energized && !drive->freeze)
 			allowed[count++] = drive->tool;
 	}
 	const char *odd = cau_session_heats_beyond(core, allowed, count);
@@ -235,8 +235,8 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 		memcpy(tools[i].name, frame.tools[i].name, sizeof tools[i].name);
 		// A store of an older build may have commands that wait in the core. These commands could
 		// still enable or move the tool, so they are voided too.
-		tools[i].lit = frame.tools[i].energized ||
-		               cau_session_waiting(h->core.session, frame.tools[i].name) > 0;
+		tools[i].energized = frame.tools[i].energized ||
+		                     cau_session_waiting(h->core.session, frame.tools[i].name) > 0;
 	}
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
 	                                 .time_s = cau_monotonic_s(),

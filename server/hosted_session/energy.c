@@ -62,11 +62,11 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 void cau_energy_cut(cau_hosted *h, const cau_action *action)
 {
 	const cau_drive *drive = &action->drive;
-	if (action->was_lit)
+	if (action->was_energized)
 		cau_energy_turn_off(h, drive->tool);
 	if (drive->freeze)
 		tell_core(h, CAU_COMMAND_TOOL_HOLD, drive->tool);
-	if (action->was_lit)
+	if (action->was_energized)
 		count_cut(h, drive);
 	h->frames.dirty = true;
 }

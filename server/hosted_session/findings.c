@@ -49,7 +49,7 @@ static void note_cut(cau_hosted_findings *findings, cau_hosted_timeline *timelin
 	const cau_drive *cutter = NULL;
 	int32_t count = cau_decisions_drives(decisions, drives);
 	for (int32_t i = 0; i < count; i++)
-		if (drives[i].lit)
+		if (drives[i].energized)
 			cutter = &drives[i];
 	cau_timeline_add(timeline, CAU_EVENT_CUT, cutter ? cutter->tool : NULL,
 	                 cutter ? cutter->driver.name : NULL, removed, NULL);

@@ -113,7 +113,7 @@ static bool energy_is_on(cau_hosted_decisions *decisions)
 	int32_t count = cau_decisions_drives(decisions, drives);
 	bool on = false;
 	for (int32_t i = 0; i < count; i++)
-		on |= drives[i].lit;
+		on |= drives[i].energized;
 	return on;
 }
 

@@ -4,8 +4,8 @@
 // Only an enable of the driver that counts turns a tool's energy on. Every other change turns it
 // off. Each energy cut-off notes its moment in the tool, and an enable counts only if it came
 // later. So an enable that waited in the queue has no effect if its driver meanwhile fell silent,
-// hid the page, or lost the tool. `enabled` is the decision and `lit` is what the core does. If a
-// tool is lit but not enabled, the worker's next act is the cut-off.
+// hid the page, or lost the tool. `enabled` is the decision and `energized` is what the core does.
+// If a tool is energized but not enabled, the worker's next act is the cut-off.
 #include <math.h>
 #include <stdio.h>
 
@@ -38,17 +38,17 @@ static uint64_t newest(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
-static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_effects *effects)
+static void switch_off(cau_drive *drive, int energy_off, const char *cause, cau_effects *effects)
 {
 	CAU_RULE_INDEX(energy_off, CAU_ENERGY_OFF_COUNT);
 	drive->cut_off = energy_off;
 	drive->by_order = false;
 	snprintf(drive->cut_cause, sizeof drive->cut_cause, "%s", cause);
-	if (drive->lit)
+	if (drive->energized)
 		cau_effect_wake(effects);
 	// A client that turns energy off still drives the tool, so the tool need not stop. In all other
 	// cases the tool stops where it is.
-	if (drive->lit && energy_off != CAU_ENERGY_OFF_COMMANDED)
+	if (drive->energized && energy_off != CAU_ENERGY_OFF_COMMANDED)
 		drive->freeze = true;
 	if (!drive->enabled)
 		return;
@@ -64,7 +64,7 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 {
 	CAU_RULE(cause[0] != 0, "tool %s is cut for no cause", drive->tool);
 	drive->cut_moment = newest(drive->cut_moment, moment);
-	go_dark(drive, energy_off, cause, effects);
+	switch_off(drive, energy_off, cause, effects);
 	CAU_RULE(!drive->enabled && drive->cut_moment >= moment,
 	         "tool %s is cut at %llu and its energy is on", drive->tool,
 	         (unsigned long long)moment);
@@ -77,11 +77,11 @@ void cau_drive_end_lockstep(cau_logic *logic)
 	logic->lockstep = 0;
 }
 
-void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
-                       cau_effects *effects)
+void cau_drive_cut_energized(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
+                             cau_effects *effects)
 {
 	cau_drive_end_lockstep(logic);
-	logic->dark_moment = newest(logic->dark_moment, moment);
+	logic->all_off_moment = newest(logic->all_off_moment, moment);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		cau_drive_cut(&logic->drives[i], moment, energy_off, cause, effects);
 }
@@ -91,7 +91,7 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
 // count once their client drives the tool.
 static void cut_lost(cau_drive *drive, const char *cause, cau_effects *effects)
 {
-	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
+	switch_off(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
 	// `frozen` is reported at once, as is energy off. The core stops the tool in the worker's next
 	// act.
 	drive->freeze = drive->frozen = true;
@@ -153,7 +153,7 @@ void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects)
 		CAU_RULE(drive->enabled || !drive->limit_tick, "tool %s is off and has a limit",
 		         drive->tool);
 		if (drive->limit_tick && drive->limit_tick <= logic->tick)
-			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "the limit of ticks is reached", effects);
+			switch_off(drive, CAU_ENERGY_OFF_COMMANDED, "the limit of ticks is reached", effects);
 	}
 }
 
@@ -193,7 +193,7 @@ void cau_drive_alive(cau_logic *logic, uint32_t client, const char *tool, double
 
 static bool is_to_cut(const cau_drive *drive, bool forced)
 {
-	return drive->freeze || (drive->lit && !drive->enabled && (forced || !drive->by_order));
+	return drive->freeze || (drive->energized && !drive->enabled && (forced || !drive->by_order));
 }
 
 bool cau_drive_is_to_cut(const cau_logic *logic)
@@ -210,8 +210,9 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 		cau_drive *drive = &logic->drives[i];
 		if (!is_to_cut(drive, forced))
 			continue;
-		*action = (cau_action){
-			.act = CAU_ACT_CUT, .was_lit = drive->lit && !drive->enabled, .drive = *drive};
+		*action = (cau_action){.act = CAU_ACT_CUT,
+		                       .was_energized = drive->energized && !drive->enabled,
+		                       .drive = *drive};
 		memcpy(logic->cutting, drive->tool, sizeof logic->cutting);
 		// a request to stop the tool that comes during the act is a new request
 		drive->freeze = false;
@@ -228,9 +229,9 @@ void cau_drive_cut_done(cau_logic *logic, cau_effects *effects)
 	CAU_RULE(drive != NULL, "tool %s is gone; tools come and go by the worker's own acts",
 	         logic->cutting);
 	drive->frozen = drive->cut_off == CAU_ENERGY_OFF_WATCHDOG;
-	if (!drive->lit || drive->enabled)
+	if (!drive->energized || drive->enabled)
 		return;
-	drive->lit = false;
+	drive->energized = false;
 	if (drive->energy_off == drive->cut_off)
 		return;
 	drive->energy_off = drive->cut_off; // energy was cut off before the core had the enable
@@ -394,10 +395,10 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
                       cau_effects *effects)
 {
 	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_TAKEN_OVER, "another driver", effects);
-	if (drive->lit)
+	if (drive->energized)
 		return false;
-	CAU_RULE(!drive->lit && !drive->enabled, "tool %s changes its driver while its energy is on",
-	         drive->tool);
+	CAU_RULE(!drive->energized && !drive->enabled,
+	         "tool %s changes its driver while its energy is on", drive->tool);
 	drive->driver = *to;
 	// A client that is handed a tool has given no sign of life for this tool yet.
 	drive->alive_s = to->client == order->asked.asker.client ? order->alive_s : 0;
@@ -410,7 +411,7 @@ void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *or
 {
 	CAU_RULE(order->asked.ask == CAU_ASK_ENERGY_ON || order->asked.ask == CAU_ASK_ADVANCE,
 	         "order %d lights tool %s", (int)order->asked.ask, drive->tool);
-	drive->lit = true;
+	drive->energized = true;
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
 	bool drives = drive->driver.client == order->asked.asker.client;
 	if (!drives || !counts(drive, order))
@@ -432,11 +433,11 @@ void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 	         (unsigned long long)order->asked.ticket);
 	CAU_RULE_INDEX(logic->drive_count, CAU_MAX_TOOLS); // checked in cau_drive_may_be_added
 	cau_drive *made = &logic->drives[logic->drive_count++];
-	*made = (cau_drive){.alive_s = order->alive_s,
-	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
-	                    .cut_off = CAU_ENERGY_OFF_NEVER_ENABLED,
-	                    .cut_moment =
-	                        newest(newest(order->moment, order->off_moment), logic->dark_moment)};
+	*made = (cau_drive){
+		.alive_s = order->alive_s,
+		.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
+		.cut_off = CAU_ENERGY_OFF_NEVER_ENABLED,
+		.cut_moment = newest(newest(order->moment, order->off_moment), logic->all_off_moment)};
 	memcpy(made->tool, order->asked.tool, sizeof made->tool);
 	if (!order->gone)
 		made->driver = order->asked.asker;
@@ -470,10 +471,10 @@ void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
 			if (strcmp(old[j].tool, event->tools[i].name) == 0)
 				*made = old[j];
 		memcpy(made->tool, event->tools[i].name, sizeof made->tool);
-		made->cut_moment = newest(made->cut_moment, logic->dark_moment);
+		made->cut_moment = newest(made->cut_moment, logic->all_off_moment);
 		made->enabled = made->frozen = made->by_order = false;
 		made->limit_tick = 0;
-		made->lit = made->freeze = event->tools[i].lit;
+		made->energized = made->freeze = event->tools[i].energized;
 		made->cut_off = CAU_ENERGY_OFF_RESTORED;
 		snprintf(made->cut_cause, sizeof made->cut_cause, "%s", event->cause ? event->cause : "");
 	}

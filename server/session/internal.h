@@ -18,8 +18,8 @@ cau_drive *cau_drive_find(cau_logic *logic, const char *tool);
 // Turns the tool's energy off. Every enable that came before `moment` is void.
 void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
                    cau_effects *effects);
-void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
-                       cau_effects *effects);
+void cau_drive_cut_energized(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
+                             cau_effects *effects);
 void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
                           cau_effects *effects);
 // True if the tool's energy is on and its driver gave no sign of life for longer than the deadline.
@@ -78,7 +78,7 @@ void cau_queue_cancel(cau_logic *logic, uint32_t client, uint64_t number, cau_ef
 void cau_queue_overtake(cau_logic *logic, uint64_t moment);
 void cau_queue_forget(cau_logic *logic, uint32_t client);
 // Makes enables from before `moment` void, for a tool that does not exist yet.
-void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment);
+void cau_queue_switch_off(cau_logic *logic, const char *tool, uint64_t moment);
 void cau_queue_committed(cau_logic *logic, cau_effects *effects);
 // Returns the first order that may be served at this border, or NULL.
 cau_waiting *cau_queue_head(cau_logic *logic);

@@ -41,8 +41,8 @@ static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effec
 	snprintf(logic->store_reason, sizeof logic->store_reason, "%s",
 	         event->cause ? event->cause : "");
 	if (!event->store_takes) // without the store, no client could control the energy
-		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the store is full",
-		                  effects);
+		cau_drive_cut_energized(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the store is full",
+		                        effects);
 }
 
 static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
@@ -137,8 +137,8 @@ static void take(cau_logic *logic, const cau_logic_event *event, cau_effects *ef
 		break;
 	case CAU_LOGIC_DRAIN:
 		logic->draining = true;
-		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the daemon is ending",
-		                  effects);
+		cau_drive_cut_energized(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG,
+		                        "the daemon is ending", effects);
 		cau_effect_wake(effects);
 		break;
 	case CAU_LOGIC_END:
@@ -191,7 +191,7 @@ static bool is_about_tool(cau_ask ask)
 static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action,
                   cau_effects *effects)
 {
-	cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "paused", effects);
+	cau_drive_cut_energized(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "paused", effects);
 	if (cau_drive_next_cut(logic, true, action))
 		return false;
 	cau_queue_overtake(logic, order->moment);
@@ -226,8 +226,8 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 		return refuse(action, CAU_BAD_STATE, 0, "", "the client that sent this request is gone");
 	action->changed = drive->driver.client != to.client;
 	const cau_drive before = *drive;
-	// If energy is on, the driver cannot change before a cut-off. The tool's `lit` is then set, so
-	// cau_drive_next_cut finds a cut-off.
+	// If energy is on, the driver cannot change before a cut-off. The tool's `energized` is then
+	// set, so cau_drive_next_cut finds a cut-off.
 	if (action->changed && !cau_drive_change(drive, order, &to, effects))
 		return !cau_drive_next_cut(logic, true, action);
 	if (action->changed)
@@ -244,7 +244,7 @@ static bool remove_tool(cau_logic *logic, const cau_waiting *order, cau_action *
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
 	CAU_RULE(drive != NULL, "tool %s was to be removed, and there is no such tool",
 	         order->asked.tool);
-	if (!drive->lit)
+	if (!drive->energized)
 		return true;
 	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "the tool was removed", effects);
 	return !cau_drive_next_cut(logic, true, action);
@@ -294,7 +294,7 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 	if (asked->ask == CAU_ASK_TOOL_ADD && !cau_drive_may_be_added(logic, asked->tool, action))
 		return false;
 	const cau_drive *drive = cau_logic_drive(logic, asked->tool);
-	action->was_lit = drive && drive->lit;
+	action->was_energized = drive && drive->energized;
 	switch (asked->ask) {
 	case CAU_ASK_TAKE_OVER:
 	case CAU_ASK_HAND_OVER:
@@ -483,17 +483,18 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_ENERGY_OFF:
 		CAU_RULE(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);
-		drive->lit = false;
+		drive->energized = false;
 		drive->by_order = drive->by_order && cau_queue_off_waits(logic, order->asked.tool);
 		break;
 	case CAU_ASK_GO:
 		logic->going = true;
-		cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_RESTORED,
-		                  "the session was rewound or reset", effects);
+		cau_drive_cut_energized(logic, order->moment, CAU_ENERGY_OFF_RESTORED,
+		                        "the session was rewound or reset", effects);
 		break;
 	case CAU_ASK_DESTROY:
 		logic->ended = true;
-		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_COMMANDED, "destroyed", effects);
+		cau_drive_cut_energized(logic, logic->moment, CAU_ENERGY_OFF_COMMANDED, "destroyed",
+		                        effects);
 		break;
 	case CAU_ASK_ADVANCE:
 		advance(logic, order, effects);

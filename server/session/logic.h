@@ -138,7 +138,7 @@ typedef struct cau_drive {
 	double alive_s;      // the driver's newest sign of life
 	bool enabled;        // the newest event about energy is an enable that counts
 	uint64_t limit_tick; // if enabled: energy goes off at the border of this tick; 0: no limit
-	bool lit;            // the core heats the tool
+	bool energized;      // the core heats the tool
 	bool freeze;         // the worker must stop the tool where it is, at the next border
 	bool frozen;         // the tool stays where it is until its driver moves it
 	// the newest cut-off comes from an order in the queue, and that order turns the core's energy
@@ -175,7 +175,7 @@ typedef enum cau_logic_event_kind {
 
 typedef struct cau_arrived_tool {
 	char name[CAU_NAME_BYTES];
-	bool lit;
+	bool energized;
 } cau_arrived_tool;
 
 typedef struct cau_logic_event {
@@ -233,7 +233,7 @@ typedef enum cau_act {
 	// later.
 	CAU_ACT_LOOK,
 	CAU_ACT_ORDER, // with ticket: do the order; cau_logic_done takes the outcome
-	// with drive and was_lit: turn energy off and, if drive.freeze, stop the tool where it is
+	// with drive and was_energized: turn energy off and, if drive.freeze, stop the tool where it is
 	CAU_ACT_CUT,
 	CAU_ACT_PAUSE,      // pause the session; the order to pause was answered on arrival
 	CAU_ACT_STEP,       // compute a tick
@@ -244,9 +244,9 @@ typedef enum cau_act {
 typedef struct cau_action {
 	cau_act act;
 	uint64_t ticket;
-	bool motion;  // REFUSE: the order needs no answer
-	bool was_lit; // CUT, and ORDER of ENERGY_OFF: the core heated the tool
-	bool changed; // ORDER: the driver or the state of time has changed
+	bool motion;        // REFUSE: the order needs no answer
+	bool was_energized; // CUT, and ORDER of ENERGY_OFF: the core heated the tool
+	bool changed;       // ORDER: the driver or the state of time has changed
 	cau_error error;
 	int32_t code;
 	cau_drive drive; // CUT, and ORDER about a tool: its present state
@@ -290,7 +290,7 @@ typedef struct cau_logic {
 	cau_drive drives[CAU_MAX_TOOLS];
 	int32_t drive_count;
 	// moment of the newest cut-off of all energy; applies to tools that are added later, too
-	uint64_t dark_moment;
+	uint64_t all_off_moment;
 	// the queue, in the order of arrival
 	bool border; // the worker is between two ticks, and serves orders from before border_moment
 	uint64_t border_moment; // moment at which this border began

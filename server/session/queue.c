@@ -279,7 +279,7 @@ static bool turns_on(const cau_asked *asked, const char *tool)
 	return false;
 }
 
-void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
+void cau_queue_switch_off(cau_logic *logic, const char *tool, uint64_t moment)
 {
 	CAU_RULE(!cau_drive_find(logic, tool), "tool %s is there and keeps its own moments", tool);
 	for (int32_t i = 0; i < logic->count; i++) {
@@ -379,7 +379,7 @@ static void turn_off(cau_logic *logic, const cau_asked *asked, const char *tool,
 		cau_drive_cut(drive, logic->moment, CAU_ENERGY_OFF_COMMANDED, cause, effects);
 		drive->by_order = queued;
 	} else {
-		cau_queue_darken(logic, tool, logic->moment);
+		cau_queue_switch_off(logic, tool, logic->moment);
 	}
 	for (int32_t i = 0; i < logic->count; i++)
 		cut_coming(logic, &logic->waiting[i], tool);

@@ -15,15 +15,15 @@ void cau_logic_fault(cau_logic *logic, const char *reason, cau_effects *effects)
 	logic->state = CAU_SESSION_FAULTED;
 	logic->steps_left = 0;
 	snprintf(logic->fault, sizeof logic->fault, "%s", reason);
-	cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the session is faulted",
-	                  effects);
+	cau_drive_cut_energized(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the session is faulted",
+	                        effects);
 }
 
-// Checks one tool. An enabled tool is also lit, and has a driver.
+// Checks one tool. An enabled tool is also energized, and has a driver.
 static void expect_sound_drive(const cau_logic *logic, const cau_drive *drive)
 {
 	CAU_RULE(drive->tool[0] != 0, "a tool of %d has no name", logic->drive_count);
-	CAU_RULE(!drive->enabled || drive->lit, "tool %s is enabled and its energy is off",
+	CAU_RULE(!drive->enabled || drive->energized, "tool %s is enabled and its energy is off",
 	         drive->tool);
 	CAU_RULE(!drive->enabled || drive->driver.client, "tool %s is enabled without a driver",
 	         drive->tool);
@@ -47,8 +47,8 @@ void cau_logic_expect_sound(const cau_logic *logic)
 	         (unsigned long long)logic->tick);
 	CAU_RULE(logic->step_s > 0 && logic->speed > 0, "ticks of %g s at speed %g", logic->step_s,
 	         logic->speed);
-	CAU_RULE(logic->dark_moment <= logic->moment, "all energy went off at moment %llu of %llu",
-	         (unsigned long long)logic->dark_moment, (unsigned long long)logic->moment);
+	CAU_RULE(logic->all_off_moment <= logic->moment, "all energy went off at moment %llu of %llu",
+	         (unsigned long long)logic->all_off_moment, (unsigned long long)logic->moment);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		expect_sound_drive(logic, &logic->drives[i]);
 	for (int32_t i = 1; i < logic->count; i++)
@@ -58,13 +58,13 @@ void cau_logic_expect_sound(const cau_logic *logic)
 
 // ---- after a broken rule ------------------------------------------------------------------------
 
-// Turns the tool's energy off and requests a cut-off, even if `lit` says that the core does not
-// heat. The state may be wrong, and the core is the part that heats.
+// Turns the tool's energy off and requests a cut-off, even if `energized` says that the core does
+// not heat. The state may be wrong, and the core is the part that heats.
 static void take_energy_off(cau_logic *logic, cau_drive *drive)
 {
 	drive->tool[sizeof drive->tool - 1] = 0;
 	drive->enabled = drive->by_order = drive->freeze = false;
-	drive->lit = true;
+	drive->energized = true;
 	drive->limit_tick = 0;
 	drive->driver.deadline_s = drive->driver.deadline_s >= 0 ? drive->driver.deadline_s : 0;
 	drive->energy_off = drive->cut_off = CAU_ENERGY_OFF_WATCHDOG;
@@ -85,7 +85,7 @@ static void mend_drives(cau_logic *logic)
 		logic->drives[kept++] = *drive;
 	}
 	logic->drive_count = kept;
-	logic->dark_moment = logic->moment;
+	logic->all_off_moment = logic->moment;
 }
 
 static void mend_queue(cau_logic *logic, bool give_up)

@@ -69,8 +69,8 @@ static bool leave_lockstep(cau_logic *logic, const cau_waiting *order, cau_actio
 {
 	if (!logic->lockstep)
 		return true;
-	cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "lock-step has ended",
-	                  effects);
+	cau_drive_cut_energized(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "lock-step has ended",
+	                        effects);
 	CAU_RULE(!logic->lockstep && !logic->steps_left, "lock-step goes on, with %lld ticks",
 	         (long long)logic->steps_left);
 	return !cau_drive_next_cut(logic, true, action) && !cau_time_end_of_steps(logic, action);

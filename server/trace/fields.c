@@ -111,7 +111,8 @@ static const char *const status_words[] = {CAU_STATUS_TABLE(X)};
 		CHOICE(type, prefix ".role", member.role, role_words),                                     \
 		REAL(type, prefix ".deadline_s", member.deadline_s)
 #define TOOL(i)                                                                                    \
-	CALL(TEXT, "tools." #i ".name", tools[i].name), CALL(TRUTH, "tools." #i ".lit", tools[i].lit)
+	CALL(TEXT, "tools." #i ".name", tools[i].name),                                                \
+		CALL(TRUTH, "tools." #i ".energized", tools[i].energized)
 #define PART(i)                                                                                    \
 	CALL(TEXT, "parts." #i ".tool", asked.parts[i].tool),                                          \
 		CALL(SIGNED, "parts." #i ".command", asked.parts[i].command),                              \
@@ -173,7 +174,7 @@ static const field call_fields[] = {
 
 static const field action_fields[] = {
 	CHOICE(cau_action, "act", act, act_words), UNSIGNED(cau_action, "ticket", ticket),
-	TRUTH(cau_action, "motion", motion),       TRUTH(cau_action, "was_lit", was_lit),
+	TRUTH(cau_action, "motion", motion),       TRUTH(cau_action, "was_energized", was_energized),
 	TRUTH(cau_action, "changed", changed),     ERROR(cau_action),
 	SIGNED(cau_action, "code", code),
 };
@@ -189,7 +190,7 @@ static const field drive_fields[] = {
 	REAL(cau_drive, "drive.alive_s", alive_s),
 	TRUTH(cau_drive, "drive.enabled", enabled),
 	UNSIGNED(cau_drive, "drive.limit_tick", limit_tick),
-	TRUTH(cau_drive, "drive.lit", lit),
+	TRUTH(cau_drive, "drive.energized", energized),
 	TRUTH(cau_drive, "drive.freeze", freeze),
 	TRUTH(cau_drive, "drive.frozen", frozen),
 	TRUTH(cau_drive, "drive.by_order", by_order),

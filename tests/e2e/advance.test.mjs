@@ -45,7 +45,7 @@ function simulated(folder, definition, log) {
 }
 
 // In lock-step, the hook on.
-async function lit(client, name, options = {}) {
+async function energized(client, name, options = {}) {
 	const session = await smallSession(client, name, { paused: true, ephemeral: true, ...options });
 	await client.call('tool.take_over', hook(session));
 	const { tools: [tool] } = await advance(client, session, [move(-0.02), energy(true)]);
@@ -94,7 +94,7 @@ test('commands, ticks and what came of them in one answer', async () => {
 
 test('all of the commands or none, with the place of the first that is wrong', async () => {
 	const client = await daemon.connect();
-	const session = await lit(client, 'all-or-none');
+	const session = await energized(client, 'all-or-none');
 	const { tick } = await advance(client, session, [], { ticks: 0 });
 	const bad = [
 		[[move(0.01), { method: 'tool.move', tool: 'hook', position_m: [0, 0, 0] }], 'params.commands[1].rotation'],
@@ -117,7 +117,7 @@ test('all of the commands or none, with the place of the first that is wrong', a
 
 test('one client alone advances; another that drives nothing must not use its tools', async () => {
 	const [client, other] = [await daemon.connect(), await daemon.connect()];
-	const session = await lit(client, 'alone');
+	const session = await energized(client, 'alone');
 	await assert.rejects(advance(other, session), (error) => error.data.status === 'bad_state' && /lock-step/.test(error.data.reason));
 	await client.call('session.step', { session, ticks: 1 });
 	await assert.rejects(advance(other, session, [move(0)]), (error) => error.code === -32045 && error.data.path === 'params.commands[0].tool');
@@ -137,7 +137,7 @@ test('each way out turns energy off, and frames say so', async () => {
 	};
 	for (const [way, leave] of Object.entries(ways)) {
 		const client = await daemon.connect();
-		const session = await lit(client, 'left', { ephemeral: false });
+		const session = await energized(client, 'left', { ephemeral: false });
 		const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });
 		await watcher.until(() => stream.tools[0].energized, `${way}: energy on`);
 		const { tick } = stream;
@@ -168,7 +168,7 @@ test('a restore ends it, energy off, and the next advance begins it again', asyn
 
 test('silence is counted in ticks: not in seconds, and not beyond the deadline', async () => {
 	const client = await daemon.connect();
-	const session = await lit(client, 'silent');
+	const session = await energized(client, 'silent');
 	await sleep(1000); // four deadlines, and no heartbeat
 	assert.equal((await advance(client, session)).tools[0].energized, true);
 	const within = await advance(client, session, [], { ticks: DEADLINE_TICKS });
@@ -199,7 +199,7 @@ test('a tool that another client drives keeps its seconds', async () => {
 
 test('off in a request acts even where the request is refused', async () => {
 	const [client, other] = [await daemon.connect(), await daemon.connect()];
-	const session = await lit(client, 'off');
+	const session = await energized(client, 'off');
 	await assert.rejects(advance(other, session, [energy(false)]), (error) => error.data.status === 'bad_state');
 	assert.equal((await advance(client, session)).tools[0].energized, false);
 	await Promise.all([client.close(), other.close()]);

@@ -13,7 +13,7 @@ const TICKS_LOOKED = 4; // after which an enable that still waited would have sh
 
 let daemon, watcher;
 before(async () => {
-	// The watchdog is patient, so that what was lit by mistake stays lit and is seen.
+	// The watchdog is patient, so that energy that is on by mistake stays on and is seen.
 	daemon = await Daemon.start({ settings: { browser_deadline_s: 10, resume_s: 0 } });
 	watcher = await daemon.connect();
 });
@@ -25,7 +25,7 @@ const energize = (client, session, energized = true) => client.call('tool.energi
 async function staysDark(stream) {
 	const tick = stream.tick;
 	await watcher.until(() => {
-		assert.equal(stream.tools[0].energized, false, `lit at tick ${stream.tick}`);
+		assert.equal(stream.tools[0].energized, false, `energized at tick ${stream.tick}`);
 		return stream.tick > tick + TICKS_LOOKED;
 	}, 'some ticks');
 }
@@ -103,7 +103,7 @@ test('an enable whose connection is lost lights nothing', async () => {
 	}
 });
 
-test('energy that is asked for at a later tick is not lit for a driver who is lost before', async () => {
+test('energy that is asked for at a later tick stays off for a driver who is lost before', async () => {
 	const session = await smallSession(watcher, 'later');
 	const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });
 	const client = await daemon.connect();
@@ -112,7 +112,7 @@ test('energy that is asked for at a later tick is not lit for a driver who is lo
 	client.notify('tool.energize', { ...hook(session), energized: true, tick });
 	client.notify('heartbeat', { visible: false });
 	await watcher.until(() => {
-		assert.equal(stream.tools[0].energized, false, `lit at tick ${stream.tick}`);
+		assert.equal(stream.tools[0].energized, false, `energized at tick ${stream.tick}`);
 		return stream.tick > tick + TICKS_LOOKED;
 	}, 'its tick');
 	await client.close();

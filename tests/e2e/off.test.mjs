@@ -36,7 +36,7 @@ async function flood(client, session) {
 	return refusals;
 }
 
-async function lit(name, options = {}) {
+async function energized(name, options = {}) {
 	const session = await smallSession(operator, name, options);
 	const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });
 	await flood(operator, session);
@@ -97,7 +97,7 @@ test('a client has 64 commands for later ticks; they are listed, cancelled, and 
 });
 
 test('off', async () => {
-	const { session, stream, driver } = await lit('off');
+	const { session, stream, driver } = await energized('off');
 	const ahead = queueAhead(driver, session, stream.tick + 2 * LOOKED);
 	await energize(operator, session, false);
 	await staysDark(stream);
@@ -108,7 +108,7 @@ test('off', async () => {
 
 test('a hidden page, a lost connection: what the driver had queued moves and heats nothing', async () => {
 	for (const how of ['hidden', 'lost']) {
-		const { session, stream, driver } = await lit(how);
+		const { session, stream, driver } = await energized(how);
 		const ahead = queueAhead(driver, session, stream.tick + LOOKED);
 		await driver.call('session.describe', { session });
 		if (how === 'hidden')
@@ -128,7 +128,7 @@ test('a hidden page, a lost connection: what the driver had queued moves and hea
 
 test('a hand-over, a take-over: nothing of the driver before acts, not even its scheduled off', async () => {
 	for (const how of ['hand', 'take']) {
-		const { session, stream, driver } = await lit(how);
+		const { session, stream, driver } = await energized(how);
 		const ahead = queueAhead(driver, session, stream.tick + LOOKED);
 		const off = failed(energize(driver, session, false, { tick: stream.tick + LOOKED }));
 		await driver.call('session.describe', { session });
@@ -155,7 +155,7 @@ test('a hand-over, a take-over: nothing of the driver before acts, not even its 
 });
 
 test('a pause', async () => {
-	const { session, stream, driver } = await lit('pause');
+	const { session, stream, driver } = await energized('pause');
 	const ahead = queueAhead(driver, session, stream.tick + LOOKED);
 	await operator.call('session.pause', { session });
 	await watcher.until(() => !stream.tools[0].energized, 'energy off');

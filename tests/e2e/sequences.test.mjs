@@ -11,7 +11,7 @@ import { AT_REST, smallSession } from './wire/scene.mjs';
 const SEQUENCES = Number(process.env.E2E_SEQUENCES ?? 240), SEED = Number(process.env.E2E_SEED ?? 1);
 const LANES = 8, ROUND = 15; // sessions at once, and sequences of each between two kills
 const STEPS_MOST = 10, LATER_MOST = 8; // ticks ahead
-const LIT_LEAST = 0.25; // of the sequences; otherwise the test shows nothing
+const ENERGIZED_LEAST = 0.25; // of the sequences; otherwise the test shows nothing
 const CUTS = ['off', 'off_by_other', 'hidden', 'lost', 'taken_over', 'pause', 'reset', 'restore'];
 
 // Mulberry32: each session has its own numbers, so that they do not depend on how the sessions interleave.
@@ -35,7 +35,7 @@ class Lane {
 		this.random = randomOf(1000 * SEED + index);
 		this.index = index;
 		this.steps = [];
-		this.lit = this.count = 0;
+		this.energized = this.count = 0;
 	}
 
 	get hook() {
@@ -151,7 +151,7 @@ class Lane {
 			if (stream.epoch !== epoch || stream.tick <= summary.tick)
 				return false;
 			assert.equal(stream.tools[0].energized, false,
-				`${this.session}, seed ${SEED}, sequence ${this.count}: lit at tick ${stream.tick}, after ${what} at ${summary.tick}`);
+				`${this.session}, seed ${SEED}, sequence ${this.count}: energized at tick ${stream.tick}, after ${what} at ${summary.tick}`);
 			return stream.tick > until;
 		}, 'some ticks');
 	}
@@ -169,7 +169,7 @@ class Lane {
 		await this.ticks(this.random(3));
 		await this.cut(kind, who);
 		await this.staysDark(`${this.steps.join(' ')} and ${kind} by ${who}`);
-		this.lit += this.seen;
+		this.energized += this.seen;
 		this.count++;
 	}
 
@@ -205,8 +205,8 @@ test(`${SEQUENCES} sequences: no energy after a cut, nor after kill -9`, async (
 			await lane.staysDark('kill -9');
 		}));
 	}
-	t.diagnostic(`${sum('count')} sequences with energy on in ${sum('lit')}, and ${kills} kills, seed ${SEED}: none lit after its cut`);
-	assert.ok(sum('lit') >= LIT_LEAST * sum('count'), `energy was on in ${sum('lit')} alone`);
+	t.diagnostic(`${sum('count')} sequences with energy on in ${sum('energized')}, and ${kills} kills, seed ${SEED}: none energized after its cut`);
+	assert.ok(sum('energized') >= ENERGIZED_LEAST * sum('count'), `energy was on in ${sum('energized')} alone`);
 	await Promise.all(lanes.map((lane) => lane.end()));
 	await daemon.end();
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What takes long is the builder's: no worker is held by it, whatever is done with a large session, and
-// who is driven beside it is dark in time.
+// who is driven beside it is switched off in time.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';

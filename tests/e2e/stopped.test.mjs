@@ -70,7 +70,7 @@ async function stop(hand, stream, livesS, last = () => {}) {
 	const seen = [], goesOn = 1e6 * now();
 	const watching = setInterval(() => {}, 1000); // keeps this process
 	const on = watcher.until(() => {
-		seen.push({ tick: stream.tick, made: stream.published, lit: stream.tools[0].energized });
+		seen.push({ tick: stream.tick, made: stream.published, energized: stream.tools[0].energized });
 		return stream.published > goesOn + 2e6 * DEADLINE_S && !stream.tools[0].energized;
 	}, 'energy off, and two deadlines over');
 	daemon.process.kill('SIGCONT');
@@ -78,7 +78,7 @@ async function stop(hand, stream, livesS, last = () => {}) {
 	await answer;
 	clearInterval(watching);
 	const before = Math.max(...seen.filter(({ made }) => made < goesOn).map(({ tick }) => tick), phase);
-	return Math.max(0, ...seen.filter(({ lit }) => lit).map(({ tick }) => tick - before));
+	return Math.max(0, ...seen.filter(({ energized }) => energized).map(({ tick }) => tick - before));
 }
 
 async function measure(t, name, sign, livesS, last) {

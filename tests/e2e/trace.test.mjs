@@ -95,10 +95,10 @@ test('all that a session decides is written down and plays again, also of a daem
 test('a trace that tells another story is found out', async () => {
 	const [file] = traces();
 	const text = readFileSync(file, 'utf8');
-	const darkened = text.replace(/( {2}effect=tell .*)drive\.lit=1/, '$1');
-	assert.notEqual(darkened, text);
+	const off = text.replace(/( {2}effect=tell .*)drive\.energized=1/, '$1');
+	assert.notEqual(off, text);
 	const other = join(folder, 'other.trace');
-	writeFileSync(other, darkened);
+	writeFileSync(other, off);
 	await assert.rejects(run(process.env.REPLAY_TRACE, [other]), ({ code, stderr }) => {
 		assert.equal(code, 1);
 		assert.match(stderr, /line \d+: the trace has '.*effect=tell/);

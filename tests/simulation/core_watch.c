@@ -140,7 +140,7 @@ static unsigned check_tool(const core_book *book, const cau_tool_state *tool, co
 	for (int t = 0; t < TOOLS; t++) {
 		if (!tool->energized || strcmp(tool->name, sim_tools[t]) != 0)
 			continue;
-		promises_counted.lit_ticks++;
+		promises_counted.energized_ticks++;
 		if (work->allowed[t] != ENERGY_ALLOWED)
 			sim_fail(promise_of(book->place, work->allowed[t]), "%s begins a tick with %s on; %s",
 			         book->id, tool->name,

@@ -164,15 +164,15 @@ WRAPPED void __wrap_cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visibl
 	                         alive_s);
 }
 
-void __real_cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
-                              cau_effects *effects);
-void __wrap_cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
-                              cau_effects *effects);
-WRAPPED void __wrap_cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off,
-                                      const char *cause, cau_effects *effects)
+void __real_cau_drive_cut_energized(cau_logic *logic, uint64_t moment, int energy_off,
+                                    const char *cause, cau_effects *effects);
+void __wrap_cau_drive_cut_energized(cau_logic *logic, uint64_t moment, int energy_off,
+                                    const char *cause, cau_effects *effects);
+WRAPPED void __wrap_cau_drive_cut_energized(cau_logic *logic, uint64_t moment, int energy_off,
+                                            const char *cause, cau_effects *effects)
 {
 	if (strcmp(cause, "paused") != 0 || !faults_act(FAULT_pause_keeps_energy, 1))
-		__real_cau_drive_cut_lit(logic, moment, energy_off, cause, effects);
+		__real_cau_drive_cut_energized(logic, moment, energy_off, cause, effects);
 }
 
 void __real_cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects);

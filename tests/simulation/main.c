@@ -68,7 +68,7 @@ static void add(totals *t, const run_result *r)
 	t->switches += r->switches;
 	t->simulated_s += 1e-9 * (double)r->simulated_ns;
 	t->counts.ticks += r->counts.ticks;
-	t->counts.lit_ticks += r->counts.lit_ticks;
+	t->counts.energized_ticks += r->counts.energized_ticks;
 	t->counts.answers += r->counts.answers;
 	t->counts.acknowledged += r->counts.acknowledged;
 	t->counts.restarts += r->counts.restarts;
@@ -88,7 +88,7 @@ static void print_totals(const totals *t)
 		(unsigned long long)t->switches);
 	printf("%llu ticks, %llu of a tool with energy on, %llu answers, %llu acknowledged marks, "
 	       "%llu starts, %llu frames, %llu moves\n",
-	       (unsigned long long)t->counts.ticks, (unsigned long long)t->counts.lit_ticks,
+	       (unsigned long long)t->counts.ticks, (unsigned long long)t->counts.energized_ticks,
 	       (unsigned long long)t->counts.answers, (unsigned long long)t->counts.acknowledged,
 	       (unsigned long long)t->counts.restarts, (unsigned long long)t->counts.frames,
 	       (unsigned long long)t->counts.moves);

@@ -58,7 +58,7 @@ void promises_calm(void);
 void promises_settled(void); // checks the state after promises_calm
 
 typedef struct promise_counts {
-	uint64_t ticks, lit_ticks, cuts_seen, answers, acknowledged, restarts, frames, replays, checks,
-		moves;
+	uint64_t ticks, energized_ticks, cuts_seen, answers, acknowledged, restarts, frames, replays,
+		checks, moves;
 } promise_counts;
 extern promise_counts promises_counted;

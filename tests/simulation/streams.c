@@ -42,8 +42,8 @@ typedef struct stream {
 typedef struct seen_state {
 	bool used;
 	uint64_t tick;
-	double height_m; // height of the first vertex
-	unsigned lit;    // tools with energy on, one bit for each tool
+	double height_m;    // height of the first vertex
+	unsigned energized; // tools with energy on, one bit for each tool
 } seen_state;
 
 static struct {
@@ -59,7 +59,7 @@ void streams_begin(const sim_profile *profile)
 }
 
 // ---- states of the core
-static unsigned lit_bit(const char *tool, bool energized)
+static unsigned energized_bit(const char *tool, bool energized)
 {
 	for (int t = 0; t < TOOLS; t++)
 		if (energized && strcmp(tool, sim_tools[t]) == 0)
@@ -78,7 +78,7 @@ WRAPPED void __wrap_cau_frames_publish(cau_hosted *h, double now_s)
 		seen_state *state = &seen.states[place][seen.at[place]++ % SEEN];
 		*state = (seen_state){true, frame.tick, frame.position[2], 0};
 		for (int32_t i = 0; i < frame.tool_count; i++)
-			state->lit |= lit_bit(frame.tools[i].name, frame.tools[i].energized);
+			state->energized |= energized_bit(frame.tools[i].name, frame.tools[i].energized);
 	}
 	__real_cau_frames_publish(h, now_s);
 }
@@ -89,22 +89,23 @@ static void compare(const stream *s, int client)
 	double position[3 * 9];
 	const cau_stream_state *state = cau_frame_decoder_state(s->decoder);
 	bool known = false;
-	unsigned lit = 0;
+	unsigned energized = 0;
 	cau_frame_decoder_position(s->decoder, position);
 	for (int32_t i = 0; i < state->tool_count; i++)
-		lit |= lit_bit(state->tools[i].name, state->tools[i].energized);
+		energized |= energized_bit(state->tools[i].name, state->tools[i].energized);
 	for (int i = 0; i < SEEN; i++) {
 		const seen_state *was = &seen.states[s->place][i];
 		if (!was->used || was->tick != state->tick)
 			continue;
 		known = true;
-		if (was->lit == lit && fabs(was->height_m - position[2]) <= 0.51 * s->def.step_m)
+		if (was->energized == energized &&
+		    fabs(was->height_m - position[2]) <= 0.51 * s->def.step_m)
 			return;
 	}
 	if (known)
 		sim_fail("stream",
 		         "client %d holds height %.6f m, energy %#x at tick %llu, which never was", client,
-		         position[2], lit, (unsigned long long)state->tick);
+		         position[2], energized, (unsigned long long)state->tick);
 }
 
 // ---- joining

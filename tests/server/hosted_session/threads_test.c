@@ -37,10 +37,10 @@ static request *enable_meets(moment at, loss kind)
 	return enable;
 }
 
-static uint64_t lit_ticks(void)
+static uint64_t energized_ticks(void)
 {
 	pthread_mutex_lock(&threads.lock);
-	uint64_t ticks = threads.tools[0].lit_ticks;
+	uint64_t ticks = threads.tools[0].energized_ticks;
 	pthread_mutex_unlock(&threads.lock);
 	return ticks;
 }
@@ -53,9 +53,9 @@ static void assert_a_loss_holds(moment at, loss kind)
 	assert_true(at != WAITING || !taken || kind == OFF_BY_ANOTHER);
 	assert_true(at <= TAKEN || taken);
 	threads_await_steps(2); // waits for the tick that had begun, and one more
-	uint64_t ticks = lit_ticks();
+	uint64_t ticks = energized_ticks();
 	threads_await_steps(3);
-	assert_int_equal(lit_ticks(), ticks);
+	assert_int_equal(energized_ticks(), ticks);
 	if (at <= APPLIED)
 		assert_int_equal(ticks, 0);
 	if (kind == FULL_STORE)
@@ -63,10 +63,10 @@ static void assert_a_loss_holds(moment at, loss kind)
 	assert_true(threads_done(threads_take_over(0, 0)));
 	assert_true(threads_done(threads_energize(0, 0, true)));
 	threads_await_steps(2); // check_tool checks the first of these ticks
-	assert_true(lit_ticks() > ticks);
+	assert_true(energized_ticks() > ticks);
 	assert_true(threads_done(threads_energize(1, 0, false)));
 	pthread_mutex_lock(&threads.lock);
-	threads.tools[0].lit_ticks = 0;
+	threads.tools[0].energized_ticks = 0;
 	pthread_mutex_unlock(&threads.lock);
 }
 
@@ -184,7 +184,7 @@ static void *watch(void *user)
 	return NULL;
 }
 
-static void nothing_is_lit_after_its_loss_whatever_comes_when(void **state)
+static void nothing_is_energized_after_its_loss_whatever_comes_when(void **state)
 {
 	(void)state;
 	int clients[CLIENTS] = {0, 1};
@@ -205,9 +205,9 @@ static void nothing_is_lit_after_its_loss_whatever_comes_when(void **state)
 	pthread_join(watching, NULL);
 	assert_all_well();
 	pthread_mutex_lock(&threads.lock);
-	uint64_t least = threads.tools[0].lit_ticks;
+	uint64_t least = threads.tools[0].energized_ticks;
 	for (int i = 1; i < TOOLS; i++)
-		least = threads.tools[i].lit_ticks < least ? threads.tools[i].lit_ticks : least;
+		least = threads.tools[i].energized_ticks < least ? threads.tools[i].energized_ticks : least;
 	pthread_mutex_unlock(&threads.lock);
 	assert_true(least > 0);
 }
@@ -217,7 +217,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_loss_holds_at_every_moment_of_an_enable, threads_begin,
 	                                    threads_end),
-		cmocka_unit_test_setup_teardown(nothing_is_lit_after_its_loss_whatever_comes_when,
+		cmocka_unit_test_setup_teardown(nothing_is_energized_after_its_loss_whatever_comes_when,
 	                                    threads_begin, threads_end),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -53,35 +53,35 @@ static void see_submit(const cau_command *command)
 	meet(TAKEN);
 }
 
-static void check_tool(int i, uint64_t tick, bool lit)
+static void check_tool(int i, uint64_t tick, bool energized)
 {
 	tool_book *book = &threads.tools[i];
 	const loss_mark *mark = &threads.marks[client_of(book->asked)];
-	bool decided = book->lit_from <= tick && (book->on || tick < book->dark_from);
-	book->lit_ticks += lit;
-	if (lit && !decided)
-		note_wrong("lit after it was cut", tick, i);
-	if (!lit && decided)
-		note_wrong("dark though it was enabled", tick, i);
-	if (lit && book->asked <= mark->asked && tick >= mark->from_tick)
-		note_wrong("lit by an enable from before the loss", tick, i);
+	bool decided = book->on_from <= tick && (book->on || tick < book->off_from);
+	book->energized_ticks += energized;
+	if (energized && !decided)
+		note_wrong("energy is on after it was cut", tick, i);
+	if (!energized && decided)
+		note_wrong("energy is off though it was enabled", tick, i);
+	if (energized && book->asked <= mark->asked && tick >= mark->from_tick)
+		note_wrong("an enable from before the loss turned energy on", tick, i);
 }
 
 static void see_step(const cau_session *session)
 {
 	cau_frame frame;
-	bool lit = false;
+	bool energized = false;
 	cau_session_frame(session, &frame);
 	pthread_mutex_lock(&threads.lock);
 	assert(frame.tool_count <= TOOLS);
 	for (int32_t i = 0; i < frame.tool_count; i++) {
 		check_tool((int)i, frame.tick, frame.tools[i].energized);
-		lit = lit || frame.tools[i].energized;
+		energized = energized || frame.tools[i].energized;
 	}
 	threads.steps++;
 	pthread_cond_broadcast(&threads.changed);
 	pthread_mutex_unlock(&threads.lock);
-	meet(lit ? STEPPING : WAITING);
+	meet(energized ? STEPPING : WAITING);
 }
 
 // Returns the first tick that has not begun. Called under the session's lock.
@@ -100,7 +100,7 @@ static void see_drives(const cau_hosted *h)
 		if (!drive || drive->enabled == book->on)
 			continue;
 		book->on = drive->enabled;
-		*(book->on ? &book->lit_from : &book->dark_from) = next_tick(h);
+		*(book->on ? &book->on_from : &book->off_from) = next_tick(h);
 	}
 	pthread_mutex_unlock(&threads.lock);
 }
@@ -135,13 +135,13 @@ static void see_armed(void *user)
 static int64_t see_commit(void)
 {
 	struct timespec now;
-	bool lit = false;
+	bool energized = false;
 	clock_gettime(CLOCK_REALTIME, &now);
 	pthread_mutex_lock(&threads.lock);
 	for (int i = 0; i < TOOLS; i++)
-		lit = lit || threads.tools[i].on;
+		energized = energized || threads.tools[i].on;
 	pthread_mutex_unlock(&threads.lock);
-	if (lit)
+	if (energized)
 		meet(COMMITTING);
 	return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }

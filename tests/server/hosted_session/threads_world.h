@@ -39,9 +39,9 @@ typedef struct request {
 // A tool's energy, as the notifications to clients report it.
 typedef struct tool_book {
 	bool on;
-	uint64_t lit_from, dark_from; // ticks from which energy is on and off
-	uint64_t asked;               // number of the newest enable that the core took
-	uint64_t lit_ticks;
+	uint64_t on_from, off_from; // ticks from which energy is on and off
+	uint64_t asked;             // number of the newest enable that the core took
+	uint64_t energized_ticks;
 } tool_book;
 
 // The client's enables up to this number heat no tick from `from_tick` on.

@@ -174,13 +174,13 @@ int main(int argc, char **argv)
 	double seconds =
 		(double)(ended.tv_sec - began.tv_sec) + 1e-9 * (double)(ended.tv_nsec - began.tv_nsec);
 	printf("%llu sequences, %llu events, %.2f million a second; %llu ticks began, %llu tools were "
-	       "lit in them, %llu of these in lock-step\n",
+	       "energized in them, %llu of these in lock-step\n",
 	       (unsigned long long)count, (unsigned long long)events, 1e-6 * (double)events / seconds,
-	       (unsigned long long)w->steps, (unsigned long long)w->lit_steps,
-	       (unsigned long long)w->lit_advances);
+	       (unsigned long long)w->steps, (unsigned long long)w->energized_steps,
+	       (unsigned long long)w->energized_advances);
 	// with fewer of these ticks and advances, the test would cover too little
-	bool seen =
-		w->steps > count / 100 && w->lit_steps > count / 1000 && w->lit_advances > count / 1000;
+	bool seen = w->steps > count / 100 && w->energized_steps > count / 1000 &&
+	            w->energized_advances > count / 1000;
 	world_destroy(w);
 	return seen ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -12,16 +12,16 @@ tool_book *oracle_book(world *w, const char *tool)
 	return NULL;
 }
 
-void oracle_darken(tool_book *tool, uint64_t came)
+void oracle_switch_off(tool_book *tool, uint64_t came)
 {
-	if (came > tool->dark)
-		tool->dark = came;
+	if (came > tool->off)
+		tool->off = came;
 }
 
-void oracle_darken_all(world *w, uint64_t came)
+void oracle_switch_all_off(world *w, uint64_t came)
 {
 	for (int i = 0; i < TOOLS; i++)
-		oracle_darken(&w->tools[i], came);
+		oracle_switch_off(&w->tools[i], came);
 }
 
 void oracle_end_lockstep(world *w)
@@ -42,7 +42,7 @@ static bool is_alive(const world *w, const tool_book *tool, int client)
 // True if no later event makes this client's enable void.
 static bool stands(const world *w, const tool_book *tool, int client, uint64_t enable)
 {
-	return tool->there && tool->driver == client && enable > tool->dark &&
+	return tool->there && tool->driver == client && enable > tool->off &&
 	       enable > tool->silent[client] && enable > w->away[client] && enable > w->gone[client] &&
 	       enable > w->no_store;
 }
@@ -58,7 +58,7 @@ static bool is_over(const world *w, const tool_book *tool)
 	return tool->limit && w->tick >= tool->limit;
 }
 
-static bool should_be_lit(const world *w, const tool_book *tool)
+static bool should_be_energized(const world *w, const tool_book *tool)
 {
 	return is_enabled(w, tool) && !is_over(w, tool) && is_alive(w, tool, tool->enabler);
 }
@@ -80,7 +80,7 @@ static void count_steps(world *w)
 	else
 		--*left;
 	for (int i = 0; i < TOOLS; i++)
-		w->lit_advances += w->tools[i].lit && w->tools[i].driver == w->lockstep;
+		w->energized_advances += w->tools[i].energized && w->tools[i].driver == w->lockstep;
 }
 
 static bool waits_to_leave(const world *w)
@@ -108,15 +108,16 @@ void oracle_check_tick(world *w)
 {
 	for (int i = 0; i < TOOLS; i++) {
 		const tool_book *tool = &w->tools[i];
-		bool should = should_be_lit(w, tool);
-		if (tool->lit && !should)
-			world_wrong(w, "a tick begins with %s lit; the newest enable came %llu, the dark %llu",
+		bool should = should_be_energized(w, tool);
+		if (tool->energized && !should)
+			world_wrong(w,
+			            "a tick begins with %s energized; the newest enable came %llu, the "
+			            "switching off %llu",
 			            world_tool_names[i], (unsigned long long)tool->enable,
-			            (unsigned long long)tool->dark);
-		if (!tool->lit && should)
-			world_wrong(w, "a tick begins with %s dark, though it was enabled",
-			            world_tool_names[i]);
-		w->lit_steps += tool->lit;
+			            (unsigned long long)tool->off);
+		if (!tool->energized && should)
+			world_wrong(w, "a tick begins with %s off, though it was enabled", world_tool_names[i]);
+		w->energized_steps += tool->energized;
 		if (is_over(w, tool))
 			w->tools[i].enable = w->tools[i].limit = 0;
 	}
@@ -384,13 +385,13 @@ void oracle_note_coming(world *w, const ticket_book *ticket)
 		                 asked->alive_s > 0 ? asked->alive_s : w->now_s);
 	for (int32_t i = 0; i < asked->part_count; i++)
 		if (asked->parts[i].off)
-			oracle_darken(oracle_book(w, asked->parts[i].tool), ticket->came);
+			oracle_switch_off(oracle_book(w, asked->parts[i].tool), ticket->came);
 	if (!tool)
 		return;
 	oracle_note_life(w, (int)asked->asker.client, asked->tool,
 	                 asked->alive_s > 0 ? asked->alive_s : w->now_s);
 	if (asked->ask == CAU_ASK_ENERGY_OFF && asked->tick <= w->tick)
-		oracle_darken(tool, ticket->came);
+		oracle_switch_off(tool, ticket->came);
 }
 
 // ---- energy cut-off -----------------------------------------------------------------------------
@@ -398,7 +399,7 @@ void oracle_note_coming(world *w, const ticket_book *ticket)
 // Turns the tool's energy off. Enables that came in by `came` do not turn it on again.
 static void cut(tool_book *tool, uint64_t came)
 {
-	oracle_darken(tool, came);
+	oracle_switch_off(tool, came);
 	tool->enable = 0;
 }
 
@@ -457,7 +458,7 @@ void oracle_note_cut(world *w)
 			void_advances(w, w->tools[i].driver, w->came + 1, true);
 			void_of_driver(w, world_tool_names[i], w->tools[i].driver, w->came + 1, true);
 		}
-	if (is_cut_of_pause(w) || is_cut_of_leaving(w) || !w->action.was_lit)
+	if (is_cut_of_pause(w) || is_cut_of_leaving(w) || !w->action.was_energized)
 		return;
 	uint64_t change =
 		oldest(waits(w, CAU_ASK_TAKE_OVER, drive->tool), waits(w, CAU_ASK_HAND_OVER, drive->tool));
@@ -472,7 +473,7 @@ void oracle_note_cut(world *w)
 		*silent = tool->looked > *silent ? tool->looked : *silent;
 	else if (strcmp(drive->cut_cause, "the limit of ticks is reached") == 0 && is_over(w, tool))
 		tool->enable = tool->limit = 0;
-	else if (should_be_lit(w, tool))
+	else if (should_be_energized(w, tool))
 		world_wrong(w, "%s is cut for nothing: %s", drive->tool, drive->cut_cause);
 }
 
@@ -483,9 +484,9 @@ static void change_driver(world *w, const ticket_book *ticket, int to)
 	tool_book *tool = oracle_book(w, ticket->asked.tool);
 	if (tool->driver == to)
 		return;
-	if (tool->lit)
+	if (tool->energized)
 		world_wrong(w, "%s changes its driver while its energy is on", ticket->asked.tool);
-	oracle_darken(tool, ticket->came);
+	oracle_switch_off(tool, ticket->came);
 	if (tool->driver)
 		void_of_driver(w, ticket->asked.tool, tool->driver, ticket->came, false);
 	tool->driver = to;
@@ -494,7 +495,7 @@ static void change_driver(world *w, const ticket_book *ticket, int to)
 static void note_enable(world *w, tool_book *tool, const ticket_book *ticket, uint64_t limit)
 {
 	int client = (int)ticket->asked.asker.client;
-	tool->lit = true;
+	tool->energized = true;
 	if (stands(w, tool, client, ticket->came))
 		tool->limit = limit ? w->tick + limit : 0;
 	if (ticket->came > tool->enable) {
@@ -532,12 +533,12 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		tool->there = true;
 		tool->driver = ticket->came > w->gone[client] ? client : 0;
 		tool->deadline_s = DEADLINE_S;
-		oracle_darken(tool, ticket->came); // an added tool is a new tool
+		oracle_switch_off(tool, ticket->came); // an added tool is a new tool
 		break;
 	case CAU_ASK_TOOL_REMOVE:
-		if (tool->lit)
+		if (tool->energized)
 			world_wrong(w, "%s is removed, and the core has its energy on", asked->tool);
-		tool->there = tool->lit = false;
+		tool->there = tool->energized = false;
 		cut(tool, ticket->came);
 		tool->driver = 0;
 		for (int i = 1; i <= CLIENTS; i++)
@@ -547,11 +548,11 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		note_enable(w, tool, ticket, asked->limit);
 		break;
 	case CAU_ASK_ENERGY_OFF:
-		tool->lit = false;
+		tool->energized = false;
 		break;
 	case CAU_ASK_PAUSE:
 		w->state = CAU_SESSION_PAUSED;
-		oracle_darken_all(w, ticket->came);
+		oracle_switch_all_off(w, ticket->came);
 		break;
 	case CAU_ASK_RESUME:
 		w->state = CAU_SESSION_RUNNING;

@@ -10,8 +10,8 @@ tool_book *oracle_book(world *w, const char *tool); // NULL: the tool's name is 
 ticket_book *oracle_ticket(world *w, uint64_t number);
 
 // Enables that came in by `came` do not turn the tool's energy on.
-void oracle_darken(tool_book *tool, uint64_t came);
-void oracle_darken_all(world *w, uint64_t came);
+void oracle_switch_off(tool_book *tool, uint64_t came);
+void oracle_switch_all_off(world *w, uint64_t came);
 
 // Called when an order came in, when it was answered, and when the worker has done it.
 void oracle_note_coming(world *w, const ticket_book *ticket);

@@ -10,7 +10,7 @@ static bool enables(const reach_order *order, int tool)
 	return on && order->tool == tool;
 }
 
-void reach_darken(reach_state *books, int tool, int client)
+void reach_switch_off(reach_state *books, int tool, int client)
 {
 	for (int i = 0; i < books->order_count; i++) {
 		reach_order *order = &books->orders[i];
@@ -21,13 +21,13 @@ void reach_darken(reach_state *books, int tool, int client)
 		books->tools[tool].wanted = 0;
 }
 
-void reach_darken_all(reach_state *books, int client)
+void reach_switch_all_off(reach_state *books, int client)
 {
 	for (int i = 0; i < books->tool_count; i++)
-		reach_darken(books, i, client);
+		reach_switch_off(books, i, client);
 }
 
-void reach_darken_before(reach_state *books, int tool, int place)
+void reach_switch_off_before(reach_state *books, int tool, int place)
 {
 	for (int i = 0; i < place - 1; i++)
 		if (enables(&books->orders[i], tool))
@@ -53,7 +53,7 @@ void reach_note_silence(reach_state *books)
 {
 	for (int i = 0; i < books->tool_count; i++)
 		if (books->tools[i].wanted && reach_is_silent(books, &books->tools[i])) {
-			reach_darken(books, i, books->tools[i].driver);
+			reach_switch_off(books, i, books->tools[i].driver);
 			overtake_advances(books, books->tools[i].driver);
 		}
 }

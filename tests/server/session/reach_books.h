@@ -7,10 +7,10 @@
 #include "server/session/reach_state.h"
 
 // Makes earlier enables of the tool ineffective; `client`: only enables of this client.
-void reach_darken(reach_state *books, int tool, int client);
-void reach_darken_all(reach_state *books, int client);
+void reach_switch_off(reach_state *books, int tool, int client);
+void reach_switch_all_off(reach_state *books, int client);
 // Makes enables before this place in the queue ineffective for the tool.
-void reach_darken_before(reach_state *books, int tool, int place);
+void reach_switch_off_before(reach_state *books, int tool, int place);
 void reach_note_silence(reach_state *books);
 // True if the tool's driver is silent: counted in ticks in lock-step, otherwise by the clock.
 bool reach_is_silent(const reach_state *books, const reach_tool *tool);

@@ -8,10 +8,11 @@
 #include "server/session/reach_books.h"
 
 const char *const reach_what_names[REACH_WHAT_COUNT] = {
-	"orders",         "lives",   "looks away", "is gone",    "all are silent",
-	"watchdog looks", "store",   "committed",  "work early", "work",
-	"done",           "refused", "postponed",  "faulted",    "arrived dark",
-	"arrived lit",    "stays",   "drains",     "ends"};
+	"orders",         "lives",          "looks away",  "is gone",
+	"all are silent", "watchdog looks", "store",       "committed",
+	"work early",     "work",           "done",        "refused",
+	"postponed",      "faulted",        "arrived off", "arrived energized",
+	"stays",          "drains",         "ends"};
 
 static void must(reach_move *m, bool holds, const char *otherwise)
 {
@@ -75,11 +76,11 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 		return;
 	// if the queue is full, an off for a later tick takes effect now
 	if (off && (!e->later || !queued))
-		reach_darken(&m->books, e->tool, 0);
+		reach_switch_off(&m->books, e->tool, 0);
 	if (e->ask == CAU_ASK_ADVANCE && e->to == REACH_OFF)
-		reach_darken(&m->books, e->tool, 0);
+		reach_switch_off(&m->books, e->tool, 0);
 	if (pause && !queued)
-		reach_darken_all(&m->books, 0);
+		reach_switch_all_off(&m->books, 0);
 	if (pause || (e->ask == CAU_ASK_RESUME && queued))
 		m->books.held = pause;
 	if (queued)
@@ -137,7 +138,7 @@ static void do_order(reach_move *m, const reach_event *e)
 
 static void lose(reach_move *m, int client, bool for_good)
 {
-	reach_darken_all(&m->books, client);
+	reach_switch_all_off(&m->books, client);
 	take(m, (cau_logic_event){.kind = for_good ? CAU_LOGIC_FORGET : CAU_LOGIC_AWAY,
 	                          .client = (uint32_t)client});
 	must(m, m->logic->lockstep != (uint32_t)client, "a lost client is in lock-step");
@@ -147,18 +148,18 @@ static void do_store(reach_move *m)
 {
 	bool takes = !m->before->store_takes;
 	if (!takes)
-		reach_darken_all(&m->books, 0);
+		reach_switch_all_off(&m->books, 0);
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_STORE, .store_takes = takes});
 	must(m, takes || !m->logic->lockstep, "a full store leaves lock-step");
 }
 
-static void arrive(reach_move *m, bool lit)
+static void arrive(reach_move *m, bool energized)
 {
 	cau_arrived_tool tools[REACH_TOOLS] = {0};
 	for (int i = 0; i < m->books.tool_count; i++) {
 		strcpy(tools[i].name, reach_tool_names[i]);
-		tools[i].lit = lit;
-		m->books.tools[i].heated = lit;
+		tools[i].energized = energized;
+		m->books.tools[i].heated = energized;
 		m->books.tools[i].wanted = 0;
 	}
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
@@ -172,7 +173,7 @@ static void arrive(reach_move *m, bool lit)
 static void end(reach_move *m, bool drain)
 {
 	if (drain)
-		reach_darken_all(&m->books, 0);
+		reach_switch_all_off(&m->books, 0);
 	take(m, (cau_logic_event){.kind = drain ? CAU_LOGIC_DRAIN : CAU_LOGIC_END});
 }
 
@@ -200,9 +201,10 @@ static void check_step(reach_move *m)
 		const reach_tool *tool = &m->books.tools[i];
 		const cau_drive *drive = &m->logic->drives[i];
 		bool should = tool->wanted && tool->driver && !reach_is_silent(&m->books, tool);
-		must(m, !tool->heated || should, "a tick begins with a tool lit that is not to be");
-		must(m, tool->heated || !should, "a tick begins with a tool dark that is to be lit");
-		must(m, !drive->freeze && drive->lit == drive->enabled, "a tick begins with a cut owed");
+		must(m, !tool->heated || should, "a tick begins with a tool energized that is not to be");
+		must(m, tool->heated || !should, "a tick begins with a tool off that is to be energized");
+		must(m, !drive->freeze && drive->energized == drive->enabled,
+		     "a tick begins with a cut owed");
 	}
 	if (stepped && m->books.steps)
 		m->books.steps--;
@@ -233,10 +235,11 @@ static void check_order(reach_move *m)
 	must(m, !order->later || m->before->ended, "an order is done before its tick");
 	must(m, !order->looks, "it may be a resend, and is done");
 	if (order->ask == CAU_ASK_ENERGY_OFF)
-		reach_darken_before(&m->books, order->tool, (int)m->action.ticket);
+		reach_switch_off_before(&m->books, order->tool, (int)m->action.ticket);
 	if (m->action.changed && changes) {
-		must(m, !m->books.tools[order->tool].heated, "a tool changes hands lit");
-		reach_darken_before(&m->books, order->tool, (int)m->action.ticket);
+		must(m, !m->books.tools[order->tool].heated,
+		     "a tool changes its driver while it is energized");
+		reach_switch_off_before(&m->books, order->tool, (int)m->action.ticket);
 	}
 }
 
@@ -280,11 +283,11 @@ static void note_cut_begun(reach_move *m)
 		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled || has_left(m))
 			continue;
 		if (m->books.pause_place) // this pause has no entry among the orders
-			reach_darken_before(&m->books, i, m->books.pause_place);
+			reach_switch_off_before(&m->books, i, m->books.pause_place);
 		else if (by_order)
-			reach_darken_before(&m->books, i, place);
+			reach_switch_off_before(&m->books, i, place);
 		else
-			reach_darken(&m->books, i, m->books.tools[i].driver);
+			reach_switch_off(&m->books, i, m->books.tools[i].driver);
 	}
 }
 
@@ -299,7 +302,7 @@ static void note_left(reach_move *m)
 	bool by_order = leaves && (!pause || place < pause);
 	must(m, by_order || pause, "lock-step ends, and nobody ended it");
 	for (int i = 0; i < m->books.tool_count; i++)
-		reach_darken_before(&m->books, i, by_order ? place : pause);
+		reach_switch_off_before(&m->books, i, by_order ? place : pause);
 }
 
 // Notes that the worker checks for silence before lock-step begins.
@@ -349,15 +352,15 @@ static void note_order_done(reach_move *m, bool done)
 		tool->wanted = tool->wanted || (!order.overtaken && tool->driver == order.client);
 	} else if (order.ask == CAU_ASK_ENERGY_OFF) {
 		tool->heated = 0;
-		reach_darken_before(&m->books, order.tool, place);
+		reach_switch_off_before(&m->books, order.tool, place);
 	} else if (order.ask == CAU_ASK_GO || order.ask == CAU_ASK_PAUSE) {
 		for (int i = 0; i < m->books.tool_count; i++)
 			// enables that came after the order stay valid
-			reach_darken_before(&m->books, i, place);
+			reach_switch_off_before(&m->books, i, place);
 	} else if (order.ask == CAU_ASK_STEP) {
 		m->books.steps = order.ticks;
 	} else if (order.ask == CAU_ASK_DESTROY) {
-		reach_darken_all(&m->books, 0);
+		reach_switch_all_off(&m->books, 0);
 	}
 }
 
@@ -417,7 +420,7 @@ static void finish(reach_move *m, reach_what what)
 static void step(reach_move *m, bool faulted)
 {
 	if (faulted)
-		reach_darken_all(&m->books, 0);
+		reach_switch_all_off(&m->books, 0);
 	cau_logic_stepped(m->logic, REACH_NOW_S, faulted ? "it melts" : NULL, &m->effects);
 	for (int i = 0; i < m->books.order_count && !faulted; i++)
 		if (m->books.orders[i].later)
@@ -468,8 +471,8 @@ bool reach_can_be(const reach_event *e, const reach_state *state)
 		return is_postponed(state);
 	case REACH_FAULTED:
 		return steps;
-	case REACH_ARRIVE_DARK:
-	case REACH_ARRIVE_LIT:
+	case REACH_ARRIVE_OFF:
+	case REACH_ARRIVE_ENERGIZED:
 	case REACH_STAY:
 		return state->going && !acts;
 	case REACH_DRAIN:
@@ -492,12 +495,13 @@ static void check_state(reach_move *m)
 	for (int i = 0; i < logic->drive_count; i++) {
 		const cau_drive *drive = &logic->drives[i];
 		must(m, !drive->enabled || drive->driver.client, "enabled, and nobody drives it");
-		must(m, !drive->enabled || drive->lit, "enabled, and the core was not told");
-		must(m, drive->lit == m->books.tools[i].heated, "what the core was told is not known");
+		must(m, !drive->enabled || drive->energized, "enabled, and the core was not told");
+		must(m, drive->energized == m->books.tools[i].heated,
+		     "what the core was told is not known");
 		bool by_ticks = logic->lockstep && drive->driver.client == logic->lockstep;
 		must(m, !drive->enabled || by_ticks || cau_logic_look_s(logic) < INFINITY,
 		     "nobody looks for silence");
-		work_waits |= drive->freeze || (drive->lit && !drive->enabled);
+		work_waits |= drive->freeze || (drive->energized && !drive->enabled);
 	}
 	work_waits = logic->ended ? answers_owed : work_waits && !logic->draining;
 	must(m, !work_waits || cau_logic_due_s(logic) == 0, "there is work, and it is not due");
@@ -533,9 +537,9 @@ void reach_do(reach_move *m, const reach_event *e)
 			m->books.orders[i].postponed = 0;
 		take(m, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
 		break;
-	case REACH_ARRIVE_DARK:
-	case REACH_ARRIVE_LIT:
-		arrive(m, e->what == REACH_ARRIVE_LIT);
+	case REACH_ARRIVE_OFF:
+	case REACH_ARRIVE_ENERGIZED:
+		arrive(m, e->what == REACH_ARRIVE_ENERGIZED);
 		break;
 	case REACH_STAY:
 		take(m, (cau_logic_event){.kind = CAU_LOGIC_STAYED});

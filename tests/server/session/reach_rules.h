@@ -20,8 +20,8 @@ typedef enum reach_what {
 	REACH_NOT_DONE,  // the core refuses the order, or the store has its earlier answer
 	REACH_POSTPONED, // the order's earlier answer is on its way to the disk
 	REACH_FAULTED,   // a step ends in numerical trouble
-	REACH_ARRIVE_DARK,
-	REACH_ARRIVE_LIT,
+	REACH_ARRIVE_OFF,
+	REACH_ARRIVE_ENERGIZED,
 	REACH_STAY, // a rewind, reset or restore fails
 	REACH_DRAIN,
 	REACH_END,

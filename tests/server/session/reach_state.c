@@ -97,7 +97,7 @@ static void decode_tool(const reach_tool *from, int index, cau_drive *to)
 	to->driver = *reach_asker(from->driver);
 	to->alive_s = alive_of(from->fresh);
 	to->enabled = from->enabled;
-	to->lit = from->lit;
+	to->energized = from->energized;
 	to->freeze = from->freeze;
 	to->by_order = from->by_order;
 	to->cut_moment = moment_of_place(from->cut_place);
@@ -227,7 +227,7 @@ static void encode_tool(const cau_logic *logic, const cau_drive *from, const lin
 	to->driver = (uint8_t)from->driver.client;
 	to->fresh = to->driver && reach_is_fresh(from->alive_s, logic->now_s);
 	to->enabled = from->enabled;
-	to->lit = from->lit;
+	to->energized = from->energized;
 	to->freeze = from->freeze;
 	to->by_order = from->by_order;
 	to->cut_place = place_of(orders, from->tool, from->cut_moment);

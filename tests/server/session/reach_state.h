@@ -42,7 +42,7 @@ enum { REACH_ON = 1, REACH_OFF };
 	X(driver, 2)                                                                                   \
 	X(fresh, 1)                                                                                    \
 	X(enabled, 1)                                                                                  \
-	X(lit, 1)                                                                                      \
+	X(energized, 1)                                                                                \
 	X(freeze, 1)                                                                                   \
 	X(by_order, 1)                                                                                 \
 	X(cut_place, 2) /* place in `orders`, from 1; 0: before all */                                 \

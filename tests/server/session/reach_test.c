@@ -165,7 +165,7 @@ static unsigned needs(reach_what what)
 {
 	static const unsigned of[REACH_WHAT_COUNT] = {
 		[REACH_STORE] = STORE,   [REACH_COMMITTED] = RESEND, [REACH_POSTPONED] = RESEND,
-		[REACH_FAULTED] = FAULT, [REACH_ARRIVE_DARK] = GO,   [REACH_ARRIVE_LIT] = GO,
+		[REACH_FAULTED] = FAULT, [REACH_ARRIVE_OFF] = GO,    [REACH_ARRIVE_ENERGIZED] = GO,
 		[REACH_STAY] = GO,       [REACH_DRAIN] = END,        [REACH_END] = END,
 	};
 	return of[what];

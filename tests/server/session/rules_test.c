@@ -64,9 +64,9 @@ static void work(spoilt *s)
 	fail_msg("the worker never comes to rest");
 }
 
-static void arrive(spoilt *s, bool lit)
+static void arrive(spoilt *s, bool energized)
 {
-	const cau_arrived_tool tool = {"hook", lit};
+	const cau_arrived_tool tool = {"hook", energized};
 	take(s, (cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
 	                          .state = CAU_SESSION_RUNNING,
 	                          .step_s = 0.01,
@@ -97,9 +97,9 @@ static void spoil_steps(cau_logic *logic)
 	logic->steps_left = -3;
 }
 
-static void spoil_lit(cau_logic *logic)
+static void spoil_energized(cau_logic *logic)
 {
-	logic->drives[0].lit = false;
+	logic->drives[0].energized = false;
 }
 
 static void spoil_driver(cau_logic *logic)
@@ -109,7 +109,7 @@ static void spoil_driver(cau_logic *logic)
 
 static void spoil_moment(cau_logic *logic)
 {
-	logic->dark_moment = logic->moment + 100;
+	logic->all_off_moment = logic->moment + 100;
 }
 
 static void spoil_cut(cau_logic *logic)
@@ -151,9 +151,10 @@ static const struct {
 	void (*spoil)(cau_logic *logic);
 	bool keeps_tool; // the corrupted machine still knows the hook
 } cases[] = {
-	{spoil_steps, true},         {spoil_lit, true},   {spoil_driver, true},  {spoil_moment, true},
-	{spoil_cut, true},           {spoil_name, false}, {spoil_drives, false}, {spoil_count, true},
-	{spoil_count_upwards, true}, {spoil_time, true},  {spoil_speed, true},
+	{spoil_steps, true},   {spoil_energized, true}, {spoil_driver, true},
+	{spoil_moment, true},  {spoil_cut, true},       {spoil_name, false},
+	{spoil_drives, false}, {spoil_count, true},     {spoil_count_upwards, true},
+	{spoil_time, true},    {spoil_speed, true},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 

@@ -160,7 +160,7 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	// The order was answered at once because the queue is full, so the energy-off takes effect at
 	// once.
 	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers)
-		oracle_darken(&w->tools[tool], ticket->came);
+		oracle_switch_off(&w->tools[tool], ticket->came);
 	if (ask == CAU_ASK_PAUSE && ticket->answers && !w->ended)
 		w->paused = ticket->came;
 }
@@ -233,19 +233,19 @@ static void exchange_jaws(world *w)
 	jaws->deadline_s = DEADLINE_S;
 }
 
-static void arrive(world *w, bool lit)
+static void arrive(world *w, bool energized)
 {
 	cau_arrived_tool tools[TOOLS] = {0};
 	int32_t count = 0;
 	for (int i = 0; i < TOOLS; i++) {
 		tool_book *tool = &w->tools[i];
-		tool->lit = tool->there && lit;
+		tool->energized = tool->there && energized;
 		if (!tool->there)
 			continue;
 		snprintf(tools[count].name, sizeof tools[count].name, "%s", world_tool_names[i]);
-		tools[count++].lit = tool->lit;
+		tools[count++].energized = tool->energized;
 	}
-	say(w, "arrived%s\n", lit ? ", with lit tools" : "");
+	say(w, "arrived%s\n", energized ? ", with energized tools" : "");
 	w->going = false;
 	w->state = w->state == CAU_SESSION_STARTING || w->state == CAU_SESSION_RUNNING
 	               ? CAU_SESSION_RUNNING
@@ -272,7 +272,7 @@ static void restart(world *w)
 		w->tools[i].driver = 0;
 		w->tools[i].enable = 0;
 	}
-	oracle_darken_all(w, w->came);
+	oracle_switch_all_off(w, w->came);
 	oracle_end_lockstep(w);
 	w->steps_left = 0;
 	w->working = w->pausing = w->leaving = false;
@@ -360,12 +360,12 @@ static cau_outcome_kind finish_act(world *w, uint32_t more)
 	case CAU_ACT_ORDER:
 		return finish_order(w, more);
 	case CAU_ACT_CUT:
-		if (w->action.was_lit)
-			oracle_book(w, w->action.drive.tool)->lit = false;
+		if (w->action.was_energized)
+			oracle_book(w, w->action.drive.tool)->energized = false;
 		return CAU_DONE;
 	case CAU_ACT_PAUSE:
 		w->state = CAU_SESSION_PAUSED;
-		oracle_darken_all(w, w->served);
+		oracle_switch_all_off(w, w->served);
 		return CAU_DONE;
 	case CAU_ACT_NOTHING:
 	case CAU_ACT_STEP:
@@ -493,13 +493,14 @@ void world_begin(world *w)
 {
 	cau_logic *logic = w->logic;
 	FILE *script = w->script;
-	uint64_t steps = w->steps, lit_steps = w->lit_steps, lit_advances = w->lit_advances;
+	uint64_t steps = w->steps, energized_steps = w->energized_steps,
+			 energized_advances = w->energized_advances;
 	memset(w, 0, offsetof(world, tickets));
 	w->logic = logic;
 	w->script = script;
 	w->steps = steps;
-	w->lit_steps = lit_steps;
-	w->lit_advances = lit_advances;
+	w->energized_steps = energized_steps;
+	w->energized_advances = energized_advances;
 	w->ticket_count = 0;
 	*w->wrong = 0;
 	w->store_takes = true;

@@ -25,11 +25,11 @@ enum { DEADLINE_TICKS = 4 }; // deadline in lock-step, ticks
 
 // The oracle's knowledge of a tool.
 typedef struct tool_book {
-	bool there, lit; // `there`: the tool exists; `lit`: the core heats it
-	int driver;      // number of the client; 0: none
+	bool there, energized; // `there`: the tool exists; `energized`: the core heats it
+	int driver;            // number of the client; 0: none
 	double deadline_s;
 	uint64_t limit;  // tick at which the enable ends; 0: no limit
-	uint64_t dark;   // arrival of the newest event that turned energy off
+	uint64_t off;    // arrival of the newest event that turned energy off
 	uint64_t enable; // arrival of the newest enable that the core took
 	int enabler;
 	double alive_s[CLIENTS + 1];
@@ -72,9 +72,9 @@ typedef struct world {
 	tool_book tools[TOOLS];
 	ticket_book tickets[TICKETS];
 	int ticket_count;
-	uint64_t steps, lit_steps, lit_advances; // counts of what the tests have covered
-	FILE *script;                            // receives the events in words, or NULL
-	char wrong[200];                         // the first error; "": none
+	uint64_t steps, energized_steps, energized_advances; // counts of what the tests have covered
+	FILE *script;                                        // receives the events in words, or NULL
+	char wrong[200];                                     // the first error; "": none
 } world;
 
 extern const char *const world_tool_names[TOOLS];

@@ -59,7 +59,7 @@ static cau_trace_call full_call(cau_trace_what what)
 	                         .speed = INFINITY};
 	for (int i = 0; i < CAU_MAX_TOOLS; i++) {
 		snprintf(call.tools[i].name, sizeof call.tools[i].name, "tool-%d", i);
-		call.tools[i].lit = true;
+		call.tools[i].energized = true;
 	}
 	return call;
 }
@@ -119,7 +119,7 @@ static void test_a_call_reads_back_as_it_was_written(void **state)
 		assert_int_equal(read.tool_count, CAU_MAX_TOOLS);
 		for (int i = 0; i < CAU_MAX_TOOLS; i++) {
 			assert_string_equal(read.tools[i].name, written.tools[i].name);
-			assert_true(read.tools[i].lit);
+			assert_true(read.tools[i].energized);
 		}
 	}
 }
@@ -164,7 +164,7 @@ typedef struct traced {
 	cau_logic *logic;
 	cau_action action;
 	double now_s;
-	int lit_steps;
+	int energized_steps;
 } traced;
 
 static void take(traced *t, cau_logic_event event)
@@ -195,7 +195,7 @@ static void work(traced *t)
 		if (t->action.act == CAU_ACT_NOTHING)
 			return;
 		if (t->action.act == CAU_ACT_STEP) {
-			t->lit_steps += t->logic->drives[0].lit;
+			t->energized_steps += t->logic->drives[0].energized;
 			cau_trace_stepped(t->to, t->now_s, NULL);
 			cau_logic_stepped(t->logic, t->now_s, NULL, &effects);
 		} else {
@@ -235,7 +235,8 @@ static void make_trace(traced *t)
 	order(t, 4, CAU_ASK_PAUSE, 2);
 	work(t);
 	assert_int_equal(fflush(t->to), 0);
-	assert_in_range(t->lit_steps, 10, 30); // energy was turned on, and off again at the deadline
+	assert_in_range(t->energized_steps, 10,
+	                30); // energy was turned on, and off again at the deadline
 }
 
 static void discard_trace(traced *t)
