@@ -125,7 +125,7 @@ static void begin(cau_step_solver *solver)
 void cau_solver_yield(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
-	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->touching_count);
+	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->result.touching_count);
 	double size = -dot(solver, solver->iterate.gradient, solver->iterate.increment), first = size,
 		   off[3] = {0};
 	double touching = touch(solver, solver->iterate.increment), own = size;

@@ -17,6 +17,7 @@ import includes
 import known_bugs
 import layout
 import licences
+import sizes
 import symbols
 import text_rules
 import words
@@ -42,6 +43,29 @@ class Layout(unittest.TestCase):
 
     def test_a_stranger_is_named(self):
         self.assertEqual(len(layout.violations(["utils/a.c", "notes.md", "core/a.c"])), 2)
+
+
+class Sizes(unittest.TestCase):
+    def file(self, lines):
+        return "\n" * lines
+
+    def test_long_enough_files_and_small_structs_pass(self):
+        struct = "struct a { int b, c[2]; struct { int d, e; } f; void (*g)(int, int); };"
+        self.assertEqual(list(sizes.structs(struct))[0], ("a", 4))
+        self.assertEqual(sizes.violations({"core/a.c": self.file(100) + struct, "core/b.c": self.file(600)}), [])
+
+    def test_too_many_small_files(self):
+        texts = {f"core/{i}.c": self.file(79 if i < 2 else 80) for i in range(8)}
+        self.assertEqual(sizes.violations(texts), [])
+        self.assertEqual(len(sizes.violations({**texts, "core/small.h": "\n"})), 1)
+
+    def test_a_long_file(self):
+        self.assertEqual(len(sizes.violations({"tests/a.c": self.file(601)})), 1)
+
+    def test_a_struct_with_too_many_members(self):
+        text = self.file(80) + "typedef struct a { int " + ", ".join(f"b{i}" for i in range(31)) + "; } a;"
+        self.assertEqual(len(sizes.violations({"server/hub/a.h": text})), 1)
+        self.assertEqual(sizes.violations({"core/mesh/a.h": text}), [])
 
 
 class Citation(Tree):
