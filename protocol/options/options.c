@@ -71,6 +71,9 @@ static bool read_value(const cau_command_line *line, const cau_option *option, c
                        void *member, FILE *complaints)
 {
 	int64_t whole;
+	bool flag = option->kind == CAU_OPTION_FLAG || option->kind == CAU_OPTION_HELP;
+	CAU_ASSERT(flag == !value, "--%s: only a flag has no value", option->name);
+	(void)flag;
 	switch (option->kind) {
 	case CAU_OPTION_FLAG:
 	case CAU_OPTION_HELP:
