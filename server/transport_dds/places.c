@@ -95,9 +95,10 @@ static cau_dds_client *add_client(cau_dds *dds, cau_dds_writer *writer, cau_erro
 	return client;
 }
 
-static void unlink_hand(cau_dds_hand *hand)
+// `client` is the hand's client.
+static void unlink_hand(cau_dds_client *client, cau_dds_hand *hand)
 {
-	cau_dds_hand **own = &hand->client->hands, **link = &hand->tool->hands;
+	cau_dds_hand **own = &client->hands, **link = &hand->tool->hands;
 	while (*own != hand)
 		own = &(*own)->next_own;
 	*own = hand->next_own;
@@ -108,11 +109,12 @@ static void unlink_hand(cau_dds_hand *hand)
 	free(hand);
 }
 
-static void drop_hand(cau_dds_hand *hand)
+static void drop_first_hand(cau_dds_client *client)
 {
+	cau_dds_hand *hand = client->hands;
 	if (hand->claim_until_s > 0 || drives(hand))
 		cau_dds_hand_over(hand, NULL);
-	unlink_hand(hand);
+	unlink_hand(client, hand);
 }
 
 static void drop_client(cau_dds *dds, cau_dds_client *client)
@@ -121,7 +123,7 @@ static void drop_client(cau_dds *dds, cau_dds_client *client)
 	        client->asker.name);
 	cau_hub_detach(dds->hub, client->asker.client, client->connection);
 	while (client->hands)
-		drop_hand(client->hands);
+		drop_first_hand(client);
 	cau_dds_client **link = &dds->places.clients;
 	while (*link != client)
 		link = &(*link)->next;
@@ -143,7 +145,7 @@ void cau_dds_give_up(cau_dds_client *client)
 	while (client->hands) {
 		cau_hosted_cut(client->hands->session->hosted, client->asker.client,
 		               "the DDS writer is not alive");
-		drop_hand(client->hands);
+		drop_first_hand(client);
 	}
 }
 
@@ -267,7 +269,7 @@ static bool evict_hand(cau_dds_tool *tool)
 		if ((!found || found->past.has_pose || !hand->past.has_pose) && !drives(hand))
 			found = hand;
 	if (found)
-		unlink_hand(found);
+		unlink_hand(found->client, found);
 	return found != NULL;
 }
 
@@ -301,7 +303,7 @@ void cau_dds_drop_hands(cau_dds_tool *tool)
 {
 	for (cau_dds_hand *hand = tool->hands, *next; hand; hand = next) {
 		next = hand->next;
-		unlink_hand(hand);
+		unlink_hand(hand->client, hand);
 	}
 }
 
