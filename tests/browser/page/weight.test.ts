@@ -115,14 +115,14 @@ describe('the weight of a picture', () => {
   };
 
   beforeAll(async () => {
-    const processes = await stage.browser.newBrowserCDPSession();
-    const { processInfo } = await processes.send('SystemInfo.getProcessInfo');
-    drawer = processInfo.find(({ type }) => type === 'GPU')!.id;
     viewer = await ViewerPage.openFirst(stage.browser, 'about:blank', { viewport: { width: 800, height: 560 } });
     await viewer.page.addInitScript(weigh);
     await viewer.page.goto(stage.daemon.url);
     viewer.complaints.length = 0; // these complaints are of the blank page, which has no storage
     await viewer.live('d1-layers');
+    const processes = await stage.browser.newBrowserCDPSession();
+    const { processInfo } = await processes.send('SystemInfo.getProcessInfo');
+    drawer = processInfo.find(({ type }) => type === 'GPU')!.id; // it exists, because it has drawn the page
     await viewer.pause();
     await viewer.page.mouse.move(60, 200); // beside the tissue the wheel moves the camera
     await viewer.page.keyboard.down('Control');
