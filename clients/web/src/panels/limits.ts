@@ -68,7 +68,7 @@ export interface LimitInputs {
 
 export function limitInputs(kind: Kind): LimitInputs {
   const choices = CHOICES[kind].map((choice) => {
-    const select = element('select', { name: choice.name }, ...choice.options.map((value) => element('option', { value }, text.limits.options[value])));
+    const select = element('select', { name: choice.name }, ...choice.options.map((value) => element('option', { value }, text.limits.options[value] ?? value)));
     return { choice, select, label: field(text.limits.choices[choice.name], select) };
   });
   const vectors = DIRECTIONS[kind].map((vector) => {

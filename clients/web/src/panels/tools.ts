@@ -20,7 +20,7 @@ const OF_HEAT = ['temperature_c', 'hot_radius_m'];
 const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
 
 function shapeSelect(): HTMLSelectElement {
-  return element('select', { name: 'shape' }, ...TOOL_SHAPES.map((shape) => element('option', { value: shape }, text.tools.shapes[shape])));
+  return element('select', { name: 'shape' }, ...TOOL_SHAPES.map((shape) => element('option', { value: shape }, text.tools.shapes[shape] ?? shape)));
 }
 
 function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; refresh(): void } {

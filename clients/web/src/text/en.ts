@@ -176,18 +176,8 @@ export const en = {
   // ---- panels, l to z
   limits: {
     choices: { limit: 'Strain limit', model: 'Model', projection: 'Projection' },
-    // the options of the three choices
-    options: {
-      none: 'none',
-      target: 'target',
-      range: 'range',
-      neohookean: 'neohookean',
-      corotated: 'corotated',
-      stvk: 'stvk',
-      energy: 'energy',
-      closed_form: 'closed form',
-      linearised: 'linearised',
-    } satisfies Record<(typeof LIMITS | typeof MODELS | typeof PROJECTIONS)[number], string>,
+    // the options of the three choices; an option without an entry is shown by its name
+    options: { closed_form: 'closed form' } as Partial<Record<(typeof LIMITS | typeof MODELS | typeof PROJECTIONS)[number], string>>,
     vectors: { target: 'Target', strain_min: 'Least strain', strain_max: 'Largest strain', shrink: 'Shrink' },
     // directions of the material; x, y and z are axes
     entries: {
@@ -425,15 +415,8 @@ export const en = {
   tools: {
     title: 'Tools',
     inHand: 'Tool in hand',
-    shapes: {
-      sphere: 'sphere',
-      capsule: 'capsule',
-      hook: 'hook',
-      spatula: 'spatula',
-      bipolar: 'bipolar',
-      shears: 'shears',
-      grasper: 'grasper',
-    } satisfies Record<(typeof TOOL_SHAPES)[number], string>,
+    // a shape without an entry is shown by its name
+    shapes: {} as Partial<Record<(typeof TOOL_SHAPES)[number], string>>,
     moves: 'Tool moves',
     guides: { surface: 'on the surface', plane: 'in the view plane' },
     jaws: 'Jaws',
