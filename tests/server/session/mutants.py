@@ -45,7 +45,7 @@ MUTANTS = (
      "\tif (status && take_without_room(logic, asked, effects))\n\t\treturn;\n", ""),
     ("a full store leaves tools energized", "logic.c", "\tif (!event->store_takes)", "\tif (false)"),
     ("a pause leaves tools energized", "logic.c",
-     "\tcau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, \"paused\", effects);", ""),
+     "\tcau_drive_cut_energized(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, \"paused\", effects);", ""),
     ("what was gone to comes up energized", "drive.c",
      "\t\tmade->enabled = made->frozen = made->by_order = false;",
      "\t\tmade->enabled = event->tools[i].energized; made->frozen = made->by_order = false;"),
