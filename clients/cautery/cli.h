@@ -201,7 +201,7 @@ cli_exit cli_take(cli *c, const cau_client_stream *stream, const char *tool);
 const cau_stream_tool *cli_find_tool(const cau_client_stream *stream, const char *tool);
 
 // ---- all commands, each with its file ----------------------------------------------------------
-extern const cli_command *const cli_commands[]; // in completion.c; NULL marks the end
+extern const cli_command *const cli_commands[]; // in commands.c; NULL marks the end
 
 extern const cli_command cli_ls, cli_scenes, cli_instruments;        // list.c
 extern const cli_command cli_create;                                 // create.c

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The command `completion`: prints completion scripts for shells. The scripts call `cautery
 // complete`, which prints the possible next words, so a script stays correct when commands change.
-// Commands and options come from the command tables, sessions and scenes from the daemon. The table
-// of all commands is at the end: this file needs them all, and no other file needs this one.
+// Commands and options come from the command tables, sessions and scenes from the daemon.
 #include <stdlib.h>
 #include <string.h>
 
@@ -185,15 +184,3 @@ const cli_command cli_completion = {
 	.least = 1,
 	.most = 1,
 	.run = run_completion};
-
-// ---- all commands ------------------------------------------------------------------------------
-const cli_command *const cli_commands[] = {
-	&cli_ls,          &cli_scenes,      &cli_instruments, &cli_create,   &cli_info,
-	&cli_watch,       &cli_tool,        &cli_run,         &cli_record,   &cli_export,
-	&cli_log,         &cli_rm,          &cli_pause,       &cli_resume,   &cli_step,
-	&cli_speed,       &cli_reset,       &cli_rewind,      &cli_fork,     &cli_snapshot,
-	&cli_snapshots,   &cli_restore,     &cli_events,      &cli_pin,      &cli_unpin,
-	&cli_force,       &cli_gravity,     &cli_material,    &cli_ping,     &cli_context_ls,
-	&cli_context_set, &cli_context_use, &cli_context_rm,  &cli_backup,   &cli_move,
-	&cli_token,       &cli_mesh,        &cli_completion,  &cli_complete, NULL,
-};

@@ -77,16 +77,16 @@ static int32_t count_exempt(const cau_session *session)
 }
 
 // Excludes vertices from tissue contact for this tick, among them those whose `guess` (m, n x 3) is
-// more than `most_m` away. *told gets whether a diverged or inverted vertex is among them. Returns
-// false if tissue contact is off for the tick.
-static bool exempt(cau_session *session, const double *guess, double most_m, bool *told)
+// more than `most_m` away. Sets *reported to true if a diverged or inverted vertex is among them.
+// Returns false if tissue contact is off for the tick.
+static bool exempt(cau_session *session, const double *guess, double most_m, bool *reported)
 {
 	cau_collide *collide = &session->collide;
 	memset(collide->exempt, 0, (size_t)session->tissue.vertex_count);
 	exempt_held(session);
 	int32_t held = count_exempt(session);
 	bool all = exempt_inverted(session);
-	*told = exempt_thrown(session, guess, most_m) || all;
+	*reported = exempt_thrown(session, guess, most_m) || all;
 	if (all)
 		cau_collide_forget_crossed(collide);
 	else if (cau_collide_touches_again(collide))

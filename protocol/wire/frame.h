@@ -51,7 +51,7 @@ typedef struct section_cursor {
 	int type;               // type of the present section
 	const uint8_t *payload; // payload of the present section
 	size_t payload_bytes;
-	const char *wrong; // what is wrong with the frame, or NULL
+	const char *wrong; // description of the frame's first fault, or NULL
 } section_cursor;
 
 section_cursor cau_sections_begin(const void *bytes, const cau_frame_header *header);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the daemon reports of itself: its load, and the progress of a restart.
+// Reports about the daemon: its load, and the progress of a restart.
 #pragma once
 
 #include "agent/agent.h"

@@ -129,7 +129,7 @@ void cau_suspension_name_stage(cau_hosted_suspension *suspension, const char *st
 // Called between two stages of building; `user` is the session.
 cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error);
 
-// ---- limits on what is built --------------------------------------------------------------------
+// ---- limits on builds ---------------------------------------------------------------------------
 // The time and memory that a session, or a second core of it, needs to be built, and the limits on
 // them. `held` is the caller's current share, in bytes, of the memory that all sessions may take. A
 // new amount replaces the old share.

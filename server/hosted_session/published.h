@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session measures, and what it shows to others: values for other threads, and frames for
-// its streams.
+// A session's measurements, its published values for other threads, and the frames of its streams.
 #pragma once
 
 #include <pthread.h>

@@ -51,7 +51,7 @@ CAU_ORDER_TABLE(CHANGE, READ)
 #undef CHANGE
 #undef READ
 
-// ---- time.c
+// ---- slice.c
 // Commits and publishes. Only the session's owning thread (internal.h) calls this.
 void cau_hosted_end_slice(cau_hosted *h);
 // Refuses an order and takes ownership of it.
@@ -59,6 +59,8 @@ void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *e
 // Refuses all waiting orders of an ended session. Called by its worker, by the builder, or after
 // both have ended.
 void cau_hosted_refuse_rest(cau_hosted *h);
+
+// ---- time.c
 // Answers session.step after its ticks, or after a fault within them.
 void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed);
 // Destroys the session. If it is stored, this slice's batch also deletes its rows. Answers the

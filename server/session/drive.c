@@ -4,8 +4,8 @@
 // Only an enable of the driver that counts turns a tool's energy on. Every other change turns it
 // off. Each energy cut-off notes its moment in the tool, and an enable counts only if it came
 // later. So an enable that waited in the queue has no effect if its driver meanwhile fell silent,
-// hid the page, or lost the tool. `enabled` is the decision and `energized` is what the core does.
-// If a tool is energized but not enabled, the worker's next act is the cut-off.
+// hid the page, or lost the tool. `enabled` is the decision, and `energized` is the state of the
+// core. If a tool is energized but not enabled, the worker's next act is the cut-off.
 #include <math.h>
 #include <stdio.h>
 

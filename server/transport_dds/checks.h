@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks that a sample passes. Keys are checked before a sample becomes an instance, and motions
-// before they move a tool. *error says what is wrong, with the path of the field.
+// before they move a tool. *error describes the fault and names the path of the field.
 #pragma once
 
 #include <pthread.h>

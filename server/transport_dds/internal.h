@@ -387,6 +387,11 @@ cau_status cau_dds_open_domain(cau_dds_entities *entities, const cau_config *con
 // process ends, and a log line reports this.
 void cau_dds_leave(dds_entity_t domain);
 
+// ---- security.c
+// Adds the identity in the folder config->dds_security to the participant's QoS. Adds nothing if
+// the setting is empty. Returns CAU_NOT_FOUND if one of its files cannot be read.
+cau_status cau_dds_secure(dds_qos_t *qos, const cau_config *config, cau_error *error);
+
 // ---- outlets.c: writers that count their readers
 // Opens a writer. The outlet must not move in memory until the writer is deleted. Returns false on
 // failure.
